@@ -23,6 +23,9 @@ program_packages=(
     libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
     libnlopt-dev=/usr/include/nlopt.h libhwy-dev=/usr/include/hwy/highway.h
     libmuparser-dev=/usr/include/muParser.h libudunits2-dev=/usr/include/udunits2.h:libudunits2.so
+    libcairo2-dev=/usr/include/cairo/cairo.h:libcairo.so libxlsxwriter-dev=/usr/include/xlsxwriter.h:libxlsxwriter.so
+    fonts-liberation=/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf
+    libmicrohttpd-dev=/usr/include/microhttpd.h:libmicrohttpd.so
     libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
 )
 test_packages=(

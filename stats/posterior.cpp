@@ -187,8 +187,9 @@ PosteriorSample sample_posterior(const LogDensity& density, Rows starts, const P
         if (step <= settings.settling) continue;
         accepted += moved;
         trace.insert(trace.end(), e.points.begin(), e.points.end());
-        if ((step - settings.settling) % std::max<std::size_t>(settings.thinning, 1) == 0)
-            sample.points.insert(sample.points.end(), e.points.begin(), e.points.end());
+        if ((step - settings.settling) % std::max<std::size_t>(settings.thinning, 1) != 0) continue;
+        sample.points.insert(sample.points.end(), e.points.begin(), e.points.end());
+        sample.density.insert(sample.density.end(), e.density.begin(), e.density.end());
     }
     sample.acceptance = static_cast<double>(accepted) / static_cast<double>(walkers * settings.steps);
     judge_paths(sample, trace, walkers, settings.steps);

@@ -32,7 +32,8 @@ struct PosteriorSettings {
 };
 
 struct PosteriorSample {
-    std::vector<double> points;  ///< rows of d, in [0, 1]
+    std::vector<double> points;   ///< rows of d, in [0, 1]
+    std::vector<double> density;  ///< log density of each row, up to a constant
     std::size_t dimensions = 0;
     double acceptance = 0;  ///< share of moves
     double effective = 0;   ///< walkers steps / (longest autocorrelation time of a coordinate)

@@ -56,6 +56,12 @@ std::map<std::string, std::size_t> read_condition(const Cursor& inputs, Paramete
     return levels;
 }
 
+/// A number in the unit of the observable, or a text with a unit that fits.
+double measured_number(const Cursor& place, const ObservableSpec& observable, const Interval& bounds) {
+    if (!place.json().is_string()) return place.number(bounds);
+    return std::get<double>(read_value(place, {observable.name, observable.unit, {}, 0.0, bounds, {}}, {}));
+}
+
 double cell_number(const Cursor& file, std::size_t record, const std::string& cell) {
     const auto x = grainsweep::number_in(cell);
     if (!x) file.refuse(fmt::format("record {} has {} where a number is expected", record, shown(cell)));
@@ -162,6 +168,7 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const design
 std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign& campaign, std::size_t calibrated,
                                                  const std::filesystem::path& folder, std::size_t curve) {
     const Section section(element, target_keys());
+    if (const auto of = section.find("of")) of->refuse("the calibration has no \"experiments\"");
     const auto& scene = campaign.scene();
     designs::MeasuredTarget target;
     target.observable = section.at("observable").word(names_of(scene.observables));
@@ -174,8 +181,9 @@ std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign
                              "is a curve: what was measured stands in a \"file\" of lines where,value[,error]");
     const auto error = section.find("error");
     if (scalar && !error) throw wrong_question(element.path(), "", "'error' is missing: of what was measured");
-    target.value = section.number("value", 0);
-    target.error = section.number("error", 0);
+    const auto& measured = *scene.find_observable(target.observable);
+    if (value) target.value = measured_number(*value, measured, {-largest, largest});
+    if (error) target.error = measured_number(*error, measured, {0, largest});
     if (const auto inputs = section.find("inputs"))
         target.level = read_condition(*inputs, campaign.space, calibrated, folder);
     if (scalar) return {target};
@@ -184,7 +192,7 @@ std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign
 }
 
 /// How far the simulation may be from the experiment, per observable: to be stated, be it 0.
-void read_discrepancies(const Section& section, std::vector<designs::MeasuredTarget>& targets) {
+void read_discrepancies(const Section& section, const SceneInfo& scene, std::vector<designs::MeasuredTarget>& targets) {
     const Cursor place = section.at("discrepancy");
     if (!place.json().is_object()) place.refuse("must be an object of observables and standard deviations");
     std::vector<std::string> measured;
@@ -193,7 +201,7 @@ void read_discrepancies(const Section& section, std::vector<designs::MeasuredTar
         const Cursor here(json, path_of(place.path(), name));
         if (std::ranges::find(measured, name) == measured.end())
             here.refuse("no target measures this observable", nearest_word(name, measured));
-        const double discrepancy = here.number({0, largest, false, false});
+        const double discrepancy = measured_number(here, *scene.find_observable(name), {0, largest});
         for (std::size_t k = 0; k < targets.size(); ++k)
             if (measured[k] == name) targets[k].discrepancy = discrepancy;
     }
@@ -243,7 +251,7 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
             if (targets[j].observable == targets[k].observable && targets[j].level == targets[k].level)
                 throw wrong_question(places[k], targets[k].observable, "is a target twice under the same condition");
     }
-    read_discrepancies(section, targets);
+    read_discrepancies(section, campaign.scene(), targets);
 
     campaign.design = "calibration";
     auto& options = campaign.request.options;

@@ -86,19 +86,19 @@ inline constexpr std::int64_t checks_by_default = 8, longest_default_block = 400
 [[nodiscard]] std::int64_t least_block(const stats::RuleInfo& rule, std::int64_t sequences);
 
 struct Limits {
-    double wall_seconds = 0;  ///< per attempt; 0: none
+    std::optional<double> wall_seconds;  ///< per attempt
     std::int64_t attempts = 3;
 };
 
 struct Execution {
-    std::int64_t workers = 0;           ///< 0: all cores
-    std::vector<std::string> launcher;  ///< argv prefix of a worker, or of a host
-    std::int64_t hosts = 0;             ///< processes that run workers on a node of their own; 0: none
-    std::int64_t workers_per_host = 0;  ///< 0: one per processor of this machine
-    std::int64_t threads = 0;           ///< of a case; 0: those that no other case needs
-    double walltime = 0;                ///< seconds that the main program may take; 0: no limit
-    double start_seconds = 300;         ///< a worker that is not ready by then is replaced; 0: no limit
-    double silence_seconds = 60;        ///< so is one that says nothing for so long while it has a case; 0: no limit
+    std::optional<std::int64_t> workers;           ///< otherwise all cores
+    std::vector<std::string> launcher;             ///< argv prefix of a worker, or of a host
+    std::optional<std::int64_t> hosts;             ///< processes that run workers on a node of their own
+    std::optional<std::int64_t> workers_per_host;  ///< otherwise one per processor of this machine
+    std::optional<std::int64_t> threads;           ///< of a case; otherwise those that no other case needs
+    std::optional<double> walltime;                ///< seconds that the main program may take
+    std::optional<double> start_seconds = 300;     ///< a worker that is not ready by then is replaced
+    std::optional<double> silence_seconds = 60;    ///< so is one that says nothing for so long while it has a case
 };
 
 struct Campaign {
@@ -109,6 +109,9 @@ struct Campaign {
     designs::DesignRequest request;
     std::int64_t replicates = 1;
     std::uint64_t seed = 1;
+    /// Inputs that change no seed: cases that differ in these alone draw the same random numbers (common random
+    /// numbers).
+    std::vector<std::string> common_random_numbers;
     std::optional<Convergence> convergence;
     std::string accuracy;  ///< empty: none asked
     /// Of response models: expressions over the factors; empty: the factors, or their logarithms. No part of what the

@@ -2,7 +2,7 @@
 
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/designs/calibration.hpp"
+#include "sweep/designs/calibration_layout.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -135,6 +135,16 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
     return total;
 }
 
+std::optional<LongestCourse> longest_course(const Campaign& campaign, const Forecast& forecast) {
+    const auto* design = designs::find_design(campaign.design);
+    if (design == nullptr || !design->calibrates) return std::nullopt;
+    const auto& request = campaign.request;
+    const auto waves = request.count("waves"), points = request.count("points_per_wave");
+    const auto checks = request.count("checks") * (request.shared.empty() ? 1 : waves);
+    const double first_waves = static_cast<double>(waves) + static_cast<double>(checks) / static_cast<double>(points);
+    return LongestCourse{waves, points, checks, first_waves * forecast.total_seconds};
+}
+
 namespace {
 
 std::vector<std::string> calibration_warnings(const Campaign& campaign) {
@@ -142,7 +152,7 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     const auto* design = designs::find_design(campaign.design);
     if (design == nullptr || !design->calibrates) return warnings;
     for (const auto& target : designs::targets_in(campaign.request.word("targets")))
-        if (target.discrepancy == 0)
+        if (target.discrepancy == 0 && target.experiment == designs::experiment_of(campaign.request))
             warnings.push_back(fmt::format(
                 "the discrepancy of {0} is 0: where the simulation is not exactly the experiment, the posterior "
                 "will be too narrow, about a wrong setting",
@@ -192,7 +202,7 @@ std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& f
     }
     if (auto repeated = repeated_cases(campaign, forecast); !repeated.empty()) warnings.push_back(std::move(repeated));
     for (auto& sentence : calibration_warnings(campaign)) warnings.push_back(std::move(sentence));
-    if (campaign.execution.threads > 0 && is_program(campaign.scene().name))
+    if (campaign.execution.threads && is_program(campaign.scene().name))
         warnings.emplace_back(
             "execution.threads has no effect on a program: program.cores says how many cores a case of it takes");
     warn_of_counts(campaign, warnings);

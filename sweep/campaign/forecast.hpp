@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,14 @@ struct Prediction {
 
 /// Throws WrongQuestion where "the case of point 3" (`which`) needs more memory than `room`, bytes.
 void require_memory(const std::string& which, double bytes, double room);
+
+/// A calibration of which no wave ends early.
+struct LongestCourse {
+    std::int64_t waves = 0, points_per_wave = 0, checks = 0;  ///< checks: of all rounds
+    double seconds = 0;                                       ///< of one plain core, at the mean cost of the first wave
+};
+/// Returns what a calibration costs at most; none for a campaign of another design.
+[[nodiscard]] std::optional<LongestCourse> longest_course(const Campaign& campaign, const Forecast& forecast);
 
 /// Adds the scene's own estimates over different questions without a proven answer. Throws WrongQuestion where all
 /// questions are impossible, and where one needs more memory than `room`, bytes.

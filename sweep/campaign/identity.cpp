@@ -16,7 +16,7 @@ namespace grainsweep::campaign {
 
 namespace {
 
-constexpr std::string_view level_separator = " | ";
+constexpr std::string_view level_separator = " | ", factor_separator = "; ";
 
 std::string joined(const std::vector<Value>& values) {
     std::string text;
@@ -169,12 +169,26 @@ Identity identity_of(const Campaign& campaign) {
         const bool extent = option != nullptr && option->extent;
         (extent ? identity.extent : identity.options) += fmt::format("{} = {}\n", name, text_of(value));
     }
+    if (const auto& names = campaign.common_random_numbers; !names.empty())
+        identity.options += fmt::format("common_random_numbers = {}\n", fmt::join(names, " "));
     return identity;
 }
 
 std::vector<StatedFactor> factors_of(const Identity& identity) {
     std::vector<StatedFactor> factors;
     for (const auto& line : lines_of(identity.factors)) factors.push_back(factor_in(line));
+    return factors;
+}
+
+std::string factors_line(const std::vector<Factor>& factors) {
+    std::string line;
+    for (const auto& factor : factors) line.append(line.empty() ? "" : factor_separator).append(line_of(factor));
+    return line;
+}
+
+std::vector<StatedFactor> factors_in(std::string_view line) {
+    std::vector<StatedFactor> factors;
+    for (const auto& part : split(line, factor_separator)) factors.push_back(factor_in(part));
     return factors;
 }
 

@@ -44,6 +44,9 @@ struct StatedFactor {
 };
 /// The factors in the order that fixes the dimensions of the design.
 [[nodiscard]] std::vector<StatedFactor> factors_of(const Identity& identity);
+/// The factors as an identity states them, in one line; and back.
+[[nodiscard]] std::string factors_line(const std::vector<Factor>& factors);
+[[nodiscard]] std::vector<StatedFactor> factors_in(std::string_view line);
 /// Their names.
 [[nodiscard]] std::vector<std::string> factor_names(const Identity& identity);
 /// Every option of the design, as text.

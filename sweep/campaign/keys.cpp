@@ -65,7 +65,7 @@ Key key_of(const designs::OptionSpec& option) {
 std::span<const Key> campaign_keys() {
     static constexpr auto keys = std::to_array<Key>({
         needed({"campaign", Kind::text, "name of the campaign and of its view in the database"}),
-        needed({"scene", Kind::word, "the experiment every case runs"}),
+        {"scene", Kind::word, "the experiment every case runs; needed unless a calibration has several"},
         needed({"factors", Kind::array, "what varies; their order fixes the dimensions of the design"}),
         {"fixed", Kind::object,
          "parameters held at a value other than their default, or following others by an expression", "{}"},
@@ -75,6 +75,10 @@ std::span<const Key> campaign_keys() {
          "in place of a design: measurements, and waves of points towards the settings that reproduce them"},
         {"replicates", Kind::whole, "repeats of each point with other seeds", "1", counts},
         {"seed", Kind::whole, "seed of the design's scrambling and of every case", "1", {0, largest_seed}},
+        {"common_random_numbers", Kind::words,
+         "parameters that change no seed: cases that differ in these alone draw the same random numbers, so that their "
+         "difference is that of the parameter",
+         "[]"},
         {"convergence", Kind::object, "when the statistics are good enough"},
         {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
@@ -137,10 +141,12 @@ std::span<const Key> model_keys() {
 
 std::span<const Key> calibration_keys() {
     static constexpr auto keys = std::to_array<Key>({
+        {"experiments", Kind::object,
+         "several experiments with the same factors, each a scene or machine with its fixed values"},
         needed({"targets", Kind::array, "what was measured, one entry each"}),
         needed({"discrepancy", Kind::object,
                 "of each observable measured: how far the simulation itself may be from the experiment, as a standard "
-                "deviation"}),
+                "deviation; with experiments an object of these for each"}),
         {"waves", Kind::whole, "waves of points at most", "4", {1, 100}},
         {"points_per_wave", Kind::whole, "settings of a wave; each is run under every condition", "40", {12, 10'000}},
         {"checks", Kind::whole, "settings drawn from the posterior that are run to check it", "8", {1, 1000}},
@@ -149,10 +155,25 @@ std::span<const Key> calibration_keys() {
     return keys;
 }
 
+std::span<const Key> experiment_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        {"scene", Kind::word, "the scene; not needed with a machine or a program"},
+        {"machine", Kind::value, "a machine file beside the campaign file, an installed machine, or its object"},
+        {"program", Kind::object, "the command that answers a case"},
+        {"fixed", Kind::object, "as in the campaign file, for this experiment", "{}"},
+    });
+    return keys;
+}
+
 std::span<const Key> target_keys() {
     static constexpr auto keys = std::to_array<Key>({
+        {"of", Kind::word, "the experiment in which it was measured, where there are several"},
         needed({"observable", Kind::word, "an observable of the scene"}),
-        {"value", Kind::number, "of a scalar: what was measured, in its unit", {}, measurable},
+        {"value",
+         Kind::number,
+         "of a scalar: what was measured, a number in its unit or a text with a unit",
+         {},
+         measurable},
         {"file", Kind::text,
          "of a series or profile: CSV file of a measured curve, a header and lines of where, value and, where it "
          "differs from line to line, error"},

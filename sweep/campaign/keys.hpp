@@ -37,6 +37,7 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> convergence_keys();
 [[nodiscard]] std::span<const Key> model_keys();
 [[nodiscard]] std::span<const Key> calibration_keys();
+[[nodiscard]] std::span<const Key> experiment_keys();
 [[nodiscard]] std::span<const Key> target_keys();
 [[nodiscard]] std::span<const Key> stop_keys();
 [[nodiscard]] std::span<const Key> limits_keys();

@@ -80,8 +80,8 @@ struct Program {
     std::map<std::string, std::string> environment;
 
     std::int64_t cores = 1;
-    std::int64_t memory = 0;            ///< bytes of address space; 0: no limit
-    std::int64_t disk = 1'000'000'000;  ///< bytes that a case may write into its folder
+    std::optional<std::int64_t> memory;  ///< bytes of address space
+    std::int64_t disk = 1'000'000'000;   ///< bytes that a case may write into its folder
     Keep keep = Keep::failed;
     double cost_seconds = 1;
     double tolerance = 0;  ///< relative, of a repeated case

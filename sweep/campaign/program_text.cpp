@@ -83,7 +83,7 @@ Json notes_of(const std::string& unit, const std::string& meaning) {
 
 Json settings_of(const Program& program) {
     Json settings = {{"cores", program.cores},
-                     {"memory", program.memory},
+                     {"memory", program.memory.value_or(0)},
                      {"disk", program.disk},
                      {"keep", keep_words[static_cast<std::size_t>(program.keep)]},
                      {"cost_seconds", program.cost_seconds},
@@ -157,8 +157,8 @@ void require_harmless(const Program& program) {
         if (const auto* json = std::get_if<FromJson>(&observable.from)) require_within_folder(json->file);
         if (const auto* csv = std::get_if<FromCsv>(&observable.from)) require_within_folder(csv->file);
     }
-    const bool in_range = program.cores >= 1 && program.memory >= 0 && program.disk >= 0 && program.cost_seconds >= 0 &&
-                          program.tolerance >= 0;
+    const bool in_range = program.cores >= 1 && program.memory.value_or(1) > 0 && program.disk >= 0 &&
+                          program.cost_seconds >= 0 && program.tolerance >= 0;
     if (!in_range) throw std::invalid_argument("a number of its settings is out of range");
 }
 
@@ -187,7 +187,7 @@ Program program_in(std::string_view text) {
         read_parameters(answer.at("parameters"), settings.at("parameters"), program);
         read_observables(answer.at("observables"), settings, program);
         program.cores = settings.at("cores").get<std::int64_t>();
-        program.memory = settings.at("memory").get<std::int64_t>();
+        if (const auto memory = settings.at("memory").get<std::int64_t>(); memory != 0) program.memory = memory;
         program.disk = settings.at("disk").get<std::int64_t>();
         program.keep = enum_named<Program::Keep>(keep_words, settings.at("keep").get<std::string>());
         program.cost_seconds = settings.at("cost_seconds").get<double>();

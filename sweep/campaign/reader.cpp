@@ -68,30 +68,22 @@ std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& fo
     return read_machine(file);
 }
 
-const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
-    const Cursor place = top.at("scene");
-    const auto known = scene_words();
-    const auto& json = place.json();
-    if (!json.is_string() || std::ranges::find(known, json.get_ref<const std::string&>()) == known.end())
-        place.refuse("must be a scene or a machine that 'grainsweep scenes' lists",
-                     json.is_string() ? nearest_word(json.get_ref<const std::string&>(), known) : std::string());
-    const auto word = json.get<std::string>();
-    if (word == program_word) return enter_program(read_program(top, folder));
-    if (word == machine_word) return enter_machine(machine_of(top, folder));
-    if (const auto machine = top.find("machine"))
-        throw wrong_question(machine->path(), "",
-                             fmt::format("belongs to \"scene\": \"machine\", and this is {}", word));
-    if (const auto program = top.find("program"))
-        throw wrong_question(program->path(), "",
-                             fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
-    return *scene_named(word);
-}
-
 std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
     std::vector<std::string> offered;
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
     if (offered.empty()) place.refuse(fmt::format("scene '{}' offers no accuracy settings; leave it out", scene.name));
     return place.word(offered);
+}
+
+std::vector<std::string> read_common(const Section& top, const SceneInfo& scene) {
+    auto names = top.words("common_random_numbers", {});
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const auto place = top.at("common_random_numbers")[k];
+        (void)read_parameter(place, scene);
+        if (std::ranges::count(names, names[k]) > 1) place.refuse("this parameter is there twice");
+    }
+    std::ranges::sort(names);
+    return names;
 }
 
 /// A parameter that is given but can matter to no case is a misunderstanding.
@@ -131,23 +123,36 @@ std::string read_text(const fs::path& file) {
 
 }  // namespace
 
-Campaign parse_campaign(std::string_view text, const fs::path& folder) {
-    if (text.size() > largest_text) throw wrong_question("", "", "a campaign file has at most 64 MiB");
-    const Json document = parse_json(text);
-    if (is_machine_document(document))
-        throw wrong_question("$", "",
-                             "this is a machine file; a campaign file names it, with \"scene\": \"machine\" and "
-                             "\"machine\": the name of this file");
-    const Section top(Cursor(document, "$"), campaign_keys());
+const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
+    const Cursor place = top.at("scene");
+    const auto known = scene_words();
+    const auto& json = place.json();
+    if (!json.is_string() || std::ranges::find(known, json.get_ref<const std::string&>()) == known.end())
+        place.refuse("must be a scene or a machine that 'grainsweep scenes' lists",
+                     json.is_string() ? nearest_word(json.get_ref<const std::string&>(), known) : std::string());
+    const auto word = json.get<std::string>();
+    if (word == program_word) return enter_program(read_program(top, folder));
+    if (word == machine_word) return enter_machine(machine_of(top, folder));
+    if (const auto machine = top.find("machine"))
+        throw wrong_question(machine->path(), "",
+                             fmt::format("belongs to \"scene\": \"machine\", and this is {}", word));
+    if (const auto program = top.find("program"))
+        throw wrong_question(program->path(), "",
+                             fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
+    return *scene_named(word);
+}
 
+Campaign campaign_in(const Json& document, const fs::path& folder) {
+    const Section top(Cursor(document, "$"), campaign_keys());
+    if (!top.find("scene")) throw wrong_question("$", "", "key 'scene' is missing: the experiment every case runs");
     Campaign campaign;
-    campaign.text = text;
     campaign.name = read_name(top.at("campaign"));
     campaign.space.scene = &read_scene(top, folder);
     campaign.seed = static_cast<std::uint64_t>(top.whole("seed", 1));
     campaign.replicates = top.whole("replicates", 1);
     if (const auto where = top.find("where")) campaign.where = where->text();
 
+    campaign.common_random_numbers = read_common(top, campaign.scene());
     auto& space = campaign.space;
     space.factors = read_factors(top.at("factors"), *space.scene, folder);
     if (const auto fixed = top.find("fixed")) read_fixed(*fixed, space, folder);
@@ -175,9 +180,33 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
     return campaign;
 }
 
-Campaign read_campaign(const fs::path& file) {
+Campaign parse_campaign(std::string_view text, const fs::path& folder, std::string_view experiment) {
+    if (text.size() > largest_text) throw wrong_question("", "", "a campaign file has at most 64 MiB");
+    const Json document = parse_json(text);
+    if (is_machine_document(document))
+        throw wrong_question("$", "",
+                             "this is a machine file; a campaign file names it, with \"scene\": \"machine\" and "
+                             "\"machine\": the name of this file");
+    const auto names = experiment_names(document);
+    const auto found = std::ranges::find(names, experiment);
+    if (found == names.end() && !names.empty())
+        throw wrong_question("$.calibration.experiments", "",
+                             "the commands plan, run and calibrate take several experiments; this one takes one");
+    auto campaign =
+        names.empty() ? campaign_in(document, folder)
+                      : std::move(read_experiments(document, folder)[static_cast<std::size_t>(found - names.begin())]);
+    campaign.text = text;
+    return campaign;
+}
+
+Campaign read_campaign(const fs::path& file, std::string_view experiment) {
     const std::string text = read_text(file);
-    return asked_in(file, [&] { return parse_campaign(text, file.parent_path()); });
+    return asked_in(file, [&] { return parse_campaign(text, file.parent_path(), experiment); });
+}
+
+std::vector<std::string> read_experiment_names(const fs::path& file) {
+    const std::string text = read_text(file);
+    return asked_in(file, [&] { return experiment_names(parse_json(text)); });
 }
 
 }  // namespace grainsweep::campaign

@@ -166,6 +166,7 @@ OrderedJson scene_rule(const SceneInfo& scene) {
     then["accuracy"] = offered.empty() ? OrderedJson(false) : OrderedJson{{"enum", offered}};
     OrderedJson condition;
     condition["properties"]["scene"]["const"] = scene.shown();
+    condition["required"] = {"scene"};
     return {{"if", condition}, {"then", {{"properties", then}}}};
 }
 
@@ -206,6 +207,7 @@ OrderedJson defined_scene_rule(std::string_view word, OrderedJson accuracy) {
     const std::string key(word);
     OrderedJson condition, absent;
     condition["properties"]["scene"]["const"] = key;
+    condition["required"] = {"scene"};
     absent[key] = false;
     return {{"if", condition},
             {"then", {{"properties", then}, {"required", OrderedJson::array({key})}}},
@@ -265,7 +267,17 @@ std::string campaign_schema(int indentation) {
     properties["model"].update(section(model_keys()));
     properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});
     properties["calibration"].update(section(calibration_keys()));
-    properties["calibration"]["properties"]["targets"]["items"] = section(target_keys());
+    auto& calibration = properties["calibration"]["properties"];
+    calibration["targets"]["items"] = section(target_keys());
+    for (const char* key : {"value", "error"})
+        calibration["targets"]["items"]["properties"][key]["type"] = {"number", "string"};
+    calibration["experiments"]["minProperties"] = 1;
+    calibration["experiments"]["additionalProperties"] = section(experiment_keys());
+    calibration["experiments"]["properties"][std::string(notes_key)] = notes_schema();
+    OrderedJson several;
+    several["required"] = {"calibration"};
+    several["properties"]["calibration"]["required"] = {"experiments"};
+    schema["anyOf"] = {{{"required", {"scene"}}}, several};
     properties["calibration"]["properties"]["stop"].update(section(stop_keys()));
     properties["program"].update(program_schema());
     properties["limits"].update(section(limits_keys()));

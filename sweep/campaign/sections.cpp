@@ -59,12 +59,19 @@ std::int64_t block_by_default(const Convergence& convergence, const Campaign& ca
     return default_block(points, sequences, least_block(convergence.traits(), sequences));
 }
 
-/// Seconds that are a limit, or 0 where there is none.
-double read_time_limit(const Section& section, std::string_view key, double standard, double shortest) {
-    const double seconds = section.number(key, standard);
+/// In a file 0 stands for what is not given.
+template <class Number>
+std::optional<Number> unless_zero(Number number) {
+    return number == 0 ? std::nullopt : std::optional(number);
+}
+
+/// Seconds that are a limit.
+std::optional<double> read_time_limit(const Section& section, std::string_view key, std::optional<double> standard,
+                                      double shortest) {
+    const double seconds = section.number(key, standard.value_or(0));
     if (seconds > 0 && seconds < shortest)
         section.at(key).refuse(fmt::format("must be at least {} s, or 0 for no limit", shortest));
-    return seconds;
+    return unless_zero(seconds);
 }
 
 }  // namespace
@@ -121,15 +128,15 @@ Limits read_limits(const Cursor& place) {
 Execution read_execution(const Cursor& place) {
     const Section section(place, execution_keys());
     Execution execution;
-    execution.workers = section.whole("workers", execution.workers);
+    execution.workers = unless_zero(section.whole("workers", 0));
     execution.launcher = section.words("launcher", {});
-    execution.hosts = section.whole("hosts", execution.hosts);
-    execution.workers_per_host = section.whole("workers_per_host", execution.workers_per_host);
-    if (execution.hosts > 0 && section.find("workers"))
+    execution.hosts = unless_zero(section.whole("hosts", 0));
+    execution.workers_per_host = unless_zero(section.whole("workers_per_host", 0));
+    if (execution.hosts && section.find("workers"))
         section.at("workers").refuse("with 'hosts' it has no effect: take 'workers_per_host'");
-    if (execution.hosts == 0 && section.find("workers_per_host"))
+    if (!execution.hosts && section.find("workers_per_host"))
         section.at("workers_per_host").refuse("without 'hosts' it has no effect: take 'workers'");
-    execution.threads = section.whole_or_word("threads", execution.threads, 0);
+    execution.threads = unless_zero(section.whole_or_word("threads", 0, 0));
     execution.walltime = read_time_limit(section, "walltime", execution.walltime, shortest_limit);
     execution.start_seconds = read_time_limit(section, "start_seconds", execution.start_seconds, shortest_limit);
     execution.silence_seconds =

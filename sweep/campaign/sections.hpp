@@ -10,8 +10,8 @@
 
 namespace grainsweep::campaign {
 
-/// A value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file is looked for in `folder` and
-/// becomes "file:<hash of its contents>:<absolute path>".
+/// A value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file is
+/// looked for in `folder` and becomes "file:<hash of its contents>:<absolute path>".
 [[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter,
                                const std::filesystem::path& folder);
 
@@ -25,6 +25,15 @@ namespace grainsweep::campaign {
                                                const std::filesystem::path& folder);
 /// Values, quantities and expressions over the numbers of other parameters.
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
+
+/// The scene that a campaign file or one of its experiments names: with a program or a machine, made from its section.
+[[nodiscard]] const SceneInfo& read_scene(const Section& top, const std::filesystem::path& folder);
+/// A campaign file of one experiment, without its text.
+[[nodiscard]] Campaign campaign_in(const Json& document, const std::filesystem::path& folder);
+/// The experiments of "calibration"; empty: the campaign file is of one.
+[[nodiscard]] std::vector<std::string> experiment_names(const Json& document);
+/// The campaign of each experiment, in the order of experiment_names.
+[[nodiscard]] std::vector<Campaign> read_experiments(const Json& document, const std::filesystem::path& folder);
 
 /// The campaign's design: checks options against the design's OptionSpecs and fills in defaults.
 void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);

@@ -38,22 +38,28 @@ designs::OptionValue value_of(const designs::OptionSpec& option, const std::stri
     return text;
 }
 
+designs::FactorRange stated_range(const StatedFactor& stated) {
+    designs::FactorRange range{stated.name, {}};
+    if (stated.between)
+        range.value_at = [factor = Factor{stated.name, *stated.between}](double u) {
+            return std::get<double>(value_at(factor, u));
+        };
+    return range;
+}
+
 }  // namespace
 
 designs::DesignRequest request_of(const Identity& identity) {
     const auto& design = designs::design_named(identity.design);
     designs::DesignRequest request;
     request.seed = identity.seed;
-    for (auto& stated : factors_of(identity)) {
+    for (const auto& stated : factors_of(identity)) {
         request.levels.push_back(stated.levels.size());
-        auto& range = request.factors.emplace_back();
-        range.name = stated.name;
-        if (stated.between)
-            range.value_at = [factor = Factor{stated.name, *stated.between}](double u) {
-                return std::get<double>(value_at(factor, u));
-            };
+        request.factors.push_back(stated_range(stated));
     }
     const auto stated = options_in(identity);
+    if (const auto together = stated.find("together"); together != stated.end())
+        for (const auto& factor : factors_in(together->second)) request.shared.push_back(stated_range(factor));
     for (const auto& option : design.options) {
         const auto found = stated.find(option.name);
         if (found != stated.end()) {

@@ -83,22 +83,41 @@ Remarks remarks_in(std::string_view campaign_file) {
     return remarks;
 }
 
-std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
-                           std::span<const std::vector<Value>> rows, std::uint64_t number) {
-    const Json document = document_in(campaign_file);
-    if (!document.is_object()) throw std::invalid_argument("further points: the text is no campaign file");
+namespace {
+
+nlohmann::ordered_json list_design(std::span<const std::vector<Value>> rows) {
     Json list = Json::array();
     for (const auto& row : rows) {
         Json values = Json::array();
         for (const auto& value : row) std::visit([&](const auto& plain) { values.push_back(plain); }, value);
         list.push_back(std::move(values));
     }
+    return {{"kind", "list"}, {"rows", list}};
+}
+
+/// What both files below have in common with the campaign that they ask further.
+nlohmann::ordered_json begun(const Json& document, std::string_view name, std::string_view notes) {
     nlohmann::ordered_json text;
     text["notes"] = notes;
     text["campaign"] = name;
-    for (const char* key :
-         {"scene", "program", "factors", "fixed", "where", "accuracy", "model", "limits", "execution"})
+    for (const char* key : {"scene", "program", "machine", "factors", "fixed", "where", "accuracy",
+                            "common_random_numbers", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
+    return text;
+}
+
+Json document_of_campaign(std::string_view campaign_file) {
+    Json document = document_in(campaign_file);
+    if (!document.is_object()) throw std::invalid_argument("further points: the text is no campaign file");
+    return document;
+}
+
+}  // namespace
+
+std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
+                           std::span<const std::vector<Value>> rows, std::uint64_t number) {
+    const Json document = document_of_campaign(campaign_file);
+    auto text = begun(document, name, notes);
     if (const auto calibration = document.find("calibration");
         calibration != document.end() && calibration->is_object()) {
         Json factors = document.value("factors", Json::array());
@@ -107,8 +126,51 @@ std::string further_points(std::string_view campaign_file, std::string_view name
     }
     const std::uint64_t seed = document.contains("seed") ? document["seed"].get<std::uint64_t>() : 1;
     text["seed"] = seed > most_of_a_seed - number ? number : seed + number;
-    text["design"] = {{"kind", "list"}, {"rows", list}};
+    text["design"] = list_design(rows);
     return text.dump(2) + '\n';
+}
+
+std::string with_other_numerics(std::string_view campaign_file, const OtherNumerics& numerics,
+                                std::span<const std::vector<Value>> rows) {
+    const Json document = document_of_campaign(campaign_file);
+    auto text = begun(document, numerics.name, numerics.notes);
+    text["accuracy"] = numerics.accuracy;
+    for (const auto& [name, value] : numerics.fixed)
+        std::visit([&](const auto& plain) { text["fixed"][name] = plain; }, value);
+    std::vector<std::string> common = document.value("common_random_numbers", std::vector<std::string>());
+    for (const auto& name : numerics.numerical)
+        if (std::ranges::count(common, name) == 0) common.push_back(name);
+    text["common_random_numbers"] = common;
+    if (document.contains("seed")) text["seed"] = document["seed"];
+    text["design"] = list_design(rows);
+    return text.dump(2) + '\n';
+}
+
+std::string text_of_experiment(std::string_view campaign_file, const Identity& campaign) {
+    const auto options = options_in(campaign);
+    Json document = document_in(campaign_file);
+    const auto place = Json::json_pointer("/calibration/experiments");
+    if (!options.contains("experiment") || !document.is_object() || !document.contains(place))
+        return std::string(campaign_file);
+    const auto& name = options.find("experiment")->second;
+    const Json own = document[place].value(name, Json::object());
+    for (const char* key : {"scene", "machine", "program"})
+        if (own.contains(key)) document[key] = own[key];
+    if (!own.contains("scene")) document["scene"] = own.contains("machine") ? "machine" : "program";
+    const auto known = factor_names(campaign);
+    Json factors = Json::array(), fixed = own.value("fixed", Json::object()), targets = Json::array();
+    for (const auto& factor : document["factors"])
+        if (std::ranges::find(known, factor["name"].get<std::string>()) != known.end()) factors.push_back(factor);
+    const Json shared = document.value("fixed", Json::object());
+    for (const auto& [parameter, value] : shared.items())
+        if (!fixed.contains(parameter) && ("\n" + campaign.fixed).find("\n" + parameter + " = ") != std::string::npos)
+            fixed[parameter] = value;
+    for (const auto& target : document["calibration"]["targets"])
+        if (target.value("of", "") == name) targets.push_back(target);
+    document["factors"] = factors;
+    document["fixed"] = fixed;
+    document["calibration"] = {{"targets", targets}};
+    return document.dump();
 }
 
 std::optional<std::string> phases_text(const PhaseSeconds& phases) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/identity.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -28,6 +29,21 @@ struct Remarks {
 /// Paths of files stay as they were written. Throws std::invalid_argument for a text that is no campaign file.
 [[nodiscard]] std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
                                          std::span<const std::vector<Value>> rows, std::uint64_t number);
+
+/// The same question asked with other numerics: an accuracy setting, and single inputs beside it.
+struct OtherNumerics {
+    std::string name, notes;
+    std::string accuracy;
+    Inputs fixed = {};                   ///< of those alone that the file does not vary
+    std::vector<std::string> numerical;  ///< inputs that change no seed
+};
+/// A campaign file that asks these points of another in that way, with a design of kind `list`, the seed of the other,
+/// and one replicate. Throws std::invalid_argument for a text that is no campaign file.
+[[nodiscard]] std::string with_other_numerics(std::string_view campaign_file, const OtherNumerics& numerics,
+                                              std::span<const std::vector<Value>> rows);
+
+/// The campaign file of a calibration's experiment as one of that experiment alone; any other text as it is.
+[[nodiscard]] std::string text_of_experiment(std::string_view campaign_file, const Identity& campaign);
 
 using PhaseSeconds = decltype(Cost::phases);
 /// As a JSON object; phases whose time is no number are left out. None where there are no phases.

@@ -64,22 +64,12 @@ private:
 class PointQuestions final : public Questions {
 public:
     PointQuestions(const Campaign& campaign, designs::PointSet points)
-        : space_(campaign.space), seed_(campaign.seed), points_(std::move(points)), common_(common_inputs()) {
-        const Inputs defaults = space_.scene->defaults();
-        std::string text = begin_canonical(space_.scene->name, space_.scene->revision);
-        for (const auto& [name, value] : common_) {
-            const auto factor = std::ranges::find(space_.factors, name, &Factor::name);
-            const Value& standard = defaults.at(name);
-            if (factor != space_.factors.end()) {
-                const auto number = static_cast<std::size_t>(factor - space_.factors.begin());
-                varying_.push_back({std::exchange(text, {}), name, number, standard});
-            } else if (std::ranges::find(space_.expressions, name, &Expression::name) != space_.expressions.end()) {
-                varying_.push_back({std::exchange(text, {}), name, std::nullopt, standard});
-            } else if (value != standard) {
-                add_canonical(text, name, value);
-            }
-        }
-        rest_ = std::move(text);
+        : space_(campaign.space),
+          seed_(campaign.seed),
+          points_(std::move(points)),
+          common_(common_inputs()),
+          asked_(skeleton({})) {
+        if (!campaign.common_random_numbers.empty()) seeding_ = skeleton(campaign.common_random_numbers);
     }
 
     [[nodiscard]] const designs::PointSet& points() const { return points_; }
@@ -87,7 +77,7 @@ public:
     /// Complete inputs; those that `inputs` has from another point are changed where they vary.
     void inputs(std::size_t point, Inputs& inputs) const {
         if (inputs.empty()) inputs = common_;
-        for (const auto& one : varying_)
+        for (const auto& one : asked_.varying)
             if (one.factor) inputs.find(one.name)->second = value(point, one);
         evaluate_expressions(space_.expressions, inputs);
     }
@@ -97,19 +87,10 @@ public:
         inputs(point, all);
         check_expressions(space_, all);
     }
-    [[nodiscard]] std::string text(std::size_t point) const {
-        std::string text;
-        Inputs all;
-        if (!space_.expressions.empty()) inputs(point, all);
-        for (const auto& one : varying_) {
-            text += one.before;
-            if (const Value held = one.factor ? value(point, one) : all.find(one.name)->second; held != one.standard)
-                add_canonical(text, one.name, held);
-        }
-        return text += rest_;
-    }
-    [[nodiscard]] std::uint64_t seed(const std::string& text, std::int64_t replicate) const {
-        return campaign::case_seed(seed_, text, replicate);
+    [[nodiscard]] std::string text(std::size_t point) const { return text(point, asked_); }
+    /// `text`: that of the point.
+    [[nodiscard]] std::uint64_t seed(std::size_t point, const std::string& text, std::int64_t replicate) const {
+        return campaign::case_seed(seed_, seeding_ ? this->text(point, *seeding_) : text, replicate);
     }
     [[nodiscard]] static CaseHash hash(std::string text, std::uint64_t seed) {
         add_canonical_seed(text, seed);
@@ -119,7 +100,7 @@ public:
         std::string asked = text(place.point);
         into.scene = space_.scene->name;
         into.revision = space_.scene->revision;
-        into.seed = seed(asked, place.replicate);
+        into.seed = seed(place.point, asked, place.replicate);
         into.id = id_of(hash(std::move(asked), into.seed));
         inputs(place.point, into.inputs);
     }
@@ -133,6 +114,44 @@ private:
         Value standard;
     };
 
+    /// A canonical text whose lines of factors and expressions are still to be put in.
+    struct Skeleton {
+        std::vector<Varying> varying;  ///< sorted by name
+        std::string rest;
+    };
+
+    /// Without the lines of those names.
+    [[nodiscard]] Skeleton skeleton(const std::vector<std::string>& without) const {
+        Skeleton made;
+        const Inputs defaults = space_.scene->defaults();
+        std::string text = begin_canonical(space_.scene->name, space_.scene->revision);
+        for (const auto& [name, value] : common_) {
+            if (std::ranges::count(without, name) > 0) continue;
+            const auto factor = std::ranges::find(space_.factors, name, &Factor::name);
+            const Value& standard = defaults.at(name);
+            if (factor != space_.factors.end()) {
+                const auto number = static_cast<std::size_t>(factor - space_.factors.begin());
+                made.varying.push_back({std::exchange(text, {}), name, number, standard});
+            } else if (std::ranges::find(space_.expressions, name, &Expression::name) != space_.expressions.end()) {
+                made.varying.push_back({std::exchange(text, {}), name, std::nullopt, standard});
+            } else if (value != standard) {
+                add_canonical(text, name, value);
+            }
+        }
+        made.rest = std::move(text);
+        return made;
+    }
+    [[nodiscard]] std::string text(std::size_t point, const Skeleton& skeleton) const {
+        std::string text;
+        Inputs all;
+        if (!space_.expressions.empty()) inputs(point, all);
+        for (const auto& one : skeleton.varying) {
+            text += one.before;
+            if (const Value held = one.factor ? value(point, one) : all.find(one.name)->second; held != one.standard)
+                add_canonical(text, one.name, held);
+        }
+        return text += skeleton.rest;
+    }
     [[nodiscard]] Inputs common_inputs() const {
         Inputs inputs = space_.scene->defaults();
         for (const auto& [name, value] : space_.fixed) {
@@ -151,8 +170,8 @@ private:
     std::uint64_t seed_;
     designs::PointSet points_;
     Inputs common_;
-    std::vector<Varying> varying_;  ///< sorted by name
-    std::string rest_;              ///< of the canonical text
+    Skeleton asked_;                   ///< of the whole text
+    std::optional<Skeleton> seeding_;  ///< of what the seed follows from, where that is less
 };
 
 }  // namespace
@@ -238,7 +257,7 @@ Cases unfold(const Campaign& campaign, const Filter& filter) {
         const auto part = points.part.empty() ? static_cast<std::uint32_t>(p % sequences) : points.part[p];
         const auto ask = [&](std::int64_t replicate) {
             places.push_back({static_cast<std::uint32_t>(p), part, static_cast<std::uint32_t>(replicate)});
-            hashes.push_back(PointQuestions::hash(text, questions->seed(text, replicate)));
+            hashes.push_back(PointQuestions::hash(text, questions->seed(p, text, replicate)));
         };
         if (!points.repeat.empty()) {
             ask(points.repeat[p]);
@@ -262,7 +281,10 @@ Case make_case(const SceneInfo& scene, const Inputs& inputs, std::uint64_t seed)
 
 std::uint64_t case_seed(const Campaign& campaign, const Inputs& inputs, std::int64_t replicate) {
     const CaseMaker maker(campaign.scene());
-    return case_seed(campaign.seed, maker.text(maker.completed(inputs), std::nullopt), replicate);
+    Inputs known = maker.completed(inputs);
+    for (const auto& name : campaign.common_random_numbers)
+        known.insert_or_assign(name, campaign.scene().find_parameter(name)->default_value);
+    return case_seed(campaign.seed, maker.text(known, std::nullopt), replicate);
 }
 
 }  // namespace grainsweep::campaign

@@ -2,9 +2,43 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace grainsweep::campaign {
+namespace {
+
+/// Bytes of the character at the start of the text; 0: none begins there.
+std::size_t bytes_of_character(std::string_view text) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80U    ? 1
+                               : first < 0xC2U  ? 0  // inside of a character, or longer than need be
+                               : first < 0xE0U  ? 2
+                               : first < 0xF0U  ? 3
+                               : first <= 0xF4U ? 4
+                                                : 0;
+    if (length > text.size()) return 0;
+    for (std::size_t k = 1; k < length; ++k)
+        if ((byte(k) & 0xC0U) != 0x80U) return 0;
+    const unsigned second = length > 1 ? byte(1) : 0;
+    const bool wrong = (first == 0xE0U && second < 0xA0U) || (first == 0xEDU && second >= 0xA0U) ||
+                       (first == 0xF0U && second < 0x90U) || (first == 0xF4U && second >= 0x90U);
+    return wrong ? 0 : length;
+}
+
+}  // namespace
+
+std::string valid_utf8(std::string_view text) {
+    std::string valid;
+    valid.reserve(text.size());
+    while (!text.empty()) {
+        const auto bytes = bytes_of_character(text);
+        valid += bytes > 0 ? text.substr(0, bytes) : std::string_view("\xEF\xBF\xBD");
+        text.remove_prefix(std::max<std::size_t>(1, bytes));
+    }
+    return valid;
+}
 
 std::string visible(std::string_view text) {
     std::string shown;

@@ -8,5 +8,7 @@ namespace grainsweep::campaign {
 
 /// Line breaks and tabs stay as they are.
 [[nodiscard]] std::string visible(std::string_view text);
+/// Replaces every byte that is no part of a character in UTF-8 (RFC 3629) by U+FFFD.
+[[nodiscard]] std::string valid_utf8(std::string_view text);
 
 }  // namespace grainsweep::campaign

@@ -23,6 +23,8 @@ struct Command {
     std::function<Action(Parser& parser, const report::Format& format)> declare;
     bool hidden = false;
     bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
+    std::string example = {};  ///< a line of shell that --help ends with
+    bool workbook = false;  ///< --format may be xlsx
 };
 
 /// A command that reads a Request: `arguments(parser, request)` declares what is read, `act(request, format)` returns
@@ -45,6 +47,10 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
     command.verbatim = true;
     return command;
 }
+[[nodiscard]] inline Command with_workbook(Command command) {
+    command.workbook = true;
+    return command;
+}
 
 // One line per group of commands; each group has a file of its own.
 [[nodiscard]] std::vector<Command> plan_commands();       // plan
@@ -53,7 +59,10 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> archive_commands();    // status, explain, replay, query, dump
 [[nodiscard]] std::vector<Command> verify_commands();     // verify
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
+[[nodiscard]] std::vector<Command> figure_commands();     // figure
+[[nodiscard]] std::vector<Command> serve_commands();      // serve
 [[nodiscard]] std::vector<Command> decide_commands();     // predict, window
+[[nodiscard]] std::vector<Command> accuracy_commands();   // accuracy
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, machines, designs, schema
 [[nodiscard]] std::vector<Command> draw_commands();       // draw

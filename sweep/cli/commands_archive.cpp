@@ -3,9 +3,9 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
-#include "sweep/cli/hard_stop.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
+#include "sweep/cli/query.hpp"
 #include "sweep/cli/replay.hpp"
 #include "sweep/cli/status_text.hpp"
 #include "sweep/cli/stored_case.hpp"
@@ -31,7 +31,6 @@ using store::Table;
 
 struct Arguments {
     std::string database, text;
-    double seconds = 600;
 };
 
 // ---- status -------------------------------------------------------------------------------------------------
@@ -54,15 +53,19 @@ int status(const Arguments& asked, Format format) {
     const Store archive(asked.database, Store::Mode::read);
     Table table = archive.status();
     const auto records = archive.campaigns();  // one row each, in the same order
+    const auto now = live::read_now(asked.database);
     std::vector<Convergence> standings;
     for (const auto& record : records) standings.push_back(convergence_of(archive, record));
     if (format == Format::json) {
         Json rows = Json::array();
         for (std::size_t k = 0; k < standings.size(); ++k) {
             const auto& [converged, verdict] = standings[k];
-            rows.push_back(report::to_json(table, k)
-                               .add("converged", converged)
-                               .add("verdict", converged ? Json(verdict) : Json()));
+            Json row = report::to_json(table, k);
+            row.add("converged", converged).add("verdict", converged ? Json(verdict) : Json());
+            if (now && now->campaign == records[k].name)
+                row.add("running", report::to_json(running_cases(archive, *now, now->running.size())))
+                    .add("expected_seconds", now->seconds_left);
+            rows.push_back(row);
         }
         report::write(std::cout, rows);
         return 0;
@@ -84,6 +87,7 @@ int status(const Arguments& asked, Format format) {
     }
     if (text) {
         write_status(std::cout, table);
+        if (now) write_now(std::cout, archive, *now);
     } else {
         report::write(std::cout, table, format);
     }
@@ -218,92 +222,6 @@ int explain(const Arguments& asked, Format format) {
     return 0;
 }
 
-// ---- query --------------------------------------------------------------------------------------------------
-
-/// Columns of a query that are named as a scalar of a scene, and their rows without a value.
-class Gaps {
-public:
-    /// Reads the scenes as `query` reads everything, without checking.
-    Gaps(const Store& archive, const Store::QueryLimits& limits) {
-        archive.query(
-            "SELECT DISTINCT scene FROM campaign", limits, [](const auto&) {},
-            [&](const auto& row) {
-                if (const auto* scene = std::get_if<std::string>(&row.front())) scenes_.push_back(*scene);
-            });
-    }
-
-    void begin(const std::vector<std::string>& columns) {
-        for (std::size_t k = 0; k < columns.size(); ++k) {
-            if (columns[k] == "outcome") outcome_ = k;
-            for (const auto& scene : scenes_)
-                if (std::string why = campaign::why_absent(scene, columns[k]); !why.empty()) {
-                    gaps_.push_back({k, columns[k], std::move(why), 0});
-                    break;
-                }
-        }
-    }
-    void add(const std::vector<Table::Cell>& row) {
-        const auto* outcome = outcome_ ? std::get_if<std::string>(&row[*outcome_]) : nullptr;
-        if (outcome_ && (outcome == nullptr || *outcome != campaign::to_string(Outcome::completed))) return;
-        ++rows_;
-        for (Gap& gap : gaps_)
-            if (std::holds_alternative<std::monostate>(row[gap.column])) ++gap.rows;
-    }
-    void print() const {
-        for (const Gap& gap : gaps_)
-            if (gap.rows > 0)
-                std::cerr << fmt::format("note: {} of {} rows{} have no {}: it is undefined where {}\n", gap.rows,
-                                         rows_, outcome_ ? " of completed cases" : "", gap.name, gap.why);
-    }
-
-private:
-    struct Gap {
-        std::size_t column;
-        std::string name, why;
-        std::int64_t rows;
-    };
-    std::vector<std::string> scenes_;
-    std::vector<Gap> gaps_;
-    std::optional<std::size_t> outcome_;
-    std::int64_t rows_ = 0;
-};
-
-int query(const Arguments& asked, Format format) {
-    constexpr std::int64_t most_memory = std::int64_t{1} << 30U;
-    const double seconds = asked.seconds;
-    if (!(seconds >= 0)) throw campaign::wrong_question("--limit-seconds", std::to_string(seconds), "0 or more");
-    const Store archive(asked.database, Store::Mode::read);
-    const Store::QueryLimits limits{seconds, most_memory};
-    const HardStop stop(seconds, fmt::format("SQL: it takes too long (limits: {} s of processor time, {} MiB).",
-                                             campaign::shortest(seconds), most_memory >> 20U));
-    Gaps gaps(archive, limits);
-    if (format == Format::text) {  // columns are aligned over all rows
-        Table table;
-        archive.query(
-            asked.text, limits, [&](const auto& columns) { table.columns = columns; },
-            [&](const auto& row) { table.rows.push_back(row); });
-        report::write(std::cout, table, format);
-        gaps.begin(table.columns);
-        for (const auto& row : table.rows) gaps.add(row);
-        gaps.print();
-        return 0;
-    }
-    report::RowWriter rows(std::cout, format);
-    archive.query(
-        asked.text, limits,
-        [&](const auto& columns) {
-            rows.begin(columns);
-            gaps.begin(columns);
-        },
-        [&](const auto& row) {
-            rows.add(row);
-            gaps.add(row);
-        });
-    rows.end();
-    gaps.print();
-    return 0;
-}
-
 /// DB.
 void declare_database(Parser& parser, Arguments& asked) {
     parser.add_option("DB", asked.database, "database");
@@ -334,10 +252,11 @@ int replay_checked(const ReplayRequest& request, Format format) {
     return replay(request, format);
 }
 
-void declare_query(Parser& parser, Arguments& asked) {
-    declare_database(parser, asked);
-    parser.add_option("SQL", asked.text, "the statement; every campaign is a view of its name");
-    parser.add_option("--limit-seconds SECONDS", asked.seconds, "limit of processor time, s; 0: none; default: 600");
+void declare_query(Parser& parser, QueryRequest& request) {
+    parser.add_option("DB", request.database, "database");
+    parser.add_option("SQL", request.sql, "the statement; every campaign is a view of its name");
+    parser.add_option("-o,--output FILE.xlsx", request.output, "with --format xlsx: workbook to write");
+    parser.add_option("--limit-seconds SECONDS", request.seconds, "limit of processor time, s; 0: none; default: 600");
 }
 
 int dump(const Arguments& asked, Format format) {
@@ -364,7 +283,7 @@ std::vector<Command> archive_commands() {
         command<ReplayRequest>("replay",
                                "computes a stored case again and compares; runs the stored command of a program",
                                declare_replay, replay_checked),
-        command<Arguments>("query", "runs one read-only SQL statement", declare_query, query),
+        with_workbook(command<QueryRequest>("query", "runs one read-only SQL statement", declare_query, query)),
         verbatim(command<Arguments>("dump", "prints all results as canonical text; equal results give equal text",
                                     declare_database, dump)),
     };

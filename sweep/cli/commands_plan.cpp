@@ -1,7 +1,9 @@
 // plan: check and unfold a campaign; show the design and the predicted cost; run nothing.
+#include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
@@ -139,6 +141,7 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
                    {"replicates", stored->stored.replicates}};
     const auto threads = campaign.execution.threads;
     const auto points = points_kept(cases);
+    const auto course = campaign::longest_course(campaign, cost);
     return {{"campaign", campaign.name},
             {"scene", campaign.scene().name},
             {"revision", campaign.scene().revision},
@@ -157,10 +160,11 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
             {"impossible", cost.impossible},
             {"predicted_seconds", cost.total_seconds},
             {"longest_seconds", cost.longest_seconds},
+            {"all_waves_seconds", course ? Json(course->seconds) : Json()},
             {"largest_bytes", cost.largest_bytes},
             {"threads", campaign::is_program(campaign.scene().name) ? Json()
-                        : threads == 0                              ? Json("auto")
-                                                                    : threads},
+                        : threads                                   ? Json(*threads)
+                                                                    : Json("auto")},
             {"factors", report::to_json(factors_of(campaign))},
             {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
 }
@@ -188,8 +192,8 @@ void write_csv(const Campaign& campaign, const Outlook& outlook) {
 /// Of a case; empty for a program, which has cores.
 std::string threads_text(const Campaign& campaign) {
     if (campaign::is_program(campaign.scene().name)) return {};
-    if (campaign.execution.threads == 0) return "one per case; more when fewer cases are left than cores";
-    return fmt::format("{} per case", campaign.execution.threads);
+    if (!campaign.execution.threads) return "one per case; more when fewer cases are left than cores";
+    return fmt::format("{} per case", *campaign.execution.threads);
 }
 
 std::string seconds_text(double seconds) {
@@ -218,8 +222,12 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     if (cost.impossible > 0)
         std::cout << fmt::format("\nimpossible {} of them will be rejected; first at point {}: {}", cost.impossible,
                                  cost.first_point, cost.first_reason);
-    std::cout << fmt::format("\npredicted  {} on one core; the longest case {}\n", seconds_text(cost.total_seconds),
-                             seconds_text(cost.longest_seconds));
+    const auto course = campaign::longest_course(campaign, cost);
+    std::cout << fmt::format("\npredicted  {} on one core{}; the longest case {}\n", seconds_text(cost.total_seconds),
+                             course ? " for the first wave" : "", seconds_text(cost.longest_seconds));
+    if (course)
+        std::cout << fmt::format("all waves  {} on one core at most: {} waves of {} settings, {} checks\n",
+                                 seconds_text(course->seconds), course->waves, course->points_per_wave, course->checks);
     if (cost.largest_bytes >= memory_worth_a_line)
         std::cout << fmt::format("memory     {:.2g} GB for the largest case; {:.2g} GB are available\n",
                                  1e-9 * cost.largest_bytes, 1e-9 * workers::memory_room());
@@ -256,18 +264,39 @@ struct PlanRequest {
     std::string config, database;
 };
 
-int plan(const PlanRequest& request, Format format) {
+/// Returns the seconds of all waves; 0 where the campaign is no calibration.
+double plan_one(const PlanRequest& request, std::string_view experiment, Format format) {
     const auto& config = request.config;
     auto database = request.database;
-    Campaign campaign = read_with_program(config);
+    Campaign campaign = read_with_program(config, experiment);
+    const auto file = campaign::name_in_file(campaign::identity_of(campaign)) + ".db";
     std::optional<store::Store> archive;
-    if (database.empty() && std::filesystem::exists(campaign.name + ".db")) database = campaign.name + ".db";
+    if (database.empty() && std::filesystem::exists(file)) database = file;
     if (!database.empty()) archive.emplace(database, store::Store::Mode::read);
     auto outlook = campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr); });
     outlook.database = database;
     if (format == Format::text) show_plan(campaign, outlook);
     if (format == Format::json) write_json(campaign, outlook);
     if (format == Format::csv) write_csv(campaign, outlook);
+    const auto course = campaign::longest_course(campaign, outlook.cost);
+    return course ? course->seconds : 0;
+}
+
+int plan(const PlanRequest& request, Format format) {
+    auto experiments = campaign::read_experiment_names(request.config);
+    if (experiments.empty()) return plan_one(request, "", format), 0;
+    if (format == Format::csv)
+        throw campaign::wrong_question("--format", "csv",
+                                       "the experiments have different columns; text and json show all");
+    double seconds = 0;
+    for (std::size_t k = 0; k < experiments.size(); ++k) {
+        if (format == Format::json) std::cout << (k == 0 ? "[" : ",");
+        if (format == Format::text && k > 0) std::cout << '\n';
+        seconds += plan_one(request, experiments[k], format);
+    }
+    std::cout << (format == Format::json
+                      ? "]\n"
+                      : fmt::format("\nall waves of all experiments: {} on one core at most\n", seconds_text(seconds)));
     return 0;
 }
 

@@ -3,7 +3,7 @@
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
-#include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/run_experiments.hpp"
 #include "sweep/cli/run_summary.hpp"
 #include "sweep/workers/host.hpp"
 #include "sweep/workers/worker.hpp"
@@ -71,6 +71,8 @@ void declare_run(Parser& parser, RunArguments& request) {
         ->check(whole_number(0));
     parser.add_option("--again OUTCOME", request.outcome,
                       "rerun cases with this outcome, for example unstable or crashed");
+    parser.add_option("--adopt CAMPAIGN", request.adopt,
+                      "take over the answers of a campaign whose program differs only in the contents of its files");
     parser.add_option("--max-cases N", request.max_cases, "finish at most N cases in this run; 0: all")
         ->check(whole_number(0));
     parser.add_flag("--network-disk", request.network_disk,
@@ -85,10 +87,18 @@ int run(RunArguments& request, Format format) {
     std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     if (!request.outcome.empty()) request.again = outcome_asked_again(request.outcome);
-    const RunReport report = run_campaign(request);
+    for (auto* limit : {&request.stop_after_failures, &request.max_cases})
+        if (*limit == 0) limit->reset();
+    const RunReport report = run_file(request);
     if (!request.quiet || format != Format::text) show_run(report, format);
     forgive_a_reader_that_is_gone();
     return report.exit_code;
+}
+
+void declare_calibrate(Parser& parser, RunArguments& request) {
+    declare_run(parser, request);
+    parser.add_flag("--powder", request.powder,
+                    "write NAME_powder.json beside the database: the powder at the best setting");
 }
 
 /// `run` that requires something to calibrate.
@@ -130,9 +140,9 @@ int host(const WorkerArguments& arguments, Format) {
                     fmt::format("{}", options.lease_seconds)};
     if (!options.artefacts.empty())
         host.command.insert(host.command.end(), {"--artefacts", options.artefacts.string()});
-    if (!options.cases.empty())
-        host.command.insert(host.command.end(), {"--cases", options.cases.string(), "--limit-seconds",
-                                                 fmt::format("{}", options.limit_seconds)});
+    if (!options.cases.empty()) host.command.insert(host.command.end(), {"--cases", options.cases.string()});
+    if (options.limit_seconds)
+        host.command.insert(host.command.end(), {"--limit-seconds", fmt::format("{}", *options.limit_seconds)});
     if (!arguments.path.empty()) host.command.insert(host.command.end(), {"--path", arguments.path});
     return workers::host(host);
 }
@@ -144,7 +154,7 @@ std::vector<Command> run_commands() {
         command<RunArguments>("run", "runs the cases of a campaign; run it again to resume", declare_run, run),
         command<RunArguments>("calibrate",
                               "runs waves of cases to find the inputs that reproduce measurements; resumes",
-                              declare_run, calibrate),
+                              declare_calibrate, calibrate),
         hidden(command<WorkerArguments>("worker", "computes cases for a run, which starts it", declare_worker, work)),
         hidden(command<WorkerArguments>("host",
                                         "runs the workers of one node for a run, which starts it "

@@ -94,7 +94,7 @@ bool show_progress(const Scene& scene) {
 
 struct Asked {
     campaign::Case question;
-    double limit_seconds = 0;
+    std::optional<double> limit_seconds;
 };
 
 /// A campaign file; or a machine, which is a campaign without factors.

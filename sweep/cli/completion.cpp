@@ -45,7 +45,7 @@ std::vector<std::string> outcome_words() {
     return words;
 }
 
-/// By an option's name, by "COMMAND PLACE", by a place; what is not here is not completed.
+/// By "COMMAND OPTION", by an option's name, by "COMMAND PLACE", by a place; what is not here is not completed.
 struct Rule {
     std::string argument;
     Values values;
@@ -63,6 +63,9 @@ const std::vector<Rule>& rules() {
         {"--vtk", {.folder = true}},
         {"--artefacts", {.folder = true}},
         {"--format", {.words = {"text", "csv", "json"}}},
+        {"figure --output", {.ending = ".pdf"}},
+        {"query --format", {.words = {"text", "csv", "json", "xlsx"}}},
+        {"query --output", {.ending = ".xlsx"}},
         {"--path", {.words = {instruction_path_words().begin(), instruction_path_words().end()}}},
         {"--again", {.words = outcome_words()}},
         {"--set", {.words = settings()}},
@@ -81,8 +84,10 @@ const Values* values_of(const CommandInfo& command, const ArgumentInfo& argument
         const auto rule = std::ranges::find(rules(), name, &Rule::argument);
         return rule == rules().end() ? nullptr : &rule->values;
     };
-    for (const auto& name : argument.names)
+    for (const auto& name : argument.names) {
+        if (const auto* values = found(command.name + " " + name)) return values;
         if (const auto* values = found(name)) return values;
+    }
     if (argument.place.empty()) return nullptr;
     if (const auto* values = found(command.name + " " + argument.place)) return values;
     return found(argument.place);

@@ -117,6 +117,7 @@ std::string keys_section() {
     add("A factor", campaign::factor_keys());
     add("Convergence", campaign::convergence_keys());
     add("A calibration", campaign::calibration_keys());
+    add("An experiment of a calibration", campaign::experiment_keys());
     add("A target of a calibration", campaign::target_keys());
     add("Program", campaign::program_keys());
     add("Limits", campaign::limits_keys());

@@ -19,7 +19,8 @@ namespace grainsweep::cli {
 
 namespace fs = std::filesystem;
 
-void check_page_file(std::string_view option, const std::string& output, const std::string& database) {
+void check_page_file(std::string_view option, const std::string& output, const std::string& database,
+                     const FileKind& kind) {
     const auto refuse = [&](std::string_view why) {
         throw campaign::wrong_question(std::string(option), fmt::format("'{}'", output), std::string(why));
     };
@@ -37,12 +38,11 @@ void check_page_file(std::string_view option, const std::string& output, const s
     if (!fs::exists(there)) return;
     std::ifstream stream(output, std::ios::binary);
     if (!stream || access(output.c_str(), W_OK) != 0) refuse(std::strerror(errno));
-    constexpr std::string_view page = "<!doctype html>";
-    std::string start(page.size(), '\0');
+    std::string start(kind.start.size(), '\0');
     stream.read(start.data(), static_cast<std::streamsize>(start.size()));
     if (stream.gcount() == 0) return;
     std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (start != page) refuse("this file exists and is not a page; choose another name");
+    if (start != kind.start) refuse(fmt::format("this file exists and is not a {}; choose another name", kind.word));
 }
 
 void write_page_file(const std::string& output, const std::string& page) {

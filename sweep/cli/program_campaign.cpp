@@ -31,8 +31,8 @@ campaign::Campaign with_program(campaign::Campaign campaign, const fs::path& con
     return campaign;
 }
 
-campaign::Campaign read_with_program(const fs::path& config) {
-    return with_program(campaign::read_campaign(config), config);
+campaign::Campaign read_with_program(const fs::path& config, std::string_view experiment) {
+    return with_program(campaign::read_campaign(config, experiment), config);
 }
 
 StagedProgram::StagedProgram(std::shared_ptr<const campaign::Program> program, fs::path cases)

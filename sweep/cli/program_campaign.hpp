@@ -7,14 +7,16 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 namespace grainsweep::cli {
 
 /// Where a program answers the cases: refuses one that is not here (unless workers start elsewhere) and asks for its
 /// version, which is part of every case's identity; nothing else is started. `config` is named in refusals.
 [[nodiscard]] campaign::Campaign with_program(campaign::Campaign campaign, const std::filesystem::path& config);
-/// Reads a campaign file so.
-[[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config);
+/// Reads a campaign file so; `experiment` chooses one of a calibration over several.
+[[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config,
+                                                   std::string_view experiment = {});
 
 /// Puts the program where workers find it, for as long as this lives; then removes what is not kept.
 class StagedProgram {

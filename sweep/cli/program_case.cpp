@@ -14,7 +14,7 @@ namespace grainsweep::cli {
 namespace fs = std::filesystem;
 
 campaign::CaseResult answer_by_program(std::shared_ptr<const campaign::Program> program, const campaign::Case& question,
-                                       std::int64_t attempt, double limit_seconds, const fs::path& keep,
+                                       std::int64_t attempt, std::optional<double> limit_seconds, const fs::path& keep,
                                        const PictureRequest& pictures) {
     if (!pictures.folder.empty() || !pictures.page.empty())
         throw campaign::wrong_question(pictures.folder.empty() ? "--watch" : "--vtk", "",

@@ -14,7 +14,7 @@ namespace grainsweep::cli {
 /// Refuses pictures, which a program does not give, and a folder that is there.
 [[nodiscard]] campaign::CaseResult answer_by_program(std::shared_ptr<const campaign::Program> program,
                                                      const campaign::Case& question, std::int64_t attempt,
-                                                     double limit_seconds, const std::filesystem::path& keep,
-                                                     const PictureRequest& pictures);
+                                                     std::optional<double> limit_seconds,
+                                                     const std::filesystem::path& keep, const PictureRequest& pictures);
 
 }  // namespace grainsweep::cli

@@ -23,9 +23,11 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     [[nodiscard]] std::string describe(const schedule::Progress& progress, Clock::time_point now);
+    /// Fits the text to the terminal, with a bar where there is room, and colours it.
+    [[nodiscard]] std::string on_terminal(const std::string& text, const schedule::Plan::Tally& tally) const;
     void erase();
 
-    bool quiet_, terminal_;
+    bool quiet_, terminal_, coloured_;
     std::size_t cores_;
     Clock::time_point began_ = Clock::now();
     Clock::time_point shown_{};
@@ -33,6 +35,10 @@ private:
     std::size_t notes_ = 0;
     std::string last_;
 };
+
+/// Seconds until the run ends: predicted cost of the cases that it will still settle (Progress::to_go), at the pace of
+/// what it has done in `elapsed` seconds; until that is 2 % of the whole, as predicted on so many cores.
+[[nodiscard]] double seconds_left(const schedule::Progress& progress, double elapsed, std::size_t cores);
 
 /// 75 -> "1 min 15 s".
 [[nodiscard]] std::string duration(double seconds);

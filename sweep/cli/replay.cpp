@@ -151,7 +151,8 @@ int replay(const ReplayRequest& request, Format format) {
     Pictures pictures(request.pictures, question);
     const auto now = [&] {
         if (program != nullptr)
-            return answer_by_program(program, question, stored->attempt.number, 0, request.keep, request.pictures);
+            return answer_by_program(program, question, stored->attempt.number, std::nullopt, request.keep,
+                                     request.pictures);
         NoArtefacts artefacts;
         auto computed = workers::compute(
             question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; },

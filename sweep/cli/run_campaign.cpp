@@ -2,12 +2,15 @@
 
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/folder_beside.hpp"
+#include "sweep/cli/now_writer.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/files/artefacts.hpp"
 #include "sweep/schedule/growth.hpp"
@@ -166,49 +169,6 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
                                              std::move(known), placement.candidates, std::move(view));
 }
 
-/// What the last line says of convergence; empty where the campaign gives no rule.
-std::string standing(const schedule::Judge* judge) {
-    if (judge == nullptr) return {};
-    if (const auto points = judge->converged_at()) return fmt::format("; converged at {} points", *points);
-    return "; not converged: " + judge->verdict();
-}
-
-std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
-    const auto left = [&](std::string_view how, std::string_view then = "; run again to resume") {
-        return fmt::format("{} with {} cases left{}{}", how, tally.questions - tally.decided, then, standing(judge));
-    };
-    switch (ending) {
-        case Ending::finished:
-            return (tally.failed == 0 ? "all cases are settled"
-                                      : fmt::format("all cases are finished, {} of them failed", tally.failed)) +
-                   standing(judge);
-        case Ending::converged:
-            return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
-        case Ending::limited:
-            return left("stopped");
-        case Ending::too_many_failures:
-            return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
-        case Ending::out_of_time:
-            return left("out of time");
-        case Ending::asked_to_end:
-            return left("ended by a signal");
-        case Ending::too_long:
-            return left("stopped",
-                        ", each predicted to exceed the time limit; extend it (execution.walltime, or the job's time "
-                        "limit)");
-        case Ending::interrupted:
-            return left("interrupted");
-    }
-    return {};
-}
-
-int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
-    if (ending == Ending::interrupted) return 130;
-    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
-    if (ending == Ending::converged) return 0;
-    return tally.failed == 0 && tally.decided == tally.questions ? 0 : 1;
-}
-
 schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& request, std::size_t workers) {
     return {.attempts = campaign.limits.attempts,
             .stop_after_failures = request.stop_after_failures,
@@ -242,6 +202,9 @@ void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunReque
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
+    if (!request.adopt.empty() && !fs::exists(database))
+        throw campaign::wrong_question("--adopt", fmt::format("'{}'", request.adopt),
+                                       fmt::format("there is no database '{}'", database.string()));
     if (request.again && designs::design_named(campaign.design).grows)
         throw campaign::wrong_question("--again", to_string(*request.again),
                                        fmt::format("the later points of a {} design depend on the stored results; use "
@@ -254,7 +217,7 @@ class Run {
 public:
     explicit Run(const RunRequest& request)
         : request_(request),
-          campaign_(request.spool.empty() ? read_with_program(request.config)
+          campaign_(request.spool.empty() ? read_with_program(request.config, request.experiment)
                                           : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
           workers_(worker_count(campaign_, request.workers)) {
         unfold();
@@ -270,6 +233,7 @@ public:
     }
 
     RunReport operator()() {
+        if (!request_.adopt.empty()) adopted_ = adopted_program(*store_, campaign_, request_.adopt);
         if (campaign::reorder_factors(campaign_, store_->factor_order(campaign_.name))) {
             line_->note(fmt::format("note: the factors of '{}' keep their stored order: {}", campaign_.name,
                                     campaign::factor_list(campaign_.space)));
@@ -285,11 +249,16 @@ public:
             unfold();
         } while (true);
         store_->remember_file();
-        const auto grown = campaign_.request.grown;
-        const auto in_vain = ending_ == Ending::finished && grown ? grown->without_result : std::string();
-        return {in_vain.empty() ? exit_code(ending_, tally_) : 1, campaign_.name, database_,
+        const auto& grown = campaign_.request.grown;
+        const auto in_vain = ending_ == Ending::finished && grown ? grown->without_result : "";
+        return {in_vain.empty() ? exit_code(ending_, tally_) : 1,
+                campaign_.name,
+                database_,
                 summary_of(ending_, tally_, judge_.get()) + (in_vain.empty() ? "" : "; " + in_vain),
-                judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
+                judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt,
+                ending_ == Ending::finished,
+                static_cast<std::int64_t>(tally_.settled_now + tally_.failed_now),
+                campaign::candidates_of(campaign_)};
     }
 
 private:
@@ -313,6 +282,7 @@ private:
         states_ = campaign::asked_in(request_.config,
                                      [&] { return store_->enrol(campaign_, placed_, provenance(), entered_first); });
         for (const auto& note : store_->notes()) line_->note(note);
+        if (adopted_ != nullptr) adopt();
         if (!request_.spool.empty())
             collected_ =
                 import_answers(request_.spool, campaign_, placed_, *store_, states_, [](const std::string& text) {
@@ -321,10 +291,18 @@ private:
                 });
         const auto record = store_->stored(campaign_).value();
         stopped_before_ = record.stopped_at;
-        if (first) say_first(*line_, campaign_, forecast_, record);
+        if (first && !request_.goes_on) say_first(*line_, campaign_, forecast_, record);
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
         judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
         questions_ = questions_of(campaign_, placement);
+    }
+    /// Answers of the earlier program, then where the cases stand with them.
+    void adopt() {
+        for (const auto& changed : changed_files(*adopted_, *campaign::known_program(campaign_.scene().name)))
+            line_->note("note: " + changed);
+        line_->note(fmt::format("note: {} answers of '{}' are adopted",
+                                adopt_answers(*store_, campaign_, placed_, *adopted_), request_.adopt));
+        states_ = store_->enrol(campaign_, placed_, provenance(), entered_first);
     }
     RunReport collect() {
         enrol(true);
@@ -364,7 +342,11 @@ private:
         sweep(folder, *store_);
         workers::stage_machine(campaign_.scene().name, folder);
         schedule::Watchers watchers;
-        watchers.progress = [&](const schedule::Progress& progress) { line_->update(progress); };
+        NowWriter now(database_, campaign_.name, workers_ * threads_of_a_case(campaign_));
+        watchers.progress = [&](const schedule::Progress& progress) {
+            line_->update(progress);
+            now.update(progress);
+        };
         watchers.note = [&](const std::string& text) { line_->note(text); };
         watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
             folder.remove(workers::checkpoint_key(id, this_computer()));
@@ -379,6 +361,7 @@ private:
     fs::path database_, artefacts_;
     std::optional<ProgressLine> line_;
     std::optional<store::Store> store_;
+    std::shared_ptr<const campaign::Program> adopted_;  ///< whose answers are taken over; nullptr: none are
     campaign::Cases placed_;
     campaign::Forecast forecast_;
     std::vector<store::CaseState> states_;

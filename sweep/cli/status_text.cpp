@@ -1,7 +1,9 @@
 #include "sweep/cli/status_text.hpp"
 
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/report/table.hpp"
 #include "sweep/report/text_table.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +67,7 @@ void write_status(std::ostream& out, const store::Table& status) {
             if (column == "campaign") {
                 name = report::cell_text(cells[j]);
             } else if (column == "scene") {
-                scene = report::cell_text(cells[j]);
+                scene = shown_scene(report::cell_text(cells[j]));
             } else if (auto value = with_unit(column, cells[j]); !value.empty()) {
                 lines.emplace_back(label_of(column), std::move(value));
                 widest = std::max(widest, lines.back().first.size());
@@ -74,6 +76,43 @@ void write_status(std::ostream& out, const store::Table& status) {
         out << fmt::format("{}{}: {}\n", row > 0 ? "\n" : "", name, scene);
         for (const auto& [label, value] : lines) out << fmt::format("  {:<{}}  {}\n", label, widest, value);
     }
+}
+
+store::Table running_cases(const store::Store& archive, const live::Now& now, std::size_t most) {
+    store::Table table;
+    const auto factors = archive.factor_order(now.campaign);
+    table.columns = {"case", "point"};
+    table.columns.insert(table.columns.end(), factors.begin(), factors.end());
+    for (const char* name : {"done", "seconds", "attempt", "host"}) table.columns.emplace_back(name);
+    const auto quoted = [](const std::string& name) { return '"' + name + '"'; };
+    std::string columns = "point";
+    for (const auto& factor : factors) columns += ", " + quoted(factor);
+    for (const auto& one : now.running) {
+        if (table.rows.size() == most) break;
+        auto& row = table.rows.emplace_back(std::vector<Cell>{one.case_id});
+        const auto found = archive.query(fmt::format("SELECT {} FROM {} WHERE case_id = '{}' ORDER BY point LIMIT 1",
+                                                     columns, quoted(now.campaign), one.case_id));
+        for (std::size_t k = 0; k <= factors.size(); ++k)
+            row.push_back(found.rows.empty() ? Cell{} : found.rows.front()[k]);
+        row.push_back(one.share ? Cell{*one.share} : Cell{});
+        row.push_back(one.seconds);
+        row.push_back(one.attempt);
+        row.push_back(one.host);
+    }
+    return table;
+}
+
+void write_now(std::ostream& out, const store::Store& archive, const live::Now& now) {
+    constexpr std::size_t most_shown = 32;
+    out << fmt::format("\na run of {} is under way on {} (process {}): {} of {} cases{}, {} left{}\n", now.campaign,
+                       now.host, now.process, now.decided, now.questions,
+                       now.failed > 0 ? fmt::format(", {} failed", now.failed) : "", duration(now.seconds_left),
+                       now.judgement.empty() ? "" : "; " + now.judgement);
+    if (now.running.empty()) return;
+    auto table = running_cases(archive, now, most_shown);
+    for (auto& row : table.rows) row[0] = std::get<std::string>(row[0]).substr(0, 12);
+    report::write(out, table, report::Format::text);
+    if (now.running.size() > most_shown) out << fmt::format("and {} more\n", now.running.size() - most_shown);
 }
 
 }  // namespace grainsweep::cli

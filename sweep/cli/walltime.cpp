@@ -64,15 +64,15 @@ std::string_view environment(const char* name) {
 
 }  // namespace
 
-std::optional<TimeGiven> time_given(double configured, std::string_view job_end, std::string_view job_start,
-                                    double now) {
+std::optional<TimeGiven> time_given(std::optional<double> configured, std::string_view job_end,
+                                    std::string_view job_start, double now) {
     std::optional<TimeGiven> given;
-    if (configured > 0) given = {configured, configured};
+    if (configured) given = {*configured, *configured};
     const auto end = moment_in(job_end, now);
     if (!end || (given && *end - now >= given->left)) return given;
     const auto start = moment_in(job_start, now);
     given = {*end - now, *end - (start && *start < *end ? *start : now)};
-    if (configured > 0) given->whole = std::min(given->whole, configured);
+    if (configured) given->whole = std::min(given->whole, *configured);
     return given;
 }
 

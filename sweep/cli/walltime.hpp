@@ -16,10 +16,10 @@ struct TimeGiven {
     double whole = 0;  ///< to a run of full length
 };
 
-/// The earlier of the two; nothing where there is no limit. `configured`: execution.walltime, 0: none. The texts are
+/// The earlier of the two; nothing where there is no limit. `configured`: execution.walltime. The texts are
 /// SLURM_JOB_END_TIME and SLURM_JOB_START_TIME, seconds since 1970 or a local date (2026-11-26T12:00:00); empty: not
 /// set. Another text, and a moment more than a year ago, is none.
-[[nodiscard]] std::optional<TimeGiven> time_given(double configured, std::string_view job_end,
+[[nodiscard]] std::optional<TimeGiven> time_given(std::optional<double> configured, std::string_view job_end,
                                                   std::string_view job_start, double now);
 /// The warning where the end of the job is set and is none; empty: it is one, or Slurm names none.
 [[nodiscard]] std::string unreadable_end(std::string_view job_end, double now);

@@ -2,13 +2,12 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/run_campaign.hpp"
-#include "sweep/files/whole_file.hpp"
+#include "sweep/cli/written_campaign.hpp"
 #include "sweep/store/campaign_name.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <utility>
@@ -16,40 +15,9 @@
 namespace grainsweep::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using store::Store;
 
 constexpr int interrupted = 130;
-
-/// A campaign file in the current folder, where the paths in it hold, until the batch is over.
-class BatchFile {
-public:
-    BatchFile(const std::string& name, const std::string& text) : path_(name + ".json") {
-        std::error_code error;
-        if (const std::string found = files::whole_file(path_, error); error != std::errc::no_such_file_or_directory) {
-            if (error || found != text)
-                throw campaign::wrong_question(
-                    "--run", path_.string(), "a file of this name exists; the batch's campaign file would replace it");
-            ours_ = false;
-            return;
-        }
-        std::ofstream file(path_, std::ios::binary);
-        file << text << std::flush;
-        if (!file) throw campaign::wrong_question("--run", path_.string(), "cannot be written in the current folder");
-    }
-    ~BatchFile() {
-        std::error_code ignored;
-        if (ours_) fs::remove(path_, ignored);
-    }
-    BatchFile(const BatchFile&) = delete;
-    BatchFile& operator=(const BatchFile&) = delete;
-
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-    bool ours_ = true;
-};
 
 struct Batch {
     std::string name, text;
@@ -139,7 +107,7 @@ WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest
             end.says = fmt::format("{}; no further case promises an improvement", text);
             return end;
         }
-        const BatchFile file(standing.next->name, standing.next->text);
+        const WrittenCampaign file("", standing.next->name, standing.next->text, "--run");
         RunRequest batch;
         batch.config = file.path();
         batch.database = run.database;

@@ -132,12 +132,12 @@ WorkReport work_on(const WorkRequest& request) {
     files::ArtefactFolder artefacts(spool.artefacts());
     workers::stage_machine(campaign.scene().name, artefacts);
     spool::Task::Watchers watchers;
-    watchers.progress = [&](const spool::Task::Tally& tally, std::size_t running) {
+    watchers.progress = [&](const spool::Task::Tally& tally) {
         schedule::Progress progress;
         progress.tally.questions = tally.cases;
         progress.tally.decided = tally.answered;
         progress.tally.settled_now = progress.durable = tally.computed;
-        progress.running = running;
+        progress.to_go = tally.cases - tally.answered;
         line.update(progress);
     };
     watchers.note = [&](const std::string& text) { line.note(text); };

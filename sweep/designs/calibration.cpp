@@ -37,11 +37,9 @@ public:
     explicit Course(const DesignRequest& request) : request_(request) {
         result_.targets = targets_in(request.word("targets"));
         layout_ = calibration_layout(request, result_.targets);
-        d_ = layout_.calibrated.size();
-        for (const std::size_t j : layout_.calibrated) {
-            result_.factors.push_back(request.factors[j].name);
-            result_.ranges.push_back(request.factors[j]);
-        }
+        result_.ranges = layout_.factors;
+        d_ = result_.ranges.size();
+        for (const auto& range : result_.ranges) result_.factors.push_back(range.name);
         result_.points.dimensions = request.dimensions();
         values_.resize(result_.targets.size());
         const auto least = static_cast<std::int64_t>(std::max<std::size_t>(12, 4 * (d_ + 1)));
@@ -53,28 +51,33 @@ public:
     Calibration run() {
         auto settings = even_points(request_, d_, request_.count("points_per_wave"), 0);
         for (std::int64_t wave = 1;; ++wave) {
-            if (!ask(settings, static_cast<std::uint32_t>(wave - 1))) return std::move(result_);
+            if (!ask(settings)) return std::move(result_);
             learn(settings);
-            settings = next(wave);
-            if (result_.waves_end) break;
+            settings = next(wave, false);
+            if (!result_.waves_end) continue;
+            sample();
+            if (!result_.posterior || !check() || !goes_on(wave)) return std::move(result_);
+            result_.waves_end = false;
+            learn(result_.checked, true);
+            settings = next(wave, true);
+            if (result_.waves_end) return std::move(result_);
         }
-        sample();
-        if (result_.posterior) check();
-        return std::move(result_);
     }
 
 private:
     /// Puts the settings under every condition; false where an answer is not known yet.
-    bool ask(const std::vector<double>& settings, std::uint32_t part) {
+    bool ask(const std::vector<double>& settings) {
         const std::size_t rows = settings.size() / d_;
-        first_ = result_.points.repeat.size();
+        const auto part = static_cast<std::uint32_t>(result_.waves.size());
+        first_ = asked_;
+        asked_ += rows;
         bool known = true;
         for (std::size_t i = 0; i < rows; ++i)
             for (const auto& condition : layout_.conditions) {
                 std::size_t at = 0;
                 for (std::size_t j = 0; j < request_.dimensions(); ++j)
                     result_.points.coordinates.push_back(request_.levels[j] == 0
-                                                             ? settings[i * d_ + at++]
+                                                             ? settings[i * d_ + layout_.column[at++]]
                                                              : (static_cast<double>(level_of(condition, j)) + 0.5) /
                                                                    static_cast<double>(request_.levels[j]));
                 result_.points.part.push_back(part);
@@ -90,18 +93,19 @@ private:
     }
     /// Of the settings asked last.
     [[nodiscard]] std::optional<double> answer(std::size_t target, std::size_t row) const {
-        const auto known = request_.answers.find(result_.targets[target].observable);
-        const std::size_t point = first_ + row * layout_.conditions.size() + layout_.condition_of[target];
+        const auto known = request_.answers.find(result_.targets[target].answers_key());
+        const std::size_t point = layout_.point(target, first_ + row);
         if (known == request_.answers.end() || point >= known->second.size()) return std::nullopt;
         return known->second[point];
     }
     /// Models from all cases so far.
-    void learn(const std::vector<double>& settings) {
+    void learn(const std::vector<double>& settings, bool of_checks = false) {
         const std::size_t rows = settings.size() / d_;
         result_.settings.insert(result_.settings.end(), settings.begin(), settings.end());
         auto& wave = result_.waves.emplace_back();
         wave.settings = rows;
-        wave.cases = (result_.settings.size() / d_) * layout_.conditions.size();
+        wave.of_checks = of_checks;
+        wave.cases = (result_.settings.size() / d_) * layout_.runs;
         result_.models.clear();
         result_.beyond.clear();
         std::vector<bool> failed(result_.settings.size() / d_, false);
@@ -193,12 +197,12 @@ private:
         return all;
     }
 
-    /// The next settings; none where the waves end.
-    std::vector<double> next(std::int64_t wave) {
+    /// The next settings; none where the waves end. After a check that missed nothing but their number ends them.
+    std::vector<double> next(std::int64_t wave, bool missed) {
         auto& now = result_.waves.back();
         if (const auto target = unanswered(); target && !modelled().empty()) {
             now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
-            return fail("no case has an answer to " + result_.targets[*target].observable);
+            return fail("no case has an answer to " + result_.targets[*target].answers_key());
         }
         if (modelled().empty()) {
             now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
@@ -219,9 +223,9 @@ private:
 
         const bool complete = std::ranges::all_of(now.refusals, [](const auto& text) { return text.empty(); });
         if (wave == request_.count("waves")) return end("the waves asked for are done");
-        if (complete && !all.kept.empty() && all.sure)
+        if (complete && !all.kept.empty() && all.sure && !missed)
             return end("the models are surer than measurement, discrepancy and scatter wherever a setting is kept");
-        if (result_.waves.size() > 1) {
+        if (result_.waves.size() > 1 && !missed) {
             const double before = result_.waves[result_.waves.size() - 2].kept;
             if (complete && before - now.kept < request_.number("shrink") * before)
                 return end("the last wave ruled out less than the share asked for");
@@ -316,25 +320,34 @@ private:
         result_.posterior = posterior(0);
         result_.shape = stats::posterior_shape(result_.posterior->rows());
     }
-    /// Settings drawn from the posterior are run.
-    void check() {
+    /// Asks settings drawn from the posterior; false where an answer is not known yet.
+    bool check() {
+        result_.checked.clear();
+        result_.check.clear();
         const auto rows = result_.posterior->rows();
         const auto checks = std::min(static_cast<std::size_t>(request_.count("checks")), rows.size());
         for (std::size_t k = 0; k < checks; ++k)
             append(result_.checked, result_.posterior->points, (2 * k + 1) * rows.size() / (2 * checks));
-        (void)ask(result_.checked, static_cast<std::uint32_t>(result_.waves.size()));
+        const bool known = ask(result_.checked);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             auto& answers = result_.check.emplace_back();
             for (std::size_t k = 0; k < checks; ++k) answers.push_back(answer(t, k).value_or(none));
         }
+        return known;
+    }
+    /// Whether the check missed a measurement of several experiments, and waves are left.
+    [[nodiscard]] bool goes_on(std::int64_t wave) const {
+        if (request_.shared.empty() || wave == request_.count("waves")) return false;
+        const auto miss = largest_miss(result_.targets, result_.check);
+        return miss && miss->size > largest_miss_allowed;
     }
 
     const DesignRequest& request_;
     CalibrationLayout layout_;
-    std::size_t d_ = 0, first_ = 0;
-    std::vector<std::vector<double>> values_;  ///< of each target
-    std::vector<bool> failed_;                 ///< of each setting; empty: too few to matter
-    std::vector<double> best_;                 ///< settings of least implausibility
+    std::size_t d_ = 0, asked_ = 0, first_ = 0;  ///< factors; settings so far; the first of those asked last
+    std::vector<std::vector<double>> values_;    ///< of each target
+    std::vector<bool> failed_;                   ///< of each setting; empty: too few to matter
+    std::vector<double> best_;                   ///< settings of least implausibility
     Calibration result_;
 };
 
@@ -349,13 +362,18 @@ DesignInfo calibration_design() {
         return OptionSpec{
             .name = std::move(name), .meaning = std::move(meaning), .default_value = standard, .maximum = most};
     };
+    const auto word = [](std::string name, std::string meaning) {
+        return OptionSpec{.name = std::move(name), .meaning = std::move(meaning), .kind = OptionSpec::Kind::word};
+    };
     const auto points = [](const DesignRequest& request) {
         return request.grown ? *request.grown : calibration_of(request).points;
     };
     return {
         .name = "calibration",
         .summary = "Waves of points that close in on the settings which reproduce what was measured: history matching.",
-        .options = {{.name = "targets", .meaning = "what was measured", .kind = OptionSpec::Kind::word},
+        .options = {word("targets", "what was measured"),
+                    word("experiment", "of several that share the waves, the one that this campaign runs"),
+                    word("together", "the factors that those experiments calibrate together"),
                     count("waves", 4, 100, "waves at most"),
                     count("points_per_wave", 40, 10'000, "settings of a wave; each is run under every condition"),
                     count("checks", 8, 1000, "settings drawn from the posterior that are run to check it"),
@@ -370,7 +388,8 @@ DesignInfo calibration_design() {
             [](const DesignRequest& request) {
                 std::vector<std::string> names;
                 for (const auto& target : targets_in(request.word("targets")))
-                    if (std::ranges::find(names, target.observable) == names.end()) names.push_back(target.observable);
+                    if (std::ranges::find(names, target.answers_key()) == names.end())
+                        names.push_back(target.answers_key());
                 return names;
             },
         .beginning = Beginning::corner,

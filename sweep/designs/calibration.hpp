@@ -10,6 +10,10 @@
 // Where more than 5 % of the settings gave no answer to some target, those count as ruled out of whose five nearest
 // neighbours most failed.
 //
+// With several experiments every wave runs all of them, and the models of all targets share the posterior. Then, while
+// a predictive check misses a target by more than 2 standard deviations and waves are left, its runs are learned with
+// the others and another wave follows.
+//
 // What the answers say is a pure function of the request: waves do not depend on the number of workers, nor on
 // interruptions.
 #pragma once
@@ -31,7 +35,8 @@ namespace grainsweep::designs {
 struct CalibrationWave {
     std::size_t settings = 0;  ///< of the wave
     std::size_t cases = 0;     ///< so far, all conditions
-    std::size_t failed = 0;    ///< of those, without an answer to some target
+    std::size_t failed = 0;    ///< settings so far without an answer to some target
+    bool of_checks = false;    ///< settings of a predictive check that missed: learned, and another wave follows
     double kept = 1;           ///< share of the box that is not ruled out
     /// Root mean square error of each target's model over the sd of its responses; NaN where there is no model.
     std::vector<double> model_error;

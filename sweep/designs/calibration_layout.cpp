@@ -5,6 +5,11 @@
 
 namespace grainsweep::designs {
 
+std::string experiment_of(const DesignRequest& request) {
+    const auto own = request.options.find("experiment");
+    return own == request.options.end() ? std::string() : std::get<std::string>(own->second);
+}
+
 CalibrationLayout calibration_layout(const DesignRequest& request, std::span<const MeasuredTarget> targets) {
     CalibrationLayout layout;
     for (std::size_t j = 0; j < request.dimensions(); ++j)
@@ -12,11 +17,22 @@ CalibrationLayout calibration_layout(const DesignRequest& request, std::span<con
     if (layout.calibrated.empty())
         throw std::invalid_argument("no factor varies between two values: nothing to calibrate");
     if (targets.empty()) throw std::invalid_argument("a calibration needs at least one target");
-    for (const auto& target : targets) {
-        const auto found = std::ranges::find(layout.conditions, target.level);
-        layout.condition_of.push_back(static_cast<std::size_t>(found - layout.conditions.begin()));
-        if (found == layout.conditions.end()) layout.conditions.push_back(target.level);
+    layout.factors = request.shared;
+    for (const std::size_t j : layout.calibrated) {
+        if (request.shared.empty()) layout.factors.push_back(request.factors[j]);
+        const auto found = std::ranges::find(layout.factors, request.factors[j].name, &FactorRange::name);
+        layout.column.push_back(static_cast<std::size_t>(found - layout.factors.begin()));
     }
+    std::map<std::string, std::vector<std::map<std::string, std::size_t>>> conditions;
+    for (const auto& target : targets) {
+        auto& known = conditions[target.experiment];
+        const auto found = std::ranges::find(known, target.level);
+        layout.condition_of.push_back(static_cast<std::size_t>(found - known.begin()));
+        if (found == known.end()) known.push_back(target.level);
+    }
+    for (const auto& target : targets) layout.conditions_of.push_back(conditions[target.experiment].size());
+    for (const auto& [experiment, known] : conditions) layout.runs += known.size();
+    layout.conditions = conditions[experiment_of(request)];
     return layout;
 }
 

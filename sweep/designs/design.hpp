@@ -59,6 +59,8 @@ struct DesignRequest {
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< the campaign's
     std::vector<FactorRange> factors = {};                    ///< names, and values for designs that grow
+    /// Factors that several experiments calibrate together; empty: those that vary between two values.
+    std::vector<FactorRange> shared = {};
     /// What is known of the points asked so far, by observable and number: none where a point is not settled, NaN where
     /// it is without an answer. Looked at by designs that grow only.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};

@@ -11,8 +11,6 @@
 #include <utility>
 
 namespace grainsweep::designs {
-namespace {}  // namespace
-
 std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
     const std::size_t m = targets.size();
     std::vector<double> at(m, 0);
@@ -37,6 +35,42 @@ std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
     return covariance;
 }
 
+std::optional<double> miss_of(const MeasuredTarget& target, std::span<const double> answers) {
+    double sum = 0, squares = 0, runs = 0;
+    for (const double x : answers)
+        if (std::isfinite(x)) sum += x, ++runs;
+    if (runs < 2) return std::nullopt;
+    const double mean = sum / runs;
+    for (const double x : answers)
+        if (std::isfinite(x)) squares += (x - mean) * (x - mean);
+    const double scatter = squares / (runs - 1);
+    return (mean - target.value) /
+           std::sqrt(target.error * target.error + target.discrepancy * target.discrepancy + scatter);
+}
+
+std::optional<LargestMiss> largest_miss(std::span<const MeasuredTarget> targets,
+                                        std::span<const std::vector<double>> answers) {
+    struct Measurement {
+        std::size_t first = 0;
+        double squares = 0, count = 0;
+    };
+    std::vector<Measurement> measurements;
+    for (std::size_t t = 0; t < std::min(targets.size(), answers.size()); ++t) {
+        const auto miss = miss_of(targets[t], answers[t]);
+        if (!miss) continue;
+        const bool goes_on = targets[t].curve > 0 && !measurements.empty() &&
+                             targets[measurements.back().first].curve == targets[t].curve;
+        auto& one = goes_on ? measurements.back() : measurements.emplace_back(t);
+        one.squares += *miss * *miss;
+        ++one.count;
+    }
+    std::optional<LargestMiss> largest;
+    for (const auto& one : measurements)
+        if (const double size = std::sqrt(one.squares / one.count); !largest || size > largest->size)
+            largest = LargestMiss{size, one.first};
+    return largest;
+}
+
 std::string text_of(const std::vector<MeasuredTarget>& targets) {
     std::string text;
     for (const auto& target : targets) {
@@ -44,6 +78,7 @@ std::string text_of(const std::vector<MeasuredTarget>& targets) {
         for (const double x : {target.value, target.error, target.discrepancy}) text += ' ' + shortest_text(x);
         for (const auto& [name, level] : target.level) text += ' ' + name + ':' + std::to_string(level);
         if (target.curve > 0) text += " #" + std::to_string(target.curve);
+        if (!target.experiment.empty()) text += " /" + target.experiment;
     }
     return text;
 }
@@ -63,6 +98,10 @@ std::vector<MeasuredTarget> targets_in(std::string_view text) {
             *fields[k] = *number;
         }
         for (std::string word; words >> word;) {
+            if (word.starts_with('/')) {
+                target.experiment = word.substr(1);
+                continue;
+            }
             const bool curve = word.starts_with('#');
             const auto mark = curve ? 0 : word.find(':');
             auto& number = curve ? target.curve : target.level[word.substr(0, mark)];

@@ -76,6 +76,10 @@ void AsideFile::write(std::string_view bytes) {
 
 void AsideFile::take_place() {
     if (fsync(descriptor_.number()) != 0) failed(target_, "synced");
+    take_place_unsynced();
+}
+
+void AsideFile::take_place_unsynced() {
     if (!descriptor_.close()) failed(target_, "closed");
     if (rename(file_.c_str(), target_.c_str()) != 0) failed(target_, "put in place");
     file_.clear();

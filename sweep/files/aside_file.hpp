@@ -21,6 +21,8 @@ public:
     void write(std::string_view bytes);
     /// Syncs the file and renames it to the target, over what is there.
     void take_place();
+    /// The same without syncing: for what no later run reads.
+    void take_place_unsynced();
 
     static constexpr std::string_view extension = ".aside";
     /// Whether the process that writes, or wrote, this file aside still runs; nothing where that was on another host,

@@ -1,5 +1,6 @@
 #include "sweep/report/findings.hpp"
 
+#include "sweep/campaign/experiments.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
 
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace grainsweep::report {
 
@@ -93,7 +95,8 @@ Json calibration_json(const CalibrationReport& report) {
                     {"q05", one.low},     {"q95", one.high},  {"share_of_range", one.share_of_range}};
     };
     const auto target = [](const study::TargetCheck& one) {
-        return Json{{"observable", one.observable},
+        return Json{{"experiment", one.experiment},
+                    {"observable", one.observable},
                     {"condition", one.condition},
                     {"value", one.value},
                     {"error", one.error},
@@ -103,11 +106,12 @@ Json calibration_json(const CalibrationReport& report) {
                     {"checked", one.checked},
                     {"checked_sd", one.checked_sd},
                     {"runs", one.runs},
-                    {"z", one.z()}};
+                    {"z", one.z.value_or(std::numeric_limits<double>::quiet_NaN())}};
     };
     const auto& found = report.found;
     return {{"ended", found.waves_end},
             {"why", found.why_they_end},
+            {"verdict", report.verdict ? Json(report.verdict->sentence) : Json()},
             {"waves", Json::list(found.waves, wave)},
             {"posterior", Json::list(report.factors, factor)},
             {"correlation", found.shape ? Json(found.shape->correlation) : Json::array()},
@@ -119,20 +123,22 @@ std::string calibration_line(const CalibrationReport& report) {
     const auto& found = report.found;
     if (found.waves.empty()) return "calibration: the first wave is not answered yet";
     const auto& last = found.waves.back();
-    const auto done = fmt::format("calibration: {} wave{}, {} cases, {:.3g} % of the box kept", found.waves.size(),
-                                  found.waves.size() == 1 ? "" : "s", last.cases, 100 * last.kept);
+    const auto waves = std::ranges::count(found.waves, false, &designs::CalibrationWave::of_checks);
+    const auto done = fmt::format("calibration: {} wave{}, {} cases, {:.3g} % of the box kept", waves,
+                                  waves == 1 ? "" : "s", last.cases, 100 * last.kept);
     if (!found.waves_end) return done + "; the next wave is not answered yet";
-    return fmt::format("{}; {}", done, found.why_they_end);
+    return fmt::format("{}; {}{}", done, found.why_they_end,
+                       report.verdict ? "; " + report.verdict->sentence : std::string());
 }
 
 store::Table waves_table(const CalibrationReport& report) {
     store::Table table{{"wave", "settings", "cases", "failed", "kept"}, {}};
     for (const auto& target : report.targets) table.columns.push_back(fmt::format("model error of {}", target.name()));
-    for (std::size_t w = 0; w < report.found.waves.size(); ++w) {
-        const auto& wave = report.found.waves[w];
-        std::vector<Cell> row = {static_cast<std::int64_t>(w + 1), static_cast<std::int64_t>(wave.settings),
-                                 static_cast<std::int64_t>(wave.cases), static_cast<std::int64_t>(wave.failed),
-                                 fmt::format("{:.3g} %", 100 * wave.kept)};
+    std::int64_t number = 0;
+    for (const auto& wave : report.found.waves) {
+        std::vector<Cell> row = {wave.of_checks ? Cell("checks") : Cell(++number),
+                                 static_cast<std::int64_t>(wave.settings), static_cast<std::int64_t>(wave.cases),
+                                 static_cast<std::int64_t>(wave.failed), fmt::format("{:.3g} %", 100 * wave.kept)};
         for (const double error : wave.model_error)
             row.emplace_back(std::isfinite(error) ? fmt::format("{:.2g} sd", error) : std::string("no model"));
         table.rows.push_back(std::move(row));
@@ -158,7 +164,7 @@ store::Table targets_table(const CalibrationReport& report) {
         table.rows.push_back({target.name(), target.unit, with_error(target.value, target.error),
                               fmt::format("{:.3g}", target.discrepancy), pair(target.predicted, target.predicted_error),
                               pair(target.checked, target.checked_sd), static_cast<std::int64_t>(target.runs),
-                              std::isfinite(target.z()) ? fmt::format("{:+.1f}", target.z()) : std::string("-")});
+                              target.z ? fmt::format("{:+.1f}", *target.z) : std::string("-")});
     return table;
 }
 
@@ -261,9 +267,20 @@ Document document_of(const CalibrationReport& report, const Responses& responses
     return shown;
 }
 
+/// Of an experiment whose calibration is shown with another one.
+Document document_beside(const Responses& responses) {
+    const auto& record = responses.campaign;
+    const auto first = campaign::name_beside(record, campaign::experiments_of(record).front());
+    Document shown{.value = {{"campaign", record.name}, {"shown_with", first}}, .alone = true, .converged = true};
+    shown.say(fmt::format("{}: {}; the calibration over all experiments is shown with {}", record.name,
+                          outcome_line(responses), first));
+    return shown;
+}
+
 }  // namespace
 
 std::optional<Document> findings_document(const store::Store& store, const Responses& responses) {
+    if (!campaign::shows_findings(responses.campaign)) return document_beside(responses);
     if (const auto brackets = brackets_of(store, responses.campaign)) return document_of(*brackets, responses);
     if (const auto report = calibration_report(store, responses.campaign)) return document_of(*report, responses);
     return std::nullopt;

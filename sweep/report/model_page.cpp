@@ -61,81 +61,85 @@ struct Pictured {
     }
 };
 
-struct SliceCurve {
-    std::vector<double> at, averaged;
-    std::vector<Setting> slice;
-
-    [[nodiscard]] double range() const {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (const double x : averaged)
-            if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
-        return high > low ? high - low : 0;
-    }
-};
-
-SliceCurve curve_of(const Pictured& pictured, std::size_t factor) {
-    SliceCurve curve{points_along(pictured.cases.factors[factor], points_of_slice), {}, {}};
-    std::vector<Setting> values;
+ModelCurve curve_of(const Pictured& pictured, std::size_t factor) {
+    ModelCurve curve{points_along(pictured.cases.factors[factor], points_of_slice), {}, {}, {}, {}};
+    std::vector<Setting> values, slice;
     for (const double x : curve.at) {
         values.push_back({x});
-        curve.slice.push_back(pictured.middle);
-        curve.slice.back()[factor] = x;
+        slice.push_back(pictured.middle);
+        slice.back()[factor] = x;
     }
     curve.averaged = pictured.averaged(std::span(&factor, 1), values);
+    const auto predictions = pictured.model.predict(slice);
+    for (std::size_t i = 0; i < slice.size(); ++i) {
+        const bool there = pictured.has(slice[i]);
+        const auto shown = [&](double x) { return there ? x : std::numeric_limits<double>::quiet_NaN(); };
+        curve.mean.push_back(shown(predictions[i].mean));
+        curve.mean_half_width.push_back(shown(predictions[i].mean_half_width()));
+        curve.run_half_width.push_back(shown(predictions[i].run_half_width()));
+    }
     return curve;
 }
 
-Json model_page_json(const Pictured& pictured, const SliceCurve& curve) {
-    Json mean = Json::array(), mean_half_width = Json::array(), run_half_width = Json::array();
-    const auto predictions = pictured.model.predict(curve.slice);
-    for (std::size_t i = 0; i < curve.at.size(); ++i) {
-        const bool there = pictured.has(curve.slice[i]);
-        const auto shown = [&](double x) { return there ? Json(x) : Json(); };
-        mean.push_back(shown(predictions[i].mean));
-        mean_half_width.push_back(shown(predictions[i].mean_half_width()));
-        run_half_width.push_back(shown(predictions[i].run_half_width()));
-    }
-    return {{"at", curve.at},
-            {"averaged", curve.averaged},
-            {"mean", mean},
-            {"mean_half_width", mean_half_width},
-            {"run_half_width", run_half_width}};
-}
-
-Json map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
+ModelMap map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
     const auto slice = settings_of_map(pictured.cases.factors, pictured.middle, a, b, cells_of_map);
     std::vector<Setting> held;
     for (const auto& setting : slice) held.push_back({setting[a], setting[b]});
-    Json through = Json::array();
-    const auto means = pictured.model.means(pictured.model.rows(slice));
-    for (std::size_t i = 0; i < slice.size(); ++i) through.push_back(pictured.has(slice[i]) ? Json(means[i]) : Json());
-    return map_json(pictured.cases.factors, a, b, cells_of_map)
-        .add({{"averaged", pictured.averaged(std::array{a, b}, held)}, {"slice", through}});
+    ModelMap map{a, b, cells_of_map, pictured.averaged(std::array{a, b}, held), {}};
+    map.slice = pictured.model.means(pictured.model.rows(slice));
+    for (std::size_t i = 0; i < slice.size(); ++i)
+        if (!pictured.has(slice[i])) map.slice[i] = std::numeric_limits<double>::quiet_NaN();
+    return map;
+}
+
+Json model_page_json(const ModelCurve& curve) {
+    return {{"at", curve.at},
+            {"averaged", curve.averaged},
+            {"mean", curve.mean},
+            {"mean_half_width", curve.mean_half_width},
+            {"run_half_width", curve.run_half_width}};
+}
+
+Json model_page_json(const ModelMap& map, const ModelCases& cases) {
+    return map_json(cases.factors, map.across, map.up, map.count)
+        .add({{"averaged", map.averaged}, {"slice", map.slice}});
 }
 
 }  // namespace
 
+double ModelCurve::range() const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double x : averaged)
+        if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+    return high > low ? high - low : 0;
+}
+
+ModelPictures model_pictures(const ModelCases& cases, const ObservableModel& model,
+                             const std::function<bool(const Setting&)>& admits) {
+    const Pictured pictured{cases, model, admits};
+    ModelPictures pictures{pictured.middle, {}, std::vector<std::size_t>(cases.factors.size()), std::nullopt};
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) pictures.curves.push_back(curve_of(pictured, j));
+    auto& order = pictures.order;
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return pictures.curves[j].range(); });
+    if (order.size() > 1) pictures.map = map_over(pictured, order[0], order[1]);
+    return pictures;
+}
+
 Json model_page_data(const ModelCases& cases, const ObservableModel& model,
                      const std::function<bool(const Setting&)>& admits) {
-    const Pictured pictured{cases, model, admits};
-    std::vector<SliceCurve> curves;
-    for (std::size_t j = 0; j < cases.factors.size(); ++j) curves.push_back(curve_of(pictured, j));
-    std::vector<std::size_t> order(curves.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return curves[j].range(); });
-
+    const auto pictures = model_pictures(cases, model, admits);
     Json texts = Json::array();
-    for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(pictured.middle[j]));
-    const auto drawn = [&](const SliceCurve& curve) { return model_page_json(pictured, curve); };
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(pictures.middle[j]));
     return {{"observable", model.observable},
             {"unit", model.unit},
             {"says", model_lines(model)},
             {"factors", axes_json(cases.factors)},
-            {"order", order},
-            {"middle", {{"setting", pictured.middle}, {"texts", texts}}},
+            {"order", pictures.order},
+            {"middle", {{"setting", pictures.middle}, {"texts", texts}}},
             {"failed", failed_json(cases)},
-            {"curves", Json::list(curves, drawn)},
-            {"map", order.size() < 2 ? Json() : map_over(pictured, order[0], order[1])}};
+            {"curves", Json::list(pictures.curves, [](const ModelCurve& curve) { return model_page_json(curve); })},
+            {"map", pictures.map ? model_page_json(*pictures.map, cases) : Json()}};
 }
 
 }  // namespace grainsweep::report

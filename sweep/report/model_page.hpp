@@ -14,7 +14,35 @@
 #include "sweep/report/table.hpp"
 #include "sweep/study/response_models.hpp"
 
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
 namespace grainsweep::report {
+
+/// Against one factor; NaN where nothing is drawn.
+struct ModelCurve {
+    std::vector<double> at, averaged, mean, mean_half_width, run_half_width;
+
+    /// Of `averaged`: largest less smallest.
+    [[nodiscard]] double range() const;
+};
+/// Over two factors, row by row along `up`.
+struct ModelMap {
+    std::size_t across = 0, up = 0;
+    std::size_t count = 0;  ///< cells along a range
+    std::vector<double> averaged, slice;
+};
+struct ModelPictures {
+    study::Setting middle;
+    std::vector<ModelCurve> curves;  ///< one per factor
+    std::vector<std::size_t> order;  ///< factors by how much they matter
+    std::optional<ModelMap> map;     ///< of the first two; none: there is one factor
+};
+/// `admits`: settings that are left out are empty.
+[[nodiscard]] ModelPictures model_pictures(const study::ModelCases& cases, const study::ObservableModel& model,
+                                           const std::function<bool(const study::Setting&)>& admits);
 
 /// {"observable", "unit", "says": lines, "factors", "order": factors by how much they matter, "middle": {"setting",
 /// "texts"}, "failed": settings and outcomes of failed cases, "curves": one per factor {"at", "averaged", "mean",

@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
@@ -270,7 +271,7 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
         if (!std::ranges::count(measured, one->name)) measured.push_back(one->name);
     const auto main = std::ranges::find(observables, responses.main_observable());
     const auto brackets = brackets_of(store, record);
-    const auto calibration = calibration_report(store, record);
+    const auto calibration = campaign::shows_findings(record) ? calibration_report(store, record) : std::nullopt;
     const auto named_count = [](const auto& counted) { return std::array<Json, 2>{counted.first, counted.second}; };
     return Json{{"name", record.name},
                 {"database", database},
@@ -364,9 +365,16 @@ std::string film_elements(std::span<const PageFilm> films, std::string_view play
 void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films,
                 const PageModels& models) {
     const auto data = safe_in_script(page_data(sources, models));
-    if (films.empty()) return write_figures(out, page_files().report, data);
+    if (films.empty()) {
+        write_figures(out, page_files().report, data);
+        return;
+    }
     const auto player = enclosed(page_files().films);
     write_figures(out, page_files().report, data, film_elements(films, player), player);
+}
+
+std::string write_live_page(std::ostream& out, std::string_view data) {
+    return write_figures(out, page_files().live, data, "", "", "'self'");
 }
 
 }  // namespace grainsweep::report

@@ -49,4 +49,8 @@ struct PageFilm {
 void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films = {},
                 const PageModels& models = {});
 
+/// Writes the page of `serve`: the same whose data grows, beginning with this (an object, safe in a script). Returns its
+/// content security policy.
+[[nodiscard]] std::string write_live_page(std::ostream& out, std::string_view data);
+
 }  // namespace grainsweep::report

@@ -30,6 +30,7 @@ namespace {
 EMBED(page_html, PAGE_FOLDER "/page.html");
 EMBED(page_css, PAGE_FOLDER "/page.css");
 EMBED(report_js, PAGE_SCRIPTS "/report.js");
+EMBED(live_js, PAGE_SCRIPTS "/live.js");
 EMBED(window_js, PAGE_SCRIPTS "/window.js");
 EMBED(chart_js, CHART_JS);
 EMBED(watch_html, PAGE_FOLDER "/watch/page.html");
@@ -40,7 +41,7 @@ EMBED(films_js, PAGE_SCRIPTS "/films.js");
 }  // namespace
 
 PageFiles page_files() {
-    return {page_html, page_css, report_js, window_js, chart_js, watch_html, watch_css, watch_js, films_js};
+    return {page_html, page_css, report_js, live_js, window_js, chart_js, watch_html, watch_css, watch_js, films_js};
 }
 
 }  // namespace grainsweep::report

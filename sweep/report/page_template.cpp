@@ -24,20 +24,22 @@ void fill(std::ostream& out, std::string_view skeleton,
     out << skeleton;
 }
 
-void write_figures(std::ostream& out, std::string_view script, std::string_view data, std::string_view films,
-                   std::string_view film_script) {
+std::string write_figures(std::ostream& out, std::string_view script, std::string_view data, std::string_view films,
+                          std::string_view film_script, std::string_view asks) {
     const auto files = page_files();
     const auto program = enclosed(script);
     std::vector<std::string_view> scripts = {files.library, program};
     if (!film_script.empty()) scripts.push_back(film_script);
-    const std::string sources = script_sources(scripts);
+    const std::string policy = "default-src 'none'; style-src 'unsafe-inline'; script-src " + script_sources(scripts) +
+                               "; img-src data:" + (asks.empty() ? "" : "; connect-src " + std::string(asks));
     fill(out, files.skeleton,
-         {{"scripts", sources},
+         {{"policy", policy},
           {"style", files.style},
           {"library", files.library},
           {"films", films},
           {"data", data},
           {"program", program}});
+    return policy;
 }
 
 std::string enclosed(std::string_view script) {

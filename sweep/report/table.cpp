@@ -95,6 +95,7 @@ std::optional<Format> format_named(std::string_view word) {
     if (word == "text") return Format::text;
     if (word == "csv") return Format::csv;
     if (word == "json") return Format::json;
+    if (word == "xlsx") return Format::xlsx;
     return std::nullopt;
 }
 
@@ -104,6 +105,7 @@ void write(std::ostream& out, const store::Table& table, Format format) {
             return write_text(out, table, text_width());
         case Format::csv:
         case Format::json:
+        case Format::xlsx:
             break;
     }
     RowWriter writer(out, format);

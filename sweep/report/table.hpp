@@ -28,7 +28,7 @@ namespace grainsweep::report {
 
 using Json = campaign::JsonText;
 
-enum class Format { text, csv, json };
+enum class Format { text, csv, json, xlsx };  // xlsx: of commands that write a workbook (workbook.hpp)
 
 [[nodiscard]] std::optional<Format> format_named(std::string_view word);
 

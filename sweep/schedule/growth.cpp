@@ -1,5 +1,8 @@
 #include "sweep/schedule/growth.hpp"
 
+#include "sweep/campaign/experiments.hpp"
+
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -9,11 +12,21 @@ namespace grainsweep::schedule {
 Answers known_answers(const store::Store& store, const store::CampaignRecord& record,
                       std::span<const std::string> observables) {
     Answers answers;
-    for (const auto& observable : observables) {
-        auto& known = answers[observable];
-        known.assign(static_cast<std::size_t>(record.stored.candidates), std::numeric_limits<double>::quiet_NaN());
-        const auto [name, at] = designs::place_on_curve(observable);
-        const auto values = at ? store.values_along(record.name, name, *at) : store.values(record.name, name);
+    std::vector<store::CampaignRecord> others;
+    for (const auto& key : observables) {
+        const auto slash = key.find('/');
+        const store::CampaignRecord* asked = &record;
+        if (slash != std::string::npos) {
+            if (others.empty()) others = store.campaigns();
+            const auto found = std::ranges::find(others, campaign::name_beside(record, key.substr(0, slash)),
+                                                 &store::CampaignRecord::name);
+            if (found == others.end()) continue;
+            asked = &*found;
+        }
+        auto& known = answers[key];
+        known.assign(static_cast<std::size_t>(asked->stored.candidates), std::numeric_limits<double>::quiet_NaN());
+        const auto [name, at] = designs::place_on_curve(slash == std::string::npos ? key : key.substr(slash + 1));
+        const auto values = at ? store.values_along(asked->name, name, *at) : store.values(asked->name, name);
         for (const auto& it : values) {
             const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
             known[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;

@@ -18,7 +18,8 @@ namespace grainsweep::schedule {
 bool grow(campaign::Campaign& campaign, const store::Store& store);
 
 using Answers = decltype(designs::DesignRequest::answers);
-/// What is known of the points of a stored campaign, of these scalars.
+/// What is known of the points of a stored campaign, of these scalars or places along curves; "heap/angle" is that of
+/// the campaign that runs the experiment "heap" of the same calibration.
 [[nodiscard]] Answers known_answers(const store::Store& store, const store::CampaignRecord& record,
                                     std::span<const std::string> observables);
 

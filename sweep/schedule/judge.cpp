@@ -147,6 +147,14 @@ std::optional<std::int64_t> Judge::converged_at() const {
     return check == nullptr ? std::nullopt : std::optional(check->points);
 }
 
+std::optional<double> Judge::expected_share() const {
+    if (!stops() || checkpoints().empty() || candidates_ == 0) return std::nullopt;
+    const auto& last = checkpoints().back();
+    const auto points = converged_at() ? converged_at() : last.points_needed;
+    if (!points) return std::nullopt;
+    return std::min(1.0, static_cast<double>(*points) / static_cast<double>(candidates_));
+}
+
 bool Judge::overturns(std::int64_t stop) const {
     return !converged_at() && !checkpoints().empty() && checkpoints().back().points >= stop;
 }

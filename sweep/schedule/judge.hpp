@@ -48,6 +48,9 @@ public:
     /// Points of the prefix at which the statistics converged.
     [[nodiscard]] std::optional<std::int64_t> converged_at() const;
     [[nodiscard]] bool stops() const { return wanted_.stop; }
+    /// Share of the design's points after which convergence is expected to stop the campaign; none: it stops nothing, or
+    /// no check has said yet.
+    [[nodiscard]] std::optional<double> expected_share() const;
     /// Whether checks have come past so many points without convergence: an earlier stop there was of another rule.
     [[nodiscard]] bool overturns(std::int64_t stop) const;
     /// The last verdict in one line: what holds it back and how many more points it probably takes.

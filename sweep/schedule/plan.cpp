@@ -51,8 +51,8 @@ Plan::Plan(Questions questions, const Rules& rules)
 }
 
 void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
-    const auto limit = static_cast<std::size_t>(rules_.max_cases);
-    const std::size_t end = limit > 0 ? std::min(limit, queue_.size()) : queue_.size();
+    const std::size_t end =
+        rules_.max_cases ? std::min(static_cast<std::size_t>(*rules_.max_cases), queue_.size()) : queue_.size();
     const auto length = [this](std::uint32_t question) { return entries_[question].predicted; };
     const auto block = [&](std::uint32_t question) { return blocks.empty() ? 0 : blocks[question]; };
     const std::vector<std::uint32_t> in_order(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(end));
@@ -82,17 +82,14 @@ void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
 
 std::optional<double> Plan::next_predicted() const {
     if (closed_ || queue_is_empty()) return std::nullopt;
-    const auto limit = static_cast<std::size_t>(rules_.max_cases);
-    if (limit > 0 && tally_.settled_now + tally_.failed_now + under_way_.size() >= limit) return std::nullopt;
+    if (rules_.max_cases && std::cmp_greater_equal(begun(), *rules_.max_cases)) return std::nullopt;
     if (too_many_failures()) return std::nullopt;
     return entries_[front()].predicted;
 }
 
 std::size_t Plan::waiting() const {
     if (!next_predicted()) return 0;
-    const auto limit = static_cast<std::size_t>(rules_.max_cases);
-    return limit == 0 ? queued()
-                      : std::min(queued(), limit - (tally_.settled_now + tally_.failed_now + under_way_.size()));
+    return rules_.max_cases ? std::min(queued(), static_cast<std::size_t>(*rules_.max_cases) - begun()) : queued();
 }
 
 std::optional<Plan::Start> Plan::next() {

@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace grainsweep::schedule {
@@ -27,12 +28,12 @@ struct History {
 };
 
 struct Rules {
-    std::int64_t attempts = 3;             ///< tries of a case that crashes or times out
-    std::int64_t give_backs = 10;          ///< times in this run that a case may come back no further than before
-    std::int64_t stop_after_failures = 0;  ///< start nothing more after so many failed cases; 0: never
-    std::int64_t max_cases = 0;            ///< settle at most so many in this run; 0: all
-    std::optional<campaign::Outcome> again = {};  ///< ask again what ended like this
-    std::size_t workers = 1;                      ///< how many cases are computed at once
+    std::int64_t attempts = 3;     ///< tries of a case that crashes or times out
+    std::int64_t give_backs = 10;  ///< times in this run that a case may come back no further than before
+    std::optional<std::int64_t> stop_after_failures = {};  ///< start nothing more after so many failed cases
+    std::optional<std::int64_t> max_cases = {};            ///< settle at most so many in this run
+    std::optional<campaign::Outcome> again = {};           ///< ask again what ended like this
+    std::size_t workers = 1;                               ///< how many cases are computed at once
 };
 
 /// The questions of a plan, without repetition.
@@ -86,8 +87,7 @@ public:
     void close() { closed_ = true; }
 
     [[nodiscard]] bool too_many_failures() const {
-        return rules_.stop_after_failures > 0 &&
-               tally_.failed_now >= static_cast<std::size_t>(rules_.stop_after_failures);
+        return rules_.stop_after_failures && std::cmp_greater_equal(tally_.failed_now, *rules_.stop_after_failures);
     }
     /// Nothing running and nothing that could still be started.
     [[nodiscard]] bool over() const { return under_way_.empty() && !next_predicted(); }
@@ -128,6 +128,8 @@ private:
     }
     [[nodiscard]] std::size_t placed() const { return places_.empty() ? entries_.size() : places_.size(); }
     [[nodiscard]] bool queue_is_empty() const { return returned_.empty() && head_ == queue_.size(); }
+    /// In this run.
+    [[nodiscard]] std::size_t begun() const { return tally_.settled_now + tally_.failed_now + under_way_.size(); }
     [[nodiscard]] std::size_t queued() const { return returned_.size() + queue_.size() - head_; }
     [[nodiscard]] std::uint32_t front() const { return returned_.empty() ? queue_[head_] : returned_.back(); }
     [[nodiscard]] UnderWay::iterator find(const campaign::Attempt& attempt);

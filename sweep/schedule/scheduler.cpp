@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace grainsweep::schedule {
@@ -32,7 +34,7 @@ Ending Scheduler::run() {
     while (!at_once_) {
         hand_out();
         crew_.share_cores(plan_.waiting(), [this](const campaign::Attempt& one) { return plan_.seconds_left(one); });
-        if (in_flight_ == 0 && !plan_.next_predicted()) break;
+        if (progress_.under_way.empty() && !plan_.next_predicted()) break;
         if (auto event = crew_.wait(200ms)) handle(std::move(*event));
         if (judge_ != nullptr && judge_->busy()) judge_prefix();
         show();
@@ -86,14 +88,20 @@ void Scheduler::hand_out() {
         const auto start = plan_.next();
         recorder_.write(store::Recorder::Begun{start->attempt, place->computer});
         crew_.give(*place, start->attempt, start->question);
-        ++in_flight_;
+        progress_.under_way.insert_or_assign(start->attempt.case_id,
+                                             UnderWay{start->attempt.number, place->computer, {}});
     }
 }
 
 void Scheduler::handle(workers::PoolEvent event) {
     std::visit(
         Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
-                   [&](const workers::Heartbeat& beat) { plan_.advanced(beat.attempt, beat.progress); },
+                   [&](const workers::Heartbeat& beat) {
+                       plan_.advanced(beat.attempt, beat.progress);
+                       const auto here = progress_.under_way.find(beat.attempt.case_id);
+                       if (here != progress_.under_way.end() && std::isfinite(beat.progress))
+                           here->second.share = beat.progress;
+                   },
                    [&](const workers::Lost& lost) {
                        if (lost.running && lost.from_outside)
                            handle_given_back(*lost.running, lost.reason, lost.seconds, true);
@@ -128,8 +136,8 @@ void Scheduler::handle(workers::PoolEvent event) {
 void Scheduler::handle_finished(workers::Finished& finished) {
     // A worker that reports a crash or a time-out of what it started.
     if (!settles(finished.result.outcome)) return handle_failure(std::move(finished.result));
-    --in_flight_;
     const auto& result = finished.result;
+    progress_.under_way.erase(result.attempt.case_id);
     if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
     if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected) {
         watchers_.note(
@@ -144,8 +152,8 @@ void Scheduler::handle_finished(workers::Finished& finished) {
 }
 
 void Scheduler::handle_failure(campaign::CaseResult result) {
-    --in_flight_;
     const auto& attempt = result.attempt;
+    progress_.under_way.erase(attempt.case_id);
     const auto verdict = plan_.ended(attempt, result.outcome);
     if (verdict == Plan::Verdict::stale) return;
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(result.outcome),
@@ -157,13 +165,13 @@ void Scheduler::handle_failure(campaign::CaseResult result) {
 
 void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
     for (const auto& attempt : attempts) {
-        --in_flight_;
+        progress_.under_way.erase(attempt.case_id);
         plan_.never_begun(attempt);
     }
 }
 
 void Scheduler::handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted) {
-    --in_flight_;
+    progress_.under_way.erase(attempt.case_id);
     const auto verdict = plan_.given_back(attempt);
     if (verdict == Plan::Verdict::stale) return;
     const bool gave_up = verdict == Plan::Verdict::gave_up;
@@ -188,6 +196,16 @@ void Scheduler::judge_prefix(Judge::Models models) {
     }
 }
 
+std::size_t Scheduler::cases_to_go() const {
+    const auto& tally = plan_.tally();
+    std::size_t left = std::min(tally.questions - tally.decided, plan_.waiting() + progress_.under_way.size());
+    if (const auto share = judge_ != nullptr ? judge_->expected_share() : std::nullopt) {
+        const auto needed = static_cast<std::size_t>(std::ceil(*share * static_cast<double>(tally.questions)));
+        left = std::min(left, std::max(needed, tally.decided) - tally.decided);
+    }
+    return left;
+}
+
 void Scheduler::show() {
     const auto durable = recorder_.take_durable();
     progress_.durable += durable.size();
@@ -196,7 +214,7 @@ void Scheduler::show() {
         if (std::erase(checkpointed_, result.attempt.case_id) > 0) watchers_.forget_checkpoint(result.attempt.case_id);
     }
     progress_.tally = plan_.tally();
-    progress_.running = in_flight_;
+    progress_.to_go = cases_to_go();
     watchers_.progress(progress_);
 }
 

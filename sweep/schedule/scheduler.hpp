@@ -8,6 +8,8 @@
 #include "sweep/workers/crew.hpp"
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,11 +35,21 @@ struct Walltime {
     double shortest_part = 0;           ///< such a case is not begun for less
 };
 
+/// A case that a worker has, begun or queued behind another.
+struct UnderWay {
+    std::int64_t attempt = 0;
+    std::shared_ptr<const campaign::Computer> computer;
+    std::optional<double> share;  ///< done, 0 to 1, as last reported; none: not begun, or not known
+};
+
 /// What watchers get. Counts are of results on disk.
 struct Progress {
     Plan::Tally tally;
     std::size_t durable = 0;  ///< results of this run on disk
-    std::size_t running = 0;
+    std::map<campaign::CaseId, UnderWay> under_way;
+    /// Cases that this run will still settle: all that are left, or fewer where the number of cases is limited or the
+    /// statistics are expected to converge before.
+    std::size_t to_go = 0;
     std::string judgement;  ///< last verdict on convergence in one line
 };
 
@@ -61,6 +73,7 @@ private:
     /// Leaves out what does not fit into the time left, and stops when there is none.
     void look_at_time();
     [[nodiscard]] Ending ending() const;
+    [[nodiscard]] std::size_t cases_to_go() const;
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
     void handle_failure(campaign::CaseResult result);
@@ -77,7 +90,6 @@ private:
     Watchers watchers_;
     Walltime walltime_;
     Progress progress_;
-    std::size_t in_flight_ = 0;
     std::optional<Ending> early_;
     std::optional<std::string> broken_;  ///< why nothing more can be computed
     bool at_once_ = false;

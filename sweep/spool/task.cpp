@@ -73,7 +73,7 @@ Ending Task::run() {
         });
         if (running_.empty() && (closed_ || (open_.empty() && (elsewhere_.empty() || !waits_)))) break;
         if (auto event = crew_.wait(200ms)) handle(std::move(*event));
-        watchers_.progress(tally_, running_.size());
+        watchers_.progress(tally_);
     }
     if (at_once_)
         crew_.dismiss();
@@ -83,7 +83,7 @@ Ending Task::run() {
         spool_.answer(
             {unanswered({id, known_[one.place].next}, Outcome::abandoned, "its task was ended", 0), one.computer});
     tally_.elsewhere = elsewhere_.size();
-    watchers_.progress(tally_, 0);
+    watchers_.progress(tally_);
     if (broken_) throw BrokenWorld(*broken_);
     return ending();
 }

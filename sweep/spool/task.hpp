@@ -45,7 +45,7 @@ public:
         double shortest_left_out = 0;  ///< of those the shortest prediction, s
     };
     struct Watchers {
-        std::function<void(const Tally&, std::size_t running)> progress = [](const Tally&, std::size_t) {};
+        std::function<void(const Tally&)> progress = [](const Tally&) {};
         std::function<void(const std::string&)> note = [](const std::string&) {};
         std::function<void(const campaign::CaseId&)> forget_checkpoint = [](const campaign::CaseId&) {};
     };

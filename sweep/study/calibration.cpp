@@ -2,6 +2,7 @@
 
 #include "solver/scenes/scene.hpp"
 #include "stats/calibration.hpp"
+#include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_request.hpp"
 #include "sweep/designs/calibration_layout.hpp"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace grainsweep::study {
@@ -70,8 +72,21 @@ std::string condition_text(const designs::MeasuredTarget& target, const std::vec
 
 TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
     const auto& target = found.targets[t];
-    TargetCheck check{
-        target.observable, "", "", target.value, target.error, target.discrepancy, none, none, none, none, 0, 0, {}};
+    TargetCheck check{target.observable,
+                      "",
+                      "",
+                      target.experiment,
+                      target.value,
+                      target.error,
+                      target.discrepancy,
+                      none,
+                      none,
+                      none,
+                      none,
+                      0,
+                      std::nullopt,
+                      0,
+                      {}};
     if (!found.waves.empty()) {
         check.refusal = found.waves.back().refusals[t];
         check.beyond = found.beyond[t];
@@ -87,6 +102,7 @@ TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
         check.runs = answers.size();
         if (!answers.empty()) check.checked = mean_of(answers);
         check.checked_sd = sd_of(answers);
+        check.z = designs::miss_of(target, answers);
     }
     return check;
 }
@@ -98,7 +114,7 @@ std::optional<std::pair<double, double>> covered_by(const store::Store& store, c
     if (!place.at) return std::nullopt;
     std::optional<std::pair<double, double>> covered;
     for (const auto& curve : store.curve_extents(campaign, place.observable)) {
-        if (static_cast<std::size_t>(curve.point) % layout.conditions.size() != layout.condition_of[t]) continue;
+        if (static_cast<std::size_t>(curve.point) % layout.conditions_of[t] != layout.condition_of[t]) continue;
         if (!covered) covered = {curve.first, curve.last};
         covered = {std::min(covered->first, curve.first), std::max(covered->second, curve.last)};
     }
@@ -114,9 +130,10 @@ std::size_t followed_points(const designs::Calibration& found, const Responses& 
     for (std::size_t row = 0; row < run.rows(); ++row) {
         const auto point = static_cast<std::size_t>(run.points[row]);
         if (point >= followed) continue;
-        for (std::size_t j = 0, k = 0; j < d && k < found.factors.size(); ++j) {
-            if (run.factors[j].name != found.factors[k]) continue;
-            const auto& range = found.ranges[k++];
+        for (std::size_t j = 0; j < d; ++j) {
+            const auto known = std::ranges::find(found.ranges, run.factors[j].name, &designs::FactorRange::name);
+            if (known == found.ranges.end()) continue;
+            const auto& range = *known;
             const double value = range.value_at(found.points.point(point)[j]);
             const double width = std::abs(range.value_at(1) - range.value_at(0));
             if (std::abs(run.factors[j].values[row] - value) > rounding * width) followed = point;
@@ -175,24 +192,62 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
             fmt::format("the chains of the posterior have not settled (scale reduction {:.2f}): its widths are rough",
                         found.posterior->scale_reduction));
     for (const auto& target : report.targets)
-        if (std::abs(target.z()) > 2)
+        if (std::abs(target.z.value_or(0)) > designs::largest_miss_allowed)
             notes.push_back(
                 fmt::format("{}: fresh runs at settings drawn from the posterior miss the measurement by {:.1f} "
                             "standard deviations",
-                            target.name(), std::abs(target.z())));
+                            target.name(), std::abs(*target.z)));
     return notes;
+}
+
+/// The factors that the targets leave wide: by themselves, or along a ridge with another.
+std::string undetermined(const CalibrationReport& report) {
+    constexpr double half = 0.5;  // of the prior's sd, along a ridge
+    std::string text;
+    const std::size_t d = report.factors.size();
+    for (std::size_t i = 0; i < d; ++i) {
+        const auto coupling = [&](std::size_t j) {
+            return j == i ? 0 : std::abs(report.found.shape->correlation[i * d + j]);
+        };
+        std::size_t partner = i;
+        for (std::size_t j = 0; j < d; ++j)
+            if (coupling(j) > coupling(partner)) partner = j;
+        const bool ridge = coupling(partner) >= strongly_coupled;
+        if (!(report.factors[i].share_of_range > (ridge ? half : not_determined))) continue;
+        text += fmt::format("{}{}{}", text.empty() ? "" : ", ", report.factors[i].name,
+                            ridge ? " along a ridge with " + report.factors[partner].name : "");
+    }
+    return text;
+}
+
+std::optional<Verdict> calibration_verdict(const CalibrationReport& report) {
+    const auto& found = report.found;
+    const auto miss = designs::largest_miss(found.targets, found.check);
+    if (!found.waves_end || !found.posterior || !miss) return std::nullopt;
+    if (miss->size > designs::largest_miss_allowed)
+        return Verdict{fmt::format("not reproduced: {} by {:.1f} sd", report.targets[miss->target].name(), miss->size),
+                       false};
+    if (const auto wide = undetermined(report); !wide.empty()) return Verdict{"not determined: " + wide};
+    return Verdict{"calibrated"};
+}
+
+/// The campaigns of the experiments by name; of a calibration without, this one by the empty name.
+std::map<std::string, store::CampaignRecord> records_of(const store::Store& store,
+                                                        const store::CampaignRecord& record) {
+    std::map<std::string, store::CampaignRecord> records;
+    const auto names = campaign::experiments_of(record);
+    if (names.empty()) records.emplace("", record);
+    for (const auto& other : names.empty() ? std::vector<store::CampaignRecord>{} : store.campaigns())
+        for (const auto& name : names)
+            if (other.name == campaign::name_beside(record, name)) records.emplace(name, other);
+    return records;
 }
 
 }  // namespace
 
 std::string TargetCheck::name() const {
-    return condition.empty() ? observable : fmt::format("{} at {}", observable, condition);
-}
-
-double TargetCheck::z() const {
-    if (runs < 2) return none;
-    const double scatter = std::isfinite(checked_sd) ? checked_sd : 0;
-    return (checked - value) / std::sqrt(error * error + discrepancy * discrepancy + scatter * scatter);
+    return fmt::format("{}{}{}{}{}", experiment, experiment.empty() ? "" : " ", observable,
+                       condition.empty() ? "" : " at ", condition);
 }
 
 std::optional<CalibrationReport> calibration_report(const store::Store& store, const store::CampaignRecord& record) {
@@ -200,30 +255,34 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
     if (design == nullptr || !design->calibrates) return std::nullopt;
     auto request = campaign::request_of(record);
     request.answers = schedule::known_answers(store, record, design->rests_on(request));
-    CalibrationReport report{designs::calibration_of(request), {}, {}, {}};
+    CalibrationReport report{designs::calibration_of(request), {}, {}, {}, {}};
     const auto followed = followed_points(report.found, read_responses(store, record));
     const bool by_another_program = followed < report.found.points.size();
     if (by_another_program) {  // answers of other points say nothing of these
         for (auto& [observable, answers] : request.answers) answers.resize(std::min(answers.size(), followed));
         report.found = designs::calibration_of(request);
     }
-    const auto* scene = find_scene(record.scene);
-    const auto stated = campaign::factors_of(record);
+    const auto records = records_of(store, record);
     if (report.found.posterior)
         for (std::size_t j = 0; j < report.found.factors.size(); ++j) {
-            report.factors.push_back(posterior_of(report.found, j));
-            const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(report.found.factors[j]);
-            if (parameter != nullptr) report.factors.back().unit = parameter->unit;
+            auto& factor = report.factors.emplace_back(posterior_of(report.found, j));
+            for (const auto& [name, one] : records)
+                if (const auto* scene = find_scene(one.scene))
+                    if (const auto* parameter = scene->find_parameter(factor.name)) factor.unit = parameter->unit;
         }
     const auto layout = designs::calibration_layout(request, report.found.targets);
     for (std::size_t t = 0; t < report.found.targets.size(); ++t) {
         auto& check = report.targets.emplace_back(check_of(report.found, t));
-        check.condition = condition_text(report.found.targets[t], stated);
+        const auto one = records.find(check.experiment);
+        if (one == records.end()) continue;  // not run yet
+        check.condition = condition_text(report.found.targets[t], campaign::factors_of(one->second));
         const auto place = designs::place_on_curve(check.observable);
-        if (std::isinf(check.beyond)) check.covered = covered_by(store, record.name, layout, t, place);
+        if (std::isinf(check.beyond)) check.covered = covered_by(store, one->second.name, layout, t, place);
+        const auto* scene = find_scene(one->second.scene);
         const auto* measured = scene == nullptr ? nullptr : scene->find_observable(place.observable);
         if (measured != nullptr) check.unit = measured->unit;
     }
+    report.verdict = calibration_verdict(report);
     report.notes = notes_of(report);
     if (by_another_program)
         report.notes.push_back(fmt::format(

@@ -225,7 +225,7 @@ std::string next_campaign(const ModelCases& cases, const Window& window, std::st
         for (std::size_t j = 0; j < cases.factors.size(); ++j) row.push_back(cases.factors[j].value(one.setting[j]));
     }
     return campaign::further_points(
-        cases.campaign.text, name,
+        campaign::text_of_experiment(cases.campaign.text, cases.campaign), name,
         fmt::format("The cases that the response models of {} promise most of, by grainsweep window --next {}.",
                     cases.campaign.name, rows.size()),
         rows, number);

@@ -37,12 +37,12 @@ std::vector<std::int64_t> shared_cores(std::size_t cores, std::size_t waiting, s
 }
 
 void CoreSharing::begin(PoolWorker& worker) const {
-    if (threads_ > 0) allow(worker, threads_);
+    if (threads_) allow(worker, *threads_);
 }
 
 void CoreSharing::share(std::span<const std::shared_ptr<PoolWorker>> workers, std::size_t waiting,
                         const Crew::SecondsLeft& left) {
-    if (threads_ > 0 || (!shared_ && waiting >= cores_)) return;
+    if (threads_ || (!shared_ && waiting >= cores_)) return;
     Shares now;
     std::map<std::size_t, std::vector<PoolWorker*>> at_work;  // by node
     for (const auto& worker : workers) {

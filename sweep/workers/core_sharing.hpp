@@ -22,8 +22,8 @@ namespace grainsweep::workers {
 /// Tells workers how many threads they may use.
 class CoreSharing {
 public:
-    /// `threads` of every case; 0: shared as above. `cores` of every node, one for each worker.
-    CoreSharing(std::int64_t threads, std::size_t cores) : threads_(threads), cores_(cores) {}
+    /// `threads` of every case; none: shared as above. `cores` of every node, one for each worker.
+    CoreSharing(std::optional<std::int64_t> threads, std::size_t cores) : threads_(threads), cores_(cores) {}
 
     /// A case is about to be written to this worker.
     void begin(PoolWorker& worker) const;
@@ -35,7 +35,7 @@ private:
     /// The workers that have cases, and the threads these have: as long as they are the same nothing is told anew.
     using Shares = std::vector<std::pair<const PoolWorker*, std::int64_t>>;
 
-    std::int64_t threads_;
+    std::optional<std::int64_t> threads_;
     std::size_t cores_;
     bool shared_ = false;  ///< some case has more than one
     std::size_t waiting_ = 0;

@@ -87,10 +87,10 @@ void Hosts::keep_time() {
     for (const auto& host : watched) {
         std::string reason;
         if (!host->is_ready()) {
-            if (limits.start > 0 && now - host->launched() > limits.start)
-                reason = fmt::format("it was not ready within {} s", limits.start);
-        } else if (limits.silence > 0 && host->silence(now) > limits.silence) {
-            reason = fmt::format("it gave no sign of life for {} s", limits.silence);
+            if (limits.start && now - host->launched() > *limits.start)
+                reason = fmt::format("it was not ready within {} s", *limits.start);
+        } else if (limits.silence && host->silence(now) > *limits.silence) {
+            reason = fmt::format("it gave no sign of life for {} s", *limits.silence);
         } else if (host->owes_an_end(now) > time_to_kill) {
             reason = fmt::format("it could not end a worker within {} s", time_to_kill);
         }

@@ -48,7 +48,7 @@ std::vector<std::string> command_of(const PoolOptions& options) {
 
 /// For the campaign: one for each worker, of this machine no more than its job has.
 std::size_t cores_of_a_node(const PoolOptions& options) {
-    if (options.hosts > 0) return options.workers / options.hosts;
+    if (options.hosts) return options.workers / static_cast<std::size_t>(*options.hosts);
     return std::min(options.workers, job_cores());
 }
 
@@ -65,8 +65,9 @@ struct Pool::Impl {
           sharing(options.threads, cores_of_a_node(options)),
           fruitless(argv) {
         loop.on_signals({SIGINT, SIGTERM, SIGUSR1}, [this](int number) { interrupt(number); });
-        if (options.hosts == 0) return;
-        HostPlan plan{options.launcher, options.hosts, options.workers / options.hosts, options.limits};
+        if (!options.hosts) return;
+        HostPlan plan{options.launcher, static_cast<std::size_t>(*options.hosts), cores_of_a_node(options),
+                      options.limits};
         plan.argv.insert(plan.argv.end(), options.host_command.begin(), options.host_command.end());
         hosts.emplace(
             loop, std::move(plan),
@@ -245,18 +246,18 @@ struct Pool::Impl {
         const auto& limits = options.limits;
         if (overdue == WorkerState::Overdue::answer) {
             TimedOut late{*worker->state.running(), worker->state.waiting(),
-                          fmt::format("no answer within {} s", limits.wall), worker->state.running_seconds(now)};
+                          fmt::format("no answer within {} s", *limits.wall), worker->state.running_seconds(now)};
             discard(worker);
             events.emplace_back(std::move(late));
         } else if (overdue == WorkerState::Overdue::silence) {
             Lost lost = worker->account(
-                now, fmt::format("{} gave no sign of life for {} s and is replaced", worker->name(), limits.silence));
+                now, fmt::format("{} gave no sign of life for {} s and is replaced", worker->name(), *limits.silence));
             lost.from_outside = true;
             discard(worker);
             report(*worker, std::move(lost), true);
         } else if (overdue == WorkerState::Overdue::start) {
             Lost lost = worker->account(
-                now, fmt::format("{} was not ready within {} s and is replaced", worker->name(), limits.start));
+                now, fmt::format("{} was not ready within {} s and is replaced", worker->name(), *limits.start));
             discard(worker);
             events.emplace_back(Remark{lost.reason});
             report(*worker, std::move(lost), false);

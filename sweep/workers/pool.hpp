@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,13 @@ struct PoolOptions {
     std::vector<std::string> launcher;  ///< argv prefix; empty: the workers are children of this process
     std::vector<std::string> command;   ///< executable, "worker", its arguments
     std::size_t workers = 1;
-    /// Where not 0, the launcher starts so many hosts instead, and each runs an equal part of the workers. `{host}` in
+    /// Where given, the launcher starts so many hosts instead, and each runs an equal part of the workers. `{host}` in
     /// a word of the launcher is the host's number, from 1 on.
-    std::size_t hosts = 0;
+    std::optional<std::int64_t> hosts;
     std::vector<std::string> host_command;  ///< executable, "host", its arguments
-    /// Threads of every case; 0: one, and the cores of a node that no case needs go to those that run there. A node has
-    /// as many cores for the campaign as workers.
-    std::int64_t threads = 1;
+    /// Threads of every case; none: one, and the cores of a node that no case needs go to those that run there. A node
+    /// has as many cores for the campaign as workers.
+    std::optional<std::int64_t> threads = 1;
     TimeLimits limits;  ///< in this process's running time
     Expected expected;
 };

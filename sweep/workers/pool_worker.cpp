@@ -30,14 +30,14 @@ Lost PoolWorker::account(double now, const std::string& reason) const {
 std::optional<std::string> PoolWorker::overdue_remark(const TimeLimits& limits, double now,
                                                       const std::string& command) {
     if (!state.was_ready()) {
-        const double limit = limits.start > 0 ? std::min(longest_silent_start, limits.start / 2) : longest_silent_start;
+        const double limit = limits.start ? std::min(longest_silent_start, *limits.start / 2) : longest_silent_start;
         if (remarked || now - state.launched() < limit) return std::nullopt;
         remarked = true;
         return fmt::format("waiting for {} to be ready, {:.0f} s so far: started with '{}'", name(),
                            now - state.launched(), command);
     }
     const double silence = state.silence(now);
-    if (limits.silence <= 0 || silence < limits.silence / 2) {
+    if (!limits.silence || silence < *limits.silence / 2) {
         remarked = false;
     } else if (!std::exchange(remarked, true) && state.cases() > 0) {
         return fmt::format("waiting for a sign of life of {}, {:.0f} s so far", name(), silence);

@@ -58,9 +58,10 @@ private:
 };
 
 template <class Resource>
-void limit(Resource resource, std::int64_t most) {
-    const rlimit both{static_cast<rlim_t>(most), static_cast<rlim_t>(most)};
-    if (most > 0) ::setrlimit(resource, &both);
+void limit(Resource resource, std::optional<std::int64_t> most) {
+    if (!most) return;
+    const rlimit both{static_cast<rlim_t>(*most), static_cast<rlim_t>(*most)};
+    ::setrlimit(resource, &both);
 }
 
 /// In the new process, before its program; calls what is allowed after fork(2) only. Returns errno, 0 where all is

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -18,8 +19,8 @@ struct ProcessStart {
     std::vector<std::string> environment = {};  ///< "NAME=value", over those of this process
     std::array<int, 3> streams = {-1, -1, -1};  ///< descriptors of its standard streams; -1: /dev/null
     int folder = -1;                            ///< descriptor of its working folder; -1: that of this process
-    std::int64_t memory = 0;                    ///< RLIMIT_AS, bytes; 0: as here
-    std::int64_t file = 0;                      ///< RLIMIT_FSIZE, bytes; 0: as here
+    std::optional<std::int64_t> memory = {};    ///< RLIMIT_AS, bytes; otherwise as here
+    std::optional<std::int64_t> file = {};      ///< RLIMIT_FSIZE, bytes; otherwise as here
     /// Somebody else's: it gets no other descriptor of this process and no blocked or ignored signal, writes no core
     /// and is killed when this process ends. This thread waits until the program runs or has failed to. Another process
     /// is not waited for, because a dead file server may keep it for ever: one that cannot be executed says so in its

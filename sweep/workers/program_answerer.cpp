@@ -49,8 +49,8 @@ public:
     /// Whether one is exceeded; `result` says so.
     bool exceeded(CaseResult& result) {
         const double now = elapsed(start_);
-        if (options_.limit_seconds > 0 && now > options_.limit_seconds) {
-            close_result(result, Outcome::timed_out, fmt::format("no answer within {} s", options_.limit_seconds));
+        if (options_.limit_seconds && now > *options_.limit_seconds) {
+            close_result(result, Outcome::timed_out, fmt::format("no answer within {} s", *options_.limit_seconds));
             return true;
         }
         if (now < next_look_) return false;

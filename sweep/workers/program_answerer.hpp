@@ -18,8 +18,8 @@ namespace grainsweep::workers {
 using Pulse = std::function<bool()>;
 
 struct ProgramOptions {
-    std::filesystem::path folder;  ///< holds the folders of cases
-    double limit_seconds = 0;      ///< of a case; 0: none
+    std::filesystem::path folder;         ///< holds the folders of cases
+    std::optional<double> limit_seconds;  ///< of a case
     /// Where given, the case's folder is this one, and stays.
     std::filesystem::path keep = {};
 };

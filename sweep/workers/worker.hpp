@@ -23,8 +23,8 @@ struct WorkerOptions {
     /// After a stop or a signal, a case that has not come to a point where it can be saved is given back as it is.
     double give_back_seconds = 20;
     std::filesystem::path cases;  ///< its cases are answered by programs, and this holds their folders; empty: none is
-    double limit_seconds = 0;     ///< of a case that a program answers; 0: none
-    campaign::Computer computer;  ///< reported to the main program; checkpoints of another build are not used
+    std::optional<double> limit_seconds;  ///< of a case that a program answers
+    campaign::Computer computer;          ///< reported to the main program; checkpoints of another build are not used
 };
 
 /// The name under which an unfinished case's state is kept beside the database.

@@ -150,7 +150,7 @@ double WorkerState::silence(double now) const {
 }
 
 WorkerState::Overdue WorkerState::overdue(const TimeLimits& limits, double now) const {
-    const auto over = [](double seconds, double limit) { return limit > 0 && seconds > limit; };
+    const auto over = [](double seconds, std::optional<double> limit) { return limit && seconds > *limit; };
     if (phase_ == Phase::dismissed) return Overdue::nothing;
     if (!was_ready()) return over(now - launched_, limits.start) ? Overdue::start : Overdue::nothing;
     if (running_ && over(now - running_->began, limits.wall)) return Overdue::answer;

@@ -24,11 +24,11 @@ struct Expected {
     std::vector<ObservableSpec> measured;  ///< observables of the scene
 };
 
-/// Seconds; 0: no limit.
+/// Seconds.
 struct TimeLimits {
-    double wall = 0;      ///< of one case, from when it is begun
-    double start = 300;   ///< until a worker is ready
-    double silence = 60;  ///< of a worker that owes something
+    std::optional<double> wall;          ///< of one case, from when it is begun
+    std::optional<double> start = 300;   ///< until a worker is ready
+    std::optional<double> silence = 60;  ///< of a worker that owes something
 };
 
 class WorkerState {

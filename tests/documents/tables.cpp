@@ -7,6 +7,7 @@
 #include "tests/documents/table_rows.hpp"
 #include "tests/support/archive.hpp"
 #include "tests/support/peer_suites.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <fmt/format.h>
@@ -178,6 +179,8 @@ std::string keys_table(const std::string& section) {
                          : section == "factor"
                              ? schema["allOf"][0]["then"]["properties"]["factors"]["items"]["oneOf"][0]
                          : section == "target" ? schema["properties"]["calibration"]["properties"]["targets"]["items"]
+                         : section == "experiment"
+                             ? schema["properties"]["calibration"]["properties"]["experiments"]["additionalProperties"]
                          : section == "stop"   ? schema["properties"]["calibration"]["properties"]["stop"]
                                                : schema["properties"][section];
     std::string table = head({"key", "default", "meaning"});

@@ -129,7 +129,7 @@ TEST(Schema, EveryKeyItHasIsReadAndEveryOtherRefused) {
     for (const auto& key : campaign_keys()) {
         json without = sound;
         without.erase(std::string(key.name));
-        const bool needed = key.required || key.name == "design";  // or a calibration in its place
+        const bool needed = key.required || key.name == "design" || key.name == "scene";  // or a calibration
         EXPECT_EQ(reads(without), !needed) << key.name;
     }
     EXPECT_FALSE(schema()["oneOf"].is_null()) << "either a design or a calibration";
@@ -144,8 +144,8 @@ TEST(Schema, DefaultsAreThoseOfTheReader) {
     EXPECT_EQ(properties["seed"]["default"], campaign.seed);
     EXPECT_EQ(properties["replicates"]["default"], campaign.replicates);
     EXPECT_EQ(properties["limits"]["properties"]["attempts"]["default"], campaign.limits.attempts);
-    EXPECT_EQ(properties["limits"]["properties"]["wall_seconds"]["default"], campaign.limits.wall_seconds);
-    EXPECT_EQ(properties["execution"]["properties"]["workers"]["default"], campaign.execution.workers);
+    EXPECT_EQ(properties["limits"]["properties"]["wall_seconds"]["default"], campaign.limits.wall_seconds.value_or(0));
+    EXPECT_EQ(properties["execution"]["properties"]["workers"]["default"], campaign.execution.workers.value_or(0));
     const auto& convergence = properties["convergence"]["properties"];
     EXPECT_EQ(convergence["rule"]["default"], campaign.convergence->rule);
     EXPECT_EQ(convergence["gates"]["default"], campaign.convergence->gates);

@@ -10,12 +10,12 @@ namespace grainsweep::tests::cli_walltime_test {
 using namespace cli;
 
 TEST(Walltime, IsTheEarlierOfWhatIsConfiguredAndTheJobsEnd) {
-    EXPECT_FALSE(time_given(0, "", "", 1000));
+    EXPECT_FALSE(time_given({}, "", "", 1000));
     const auto configured = time_given(600, "", "", 1000);
     ASSERT_TRUE(configured);
     EXPECT_EQ(configured->left, 600);
     EXPECT_EQ(configured->whole, 600);
-    const auto job = time_given(0, "4600", "1000", 3000);
+    const auto job = time_given({}, "4600", "1000", 3000);
     ASSERT_TRUE(job);
     EXPECT_EQ(job->left, 1600);
     EXPECT_EQ(job->whole, 3600);
@@ -26,23 +26,23 @@ TEST(Walltime, IsTheEarlierOfWhatIsConfiguredAndTheJobsEnd) {
 }
 
 TEST(Walltime, AJobWithoutAStartBeginsNow) {
-    const auto job = time_given(0, "4600", "", 3000);
+    const auto job = time_given({}, "4600", "", 3000);
     ASSERT_TRUE(job);
     EXPECT_EQ(job->left, 1600);
     EXPECT_EQ(job->whole, 1600);
 }
 
 TEST(Walltime, AJobThatIsOverLeavesNothing) {
-    EXPECT_LE(time_given(0, "4600", "1000", 5000)->left, 0);
+    EXPECT_LE(time_given({}, "4600", "1000", 5000)->left, 0);
 }
 
 TEST(Walltime, WhatIsNoMomentIsNone) {
     for (const char* text : {"NONE", "Unknown", "0", "-5", "12x", " 12", "99999999999999999999999"})
-        EXPECT_FALSE(time_given(0, text, "", 1000)) << text;
+        EXPECT_FALSE(time_given({}, text, "", 1000)) << text;
     constexpr double now = 1.7e9;
     for (const char* text : {"20261126", "2026-11-26", "12:00:00", "2026-13-01T00:00:00", "2026-11-26T12:00",
                              "2026-11-26T12:00:00Z", "2026-11-26T-1:00:00", "T::", "1999-11-26T12:00:00"})
-        EXPECT_FALSE(time_given(0, text, "", now)) << text;
+        EXPECT_FALSE(time_given({}, text, "", now)) << text;
 }
 
 TEST(Walltime, TheEndMayBeADate) {
@@ -54,7 +54,7 @@ TEST(Walltime, TheEndMayBeADate) {
     local.tm_isdst = -1;
     const auto end = static_cast<double>(std::mktime(&local));
     for (const char* text : {"2026-11-26T12:00:00", "2026-11-26 12:00:00"}) {
-        const auto given = time_given(0, text, "2026-11-26T11:00:00", end - 1000);
+        const auto given = time_given({}, text, "2026-11-26T11:00:00", end - 1000);
         ASSERT_TRUE(given) << text;
         EXPECT_EQ(given->left, 1000);
         EXPECT_EQ(given->whole, 3600);

@@ -86,7 +86,7 @@ std::vector<double> uneven_costs(std::size_t n) {
     return costs;
 }
 
-Plan uneven_plan(std::size_t n, std::size_t workers, std::int64_t max_cases = 0,
+Plan uneven_plan(std::size_t n, std::size_t workers, std::optional<std::int64_t> max_cases = {},
                  std::vector<std::uint32_t> blocks = {}) {
     const Rules rules{.max_cases = max_cases, .workers = workers};
     return {{question, std::vector<History>(n), uneven_costs(n), {}, std::move(blocks)}, rules};
@@ -116,7 +116,7 @@ TEST(Plan, TheEndKeepsAllWorkersBusy) {
 TEST(Plan, NoCaseIsBroughtForwardOutOfALaterBlock) {
     std::vector<std::uint32_t> blocks;
     for (std::uint32_t i = 0; i < 64; ++i) blocks.push_back(i / 8);
-    Plan plan = uneven_plan(64, 2, 0, blocks);
+    Plan plan = uneven_plan(64, 2, {}, blocks);
     for (std::int64_t i = 0; i < 64; ++i) {
         const auto start = plan.next();
         ASSERT_TRUE(start);

@@ -20,6 +20,17 @@ TEST(VisibleText, ShowsControlCharactersAndLeavesTheRest) {
         << "C1 in UTF-8, and not beyond";
 }
 
+TEST(VisibleText, ReplacesWhatIsNoUtf8) {
+    const std::string replaced = "\xEF\xBF\xBD";
+    EXPECT_EQ(campaign::valid_utf8("plain \xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80"),
+              "plain \xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80");
+    EXPECT_EQ(campaign::valid_utf8("a\xFF"), "a" + replaced);
+    EXPECT_EQ(campaign::valid_utf8("\xC3"), replaced) << "cut";
+    EXPECT_EQ(campaign::valid_utf8("\xC0\xAF"), replaced + replaced) << "longer than need be";
+    EXPECT_EQ(campaign::valid_utf8("\xED\xA0\x80"), replaced + replaced + replaced) << "half a surrogate pair";
+    EXPECT_EQ(campaign::valid_utf8("\xF4\x90\x80\x80").size(), 4 * replaced.size()) << "beyond U+10FFFF";
+}
+
 TEST(VisibleStream, StandsInFrontOfAStreamUntilItGoes) {
     std::ostringstream out;
     {

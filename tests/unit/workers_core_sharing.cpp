@@ -97,7 +97,7 @@ protected:
 };
 
 TEST_F(CoreSharingTest, CoresGoToTheLastCaseAndComeBack) {
-    CoreSharing sharing(0, 2);
+    CoreSharing sharing({}, 2);
     add_worker(), add_worker();
     give(0, "a"), give(1, "b");
     share(sharing, 3);
@@ -119,7 +119,7 @@ TEST_F(CoreSharingTest, CoresGoToTheLastCaseAndComeBack) {
 }
 
 TEST_F(CoreSharingTest, EveryNodeHasItsOwn) {
-    CoreSharing sharing(0, 2);
+    CoreSharing sharing({}, 2);
     add_worker(1), add_worker(1), add_worker(2), add_worker(2);
     give(0, "a"), give(1, "b"), give(2, "c");
     share(sharing, 0);

@@ -191,7 +191,7 @@ TEST_F(Worker, IsWaitedForOnlyWhileSomethingIsExpected) {
     const TimeLimits limits{.wall = 5, .start = 10, .silence = 3};
     EXPECT_EQ(state.overdue(limits, 9), Overdue::nothing);
     EXPECT_EQ(state.overdue(limits, 11), Overdue::start);
-    EXPECT_EQ(state.overdue({.wall = 5, .start = 0, .silence = 3}, 1e9), Overdue::nothing);
+    EXPECT_EQ(state.overdue({.wall = 5, .start = {}, .silence = 3}, 1e9), Overdue::nothing);
     get_ready(9);
     EXPECT_EQ(state.overdue(limits, 1000), Overdue::nothing) << "it has nothing to do";
     state.give(first, 1000);

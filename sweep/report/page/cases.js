@@ -44,6 +44,8 @@ function caseColumns(model) {
 
 function caseTable(model, filtered) {
   const columns = caseColumns(model), rowHeight = 27, filters = columns.map(() => null);
+  // Filters and order outlive the table: newer data are shown through them.
+  const kept = (chosen.tables[campaignTitle(model.campaign)] ||= { filters: {}, sorted: null, scroll: 0 });
   let order = Array.from({ length: model.rows }, (_, row) => row), sorted = { column: -1, down: false }, shown = order;
   const widths = columns.map((column) => {
     let longest = Math.max(column.title.length + 2, column.unit.length + 1, 6);
@@ -52,8 +54,9 @@ function caseTable(model, filtered) {
   });
   const count = el("span", { class: "quiet" }), body = el("tbody"), above = el("td", { colspan: columns.length }), under = el("td", { colspan: columns.length });
   const arrows = columns.map(() => el("span", { class: "arrow" }));
-  const sortBy = (k) => {
-    sorted = { column: k, down: sorted.column === k && !sorted.down };
+  const sortBy = (k, down) => {
+    sorted = { column: k, down };
+    kept.sorted = { title: columns[k].title, down };
     const column = columns[k], sign = sorted.down ? -1 : 1;
     const key = order.map((_, row) => column.sort(row));
     order.sort((a, b) => {
@@ -65,7 +68,7 @@ function caseTable(model, filtered) {
     arrows.forEach((arrow, j) => { arrow.textContent = j === k ? (sorted.down ? " ▼" : " ▲") : ""; });
     refresh();
   };
-  const heads = columns.map((column, k) => el("th", { scope: "col", title: column.meaning }, el("button", { type: "button", click: () => sortBy(k) }, column.title, arrows[k]), el("small", {}, column.unit || "\u00a0")));
+  const heads = columns.map((column, k) => el("th", { scope: "col", title: column.meaning }, el("button", { type: "button", click: () => sortBy(k, sorted.column === k && !sorted.down) }, column.title, arrows[k]), el("small", {}, column.unit || "\u00a0")));
   let waiting = 0;
   const inputs = columns.map((column, k) => el("input", { type: "text", spellcheck: "false", autocomplete: "off", "aria-label": `filter ${column.title}`, title: filterHelp, placeholder: column.number ? ">…" : "…",
     input: (event) => {
@@ -73,12 +76,13 @@ function caseTable(model, filtered) {
       const wrong = typeof made === "string";
       event.target.classList.toggle("wrong", wrong);
       event.target.title = wrong ? made : filterHelp;
+      kept.filters[column.title] = event.target.value;
       if (wrong) return;
       filters[k] = made;
       clearTimeout(waiting);
       waiting = setTimeout(filter, model.rows > 3000 ? 180 : 60);
     } }));
-  const view = el("div", { class: "rows", tabindex: "0", scroll: () => requestAnimationFrame(paint) },
+  const view = el("div", { class: "rows", tabindex: "0", scroll: () => { kept.scroll = view.scrollTop; requestAnimationFrame(paint); } },
     el("table", { style: `width: ${widths.reduce((a, b) => a + b, 0)}px` }, el("colgroup", {}, widths.map((w) => el("col", { style: `width: ${w}px` }))),
       el("thead", {}, el("tr", {}, heads), el("tr", { class: "filters" }, inputs.map((input) => el("th", {}, input)))),
       el("tbody", { class: "space" }, el("tr", {}, above)), body, el("tbody", { class: "space" }, el("tr", {}, under))));
@@ -91,7 +95,6 @@ function caseTable(model, filtered) {
   function refresh() {
     shown = model.keep ? order.filter((row) => model.keep[row]) : order;
     count.textContent = model.keep ? `${shown.length} of ${plural(model.rows, "case")}` : plural(model.rows, "case");
-    view.scrollTop = 0;
     paint();
   }
   function paint() {
@@ -107,10 +110,33 @@ function caseTable(model, filtered) {
     const lines = [columns.map((column) => quoted(column.title)), ...shown.map((row) => columns.map((column) => cell(column, row)))].map((line) => line.join(","));
     save(fileName(model.campaign.name, "cases") + ".csv", new Blob([lines.join("\n") + "\n"], { type: "text/csv" }));
   }
-  const clear = () => { inputs.forEach((input, k) => { input.value = ""; input.classList.remove("wrong"); filters[k] = null; }); filter(); };
+  const clear = () => { inputs.forEach((input, k) => { input.value = ""; input.classList.remove("wrong"); filters[k] = null; }); kept.filters = {}; filter(); };
   count.textContent = plural(model.rows, "case");
+  // Values changed in place.
+  function renew() {
+    if (kept.sorted) sortBy(columns.findIndex((column) => column.title === kept.sorted.title), kept.sorted.down);
+    if (filters.some(Boolean)) filter();
+    paint();
+  }
+  function restore() {
+    columns.forEach((column, k) => {
+      const text = kept.filters[column.title];
+      if (!text) return;
+      inputs[k].value = text;
+      const made = filterOf(text, column);
+      if (typeof made !== "string") filters[k] = made;
+    });
+    if (filters.some(Boolean)) {
+      const tests = filters.filter(Boolean);
+      model.keep = Uint8Array.from({ length: model.rows }, (_, row) => (tests.every((test) => test(row)) ? 1 : 0));
+    }
+    const k = kept.sorted ? columns.findIndex((column) => column.title === kept.sorted.title) : -1;
+    if (k >= 0) sortBy(k, kept.sorted.down); else refresh();
+    view.scrollTop = kept.scroll;
+  }
   const node = el("div", { class: "card cases" }, el("div", { class: "controls" }, count, el("span", { class: "spring" }),
     button("Clear filters", clear), button("Save as CSV", csv)), view,
   el("p", { class: "says" }, filterHelp));
-  return { node, paint };
+  restore();
+  return { node, paint, renew, restoreScroll() { view.scrollTop = kept.scroll; } };
 }

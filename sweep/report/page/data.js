@@ -27,12 +27,25 @@ function open(index) {
   const factors = campaign.factors.map(variable), responses = campaign.observables.map(variable);
   const places = [variable({ name: "point", meaning: "number of the design point", values: campaign.points })];
   if (campaign.replicates > 1) places.push(variable({ name: "replicate", meaning: "repeat of the point", values: campaign.repeats }));
-  const outcomes = bytesOf(campaign.outcome_of.u8);
+  const outcomes = bytesOf(campaign.outcome_of.u8), words = [...campaign.outcome_of.of];
   const model = { index, campaign, rows: campaign.rows, factors, responses, places, variables: factors.concat(responses, places),
-    id: idsOf(campaign.ids), outcome: (row) => campaign.outcome_of.of[outcomes[row]],
+    id: idsOf(campaign.ids), outcome: (row) => words[outcomes[row]],
+    settle(row, outcome) { if (!words.includes(outcome)) words.push(outcome); outcomes[row] = words.indexOf(outcome); },
     keep: null /* rows that pass the filters of the case table; null: all */ };
   opened.set(index, model);
   return model;
+}
+
+// Rows of a case, which may stand at several places of the design.
+function rowsOf(model, id) {
+  if (!model.byId) {
+    model.byId = new Map();
+    for (let row = 0; row < model.rows; ++row) {
+      const here = model.id(row), rows = model.byId.get(here);
+      if (rows) rows.push(row); else model.byId.set(here, [row]);
+    }
+  }
+  return model.byId.get(id) || [];
 }
 
 function campaignTitle(campaign) { return data.databases.length > 1 ? `${campaign.name} (${campaign.database})` : campaign.name; }

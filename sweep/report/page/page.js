@@ -1,10 +1,18 @@
 // The page: its sections from top to bottom, and the reader's choices.
-const chosen = { campaign: 0, observable: 0, other: "", view: {}, map: {}, curvesBy: "" };
+const chosen = { campaign: 0, observable: 0, other: "", view: {}, map: {}, curvesBy: "", tables: {} };
+// What is drawn again when values of the chosen campaign changed in place.
+const dataChanged = [];
 
-function heading(campaign) {
-  const good = ["completed", "skipped", "abandoned", "not yet"];
-  const tiles = campaign.outcomes.filter(([, count]) => count > 0)
+function outcomeTiles(model) {
+  const good = ["completed", "skipped", "abandoned", "not yet"], counts = new Map(model.campaign.outcomes.map(([outcome]) => [outcome, 0]));
+  for (let row = 0; row < model.rows; ++row) counts.set(model.outcome(row), (counts.get(model.outcome(row)) || 0) + 1);
+  return [...counts].filter(([, count]) => count > 0)
     .map(([outcome, count]) => tile(count, outcome === "abandoned" ? "to be resumed" : outcome.replace("_", " "), !good.includes(outcome)));
+}
+
+function heading(model) {
+  const { campaign } = model, tiles = el("span", { class: "outcomes" }, outcomeTiles(model));
+  dataChanged.push(() => tiles.replaceChildren(...outcomeTiles(model)));
   const parts = [`${campaign.scene}, revision ${campaign.revision}`,
     `${campaign.design} design` + (campaign.sequences > 1 ? ` of ${campaign.sequences} independent sequences` : ""),
     plural(campaign.factors.length, "factor"),
@@ -136,12 +144,14 @@ function againstSection(model, response) {
 
 function plainCases(model) {
   const cases = caseTable(model, () => {});
+  dataChanged.push(() => cases.paint());
   return { cases, sections: [section("cases", "Cases", null, cases.node)] };
 }
 
 function explorerSections(model, response, other) {
   const large = explorer(model, other), map = model.factors.length > 1 ? factorMap(model, response) : null;
   const cases = caseTable(model, () => { large.redraw(); if (map) map.redraw(); });
+  dataChanged.push(() => { large.redraw(); if (map) map.redraw(); cases.renew(); });
   selectionChanged.length = 0;
   selectionChanged.push(() => cases.paint(), () => { const chart = figures.find((one) => one.title === "Cases"); if (chart && chart.chart) chart.chart.draw(); });
   const sections = [section("explore", "Explore", "Any factor or response against any other, coloured by a third.", el("div", { class: "grid full" }, large.node))];
@@ -188,11 +198,12 @@ function render() {
   const answered = settled || (response && model.responses[chosen.observable].values.some(Number.isFinite));
   if (answered && !chosen.view.x) firstView(model, response);
   let cases = null;
+  dataChanged.length = 0;
   showPage(() => {
     const explore = answered ? explorerSections(model, response, other) : plainCases(model);
     ({ cases } = explore);
-    return [...heading(campaign), comparedLine(campaign, response, other),
-      answered ? null : el("p", {}, campaign.observables.length === 0 ? "The scene measures series and profiles only." : "No case has a result yet."),
+    return [...heading(model), comparedLine(campaign, response, other),
+      answered ? null : el("p", { class: "says" }, campaign.observables.length === 0 ? "The scene measures series and profiles only." : "No case has a result yet."),
       settled ? bracketsSection(campaign) : null, calibrationSection(campaign), answered ? distributionSection(response, campaign.sample, other) : null,
       ...(settled ? [momentsSection(campaign, response, other), effectsSection(model, response, other), influenceSection(response), modelSection(campaign, response)] : []),
       answered ? filmsSection(model) : null, ...explore.sections, settled ? againstSection(model, response) : null, curvesSection(model),
@@ -201,11 +212,12 @@ function render() {
   cases.paint();
 }
 
-function fillObservables() {
-  const { campaign } = open(chosen.campaign), select = document.getElementById("observable");
+// `name`: the one to be chosen where there is such a one.
+function fillObservables(name) {
+  const { campaign } = open(chosen.campaign), wanted = campaign.observables.findIndex((one) => one.name === name), select = document.getElementById("observable");
   select.replaceChildren(...campaign.observables.map((o, i) => el("option", { value: i }, titled(o))));
-  chosen.observable = campaign.main;
-  select.value = String(campaign.main);
+  chosen.observable = wanted >= 0 ? wanted : campaign.main;
+  select.value = String(chosen.observable);
 }
 
 function fillOthers() {
@@ -215,17 +227,72 @@ function fillOthers() {
   select.value = chosen.other;
 }
 
-function start() {
-  document.title = `${data.databases.join(", ")} · grainsweep report`;
+// Takes newer data of the same databases; what the reader chose stays.
+function replaceData(fresh) {
+  const name = (index) => { const one = data.campaigns[Number(index)]; return one && `${one.database} ${one.name}`; };
+  const kept = { campaign: name(chosen.campaign), other: chosen.other === "" ? null : name(chosen.other), observable: observableName(), scroll: window.scrollY,
+    selected: selected && { campaign: name(selected.index), id: open(selected.index).id(selected.row) }, typing: typedInto(document.activeElement) };
+  const place = (text) => fresh.campaigns.findIndex((one) => `${one.database} ${one.name}` === text);
+  Object.assign(data, fresh);
+  opened.clear();
+  selected = null;
+  chosen.campaign = Math.max(0, place(kept.campaign));
+  chosen.other = kept.other === null || place(kept.other) < 0 ? "" : String(place(kept.other));
+  fillCampaigns();
+  if (data.campaigns.length === 0) return;
+  fillObservables(kept.observable);
+  fillOthers();
+  render();
+  if (kept.selected && place(kept.selected.campaign) >= 0) {
+    const model = open(place(kept.selected.campaign)), [row] = rowsOf(model, kept.selected.id);
+    if (row !== undefined) { selected = { index: model.index, row }; selectionChanged.forEach((changed) => changed()); }
+  }
+  if (kept.typing) kept.typing();
+  window.scrollTo(0, kept.scroll);
+  figures.filter((one) => inWindow(one.canvas)).forEach((one) => one.draw());
+}
+
+// Returns a function that goes on typing where the reader typed, in the field of the same name of a new page.
+function typedInto(field) {
+  if (!field || !field.matches("#page input[aria-label]")) return null;
+  const { selectionStart, selectionEnd } = field, label = field.getAttribute("aria-label");
+  return () => {
+    const again = [...document.querySelectorAll("#page input[aria-label]")].find((one) => one.getAttribute("aria-label") === label);
+    if (!again) return;
+    again.focus({ preventScroll: true });
+    again.setSelectionRange(selectionStart, selectionEnd);
+  };
+}
+
+function observableName() {
+  const one = data.campaigns[chosen.campaign] && data.campaigns[chosen.campaign].observables[chosen.observable];
+  return one && one.name;
+}
+
+function inWindow(node) {
+  const { top, bottom } = node.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
+}
+
+function fillCampaigns() {
   const campaigns = document.getElementById("campaign");
   campaigns.replaceChildren(...data.campaigns.map((c, i) => el("option", { value: i }, campaignTitle(c))));
+  campaigns.value = String(chosen.campaign);
   for (const id of ["campaign-choice", "other-choice"]) document.getElementById(id).hidden = data.campaigns.length < 2;
+  if (data.campaigns.length === 0) document.getElementById("page").replaceChildren(el("p", {}, "The database holds no campaign yet."));
+  return campaigns;
+}
+
+function start() {
+  document.title = `${data.databases.join(", ")} · grainsweep report`;
+  const campaigns = fillCampaigns();
   campaigns.addEventListener("change", () => { chosen.campaign = Number(campaigns.value); chosen.view = {}; fillObservables(); fillOthers(); render(); });
   const observables = document.getElementById("observable");
   observables.addEventListener("change", () => { chosen.observable = Number(observables.value); chosen.view = {}; render(); });
   const others = document.getElementById("other");
   others.addEventListener("change", () => { chosen.other = others.value; render(); });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", render);
+  if (data.campaigns.length === 0) return;
   fillObservables();
   fillOthers();
   render();

@@ -1,0 +1,152 @@
+#include "sweep/cli/accuracy_run.hpp"
+
+#include "sweep/campaign/case.hpp"
+#include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/relevance.hpp"
+#include "sweep/campaign/stored_text.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/program_campaign.hpp"
+#include "sweep/cli/progress.hpp"
+#include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/written_campaign.hpp"
+#include "sweep/store/expression.hpp"
+#include "sweep/workers/memory_room.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace grainsweep::cli {
+namespace {
+
+using campaign::Campaign;
+
+/// "0.35" -> "0p35": fit to be a part of a campaign's name.
+std::string name_part(const std::string& text) {
+    std::string part;
+    for (const char c : text) {
+        const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        part += plain ? c : c == '.' ? 'p' : c == '-' ? 'm' : '_';
+    }
+    return part;
+}
+
+/// The factors of the first points of the design that `where` keeps, one row each.
+std::vector<std::vector<Value>> first_points(const Campaign& campaign, std::int64_t count) {
+    const auto cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+    std::vector<std::vector<Value>> rows;
+    std::optional<std::uint32_t> last;
+    for (std::size_t i = 0; i < cases.size() && std::cmp_less(rows.size(), count); ++i) {
+        if (last == cases.place(i).point) continue;
+        last = cases.place(i).point;
+        const auto inputs = cases.question(i).inputs;
+        auto& row = rows.emplace_back();
+        for (const auto& factor : campaign.space.factors) row.push_back(inputs.at(factor.name));
+    }
+    return rows;
+}
+
+/// Whether a setting may decide an input: it is neither varied nor fixed by the file, and matters to some case.
+bool is_free(const Campaign& campaign, const Inputs& stated, const std::string& name) {
+    const auto& space = campaign.space;
+    const auto* parameter = space.scene->find_parameter(name);
+    if (parameter == nullptr || campaign::no_effect(space, *parameter)) return false;
+    if (std::ranges::find(space.factors, name, &campaign::Factor::name) != space.factors.end()) return false;
+    if (std::ranges::find(space.expressions, name, &campaign::Expression::name) != space.expressions.end())
+        return false;
+    return !stated.contains(name);
+}
+
+/// What is fixed and does not come from the accuracy setting of the file.
+Inputs fixed_by_file(const Campaign& campaign) {
+    Inputs stated = campaign.space.fixed;
+    const auto setting = campaign.scene().accuracy.find(campaign.accuracy);
+    if (setting == campaign.scene().accuracy.end()) return stated;
+    for (const auto& [name, value] : setting->second)
+        if (const auto held = stated.find(name); held != stated.end() && held->second == value) stated.erase(held);
+    return stated;
+}
+
+std::string value_words(const Value& value) {
+    return campaign::identity_text(value);
+}
+
+}  // namespace
+
+std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& against, std::int64_t points) {
+    const auto& scene = campaign.scene();
+    std::vector<std::string> offered;
+    for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
+    if (offered.empty())
+        throw campaign::wrong_question("CONFIG", campaign.name,
+                                       fmt::format("scene '{}' has no accuracy settings", scene.name));
+    const auto reference = scene.accuracy.find(against);
+    if (reference == scene.accuracy.end())
+        throw campaign::wrong_question("--against", against,
+                                       fmt::format("must be one of {}", campaign::listed(offered)),
+                                       campaign::nearest_word(against, offered));
+    if (designs::design_named(campaign.design).grows)
+        throw campaign::wrong_question("CONFIG", campaign.design,
+                                       "the points of this design depend on results; give a design that does not");
+    const auto rows = first_points(campaign, points);
+    const Inputs stated = fixed_by_file(campaign);
+    std::set<std::string> numerical;
+    for (const auto& [level, inputs] : scene.accuracy)
+        for (const auto& [name, value] : inputs) numerical.insert(name);
+    const std::vector<std::string> common(numerical.begin(), numerical.end());
+    std::vector<Numerics> all;
+    const auto add = [&](const std::string& name, const std::string& says, const std::string& accuracy, Inputs fixed) {
+        const campaign::OtherNumerics other{name, fmt::format("{} at {}, by grainsweep accuracy.", campaign.name, says),
+                                            accuracy, std::move(fixed), common};
+        all.push_back({name, says, campaign::with_other_numerics(campaign.text, other, rows)});
+    };
+    for (const auto& level : offered)
+        if (level != against) add(fmt::format("{}_{}", campaign.name, level), level, level, {});
+    std::set<std::pair<std::string, std::string>> moved;
+    for (const auto& [level, inputs] : scene.accuracy)
+        for (const auto& [name, value] : inputs) {
+            const auto standard = reference->second.find(name);
+            if (level == against || (standard != reference->second.end() && standard->second == value)) continue;
+            if (!is_free(campaign, stated, name) || !moved.emplace(name, value_words(value)).second) continue;
+            add(fmt::format("{}_{}_{}_{}", campaign.name, against, name, name_part(value_words(value))),
+                fmt::format("{} with {} = {}", against, name, value_words(value)), against, {{name, value}});
+        }
+    add(fmt::format("{}_{}", campaign.name, against), against, against, {});
+    return all;
+}
+
+AccuracyEnd run_accuracy(const AccuracyRun& run) {
+    const Campaign campaign = read_with_program(run.config);
+    const auto numerics =
+        campaign::asked_in(run.config, [&] { return numerics_of(campaign, run.against, run.points); });
+    AccuracyEnd end;
+    end.campaign = campaign.name;
+    const auto database = run.database.empty() ? std::filesystem::path(campaign.name + "_accuracy.db") : run.database;
+    const auto folder = std::filesystem::absolute(run.config).parent_path();
+    std::vector<study::NumericsCampaign> campaigns;
+    for (const auto& one : numerics) {
+        if (!run.quiet) std::cerr << fmt::format("{}: {}\n", one.name, one.says);
+        const WrittenCampaign file(folder, one.name, one.text, "accuracy");
+        RunRequest request;
+        request.config = file.path();
+        request.database = database;
+        request.workers = run.workers;
+        request.quiet = run.quiet;
+        const auto report = run_campaign(request);
+        campaigns.push_back({one.name, one.says});
+        constexpr int interrupted = 130;
+        if (report.exit_code == interrupted) {
+            end.exit_code = report.exit_code;
+            return end;
+        }
+    }
+    const store::Store store(database, store::Store::Mode::read);
+    end.costs = study::accuracy_of(store, campaigns);
+    return end;
+}
+
+}  // namespace grainsweep::cli

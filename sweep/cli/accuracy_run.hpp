@@ -1,0 +1,47 @@
+// `accuracy`: the same points of a campaign at every setting of the numerics, and with every single numerical input of
+// a cheaper setting beside the most accurate one.
+//
+// Each is a campaign of its own, NAME_fast, NAME_reference_precision_mixed, ..., in a database of their own, so that
+// the same command again goes on where it was interrupted, and more points extend what is there.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/study/accuracy.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::cli {
+
+/// One way to compute the points.
+struct Numerics {
+    std::string name;  ///< of its campaign
+    std::string says;
+    std::string text;  ///< its campaign file
+};
+
+/// The settings of the campaign's scene, then single inputs, then `against`. Throws WrongQuestion for a scene without
+/// settings, a setting that it has not, and a campaign whose points follow from answers.
+[[nodiscard]] std::vector<Numerics> numerics_of(const campaign::Campaign& campaign, const std::string& against,
+                                                std::int64_t points);
+
+struct AccuracyRun {
+    std::filesystem::path config, database;
+    std::string against = "reference";
+    std::int64_t points = 32;
+    std::optional<std::int64_t> workers;
+    bool quiet = false;
+};
+
+struct AccuracyEnd {
+    std::string campaign;
+    std::vector<study::NumericsCost> costs;  ///< the last is `against`
+    int exit_code = 0;                       ///< 0, or that of the run that was interrupted
+};
+
+[[nodiscard]] AccuracyEnd run_accuracy(const AccuracyRun& run);
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,58 @@
+// accuracy: error of a campaign's answers against their cost.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/accuracy_run.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/report/accuracy_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+namespace grainsweep::cli {
+namespace {
+
+struct AccuracyRequest : AccuracyRun {
+    std::vector<std::string> observables;
+    double tolerance = 0.01;
+};
+
+int accuracy(const AccuracyRequest& request, report::Format format) {
+    if (!(request.tolerance > 0 && request.tolerance < 1))
+        throw campaign::wrong_question("--tolerance", fmt::format("{}", request.tolerance),
+                                       "must be a number above 0 and below 1");
+    const auto end = run_accuracy(request);
+    if (end.costs.empty()) {
+        std::cerr << "interrupted; run it again to resume\n";
+        return end.exit_code;
+    }
+    report::write(std::cout, report::accuracy_document(end.campaign, end.costs, request.observables, request.tolerance),
+                  format);
+    return end.exit_code;
+}
+
+void declare_accuracy(Parser& parser, AccuracyRequest& request) {
+    parser.add_option("CONFIG", request.config, "campaign file");
+    parser
+        .add_option("--points N", request.points, "points of the campaign's design that are computed at each setting")
+        ->check(whole_number(2, 100'000))
+        ->capture_default_str();
+    parser.add_option("--against SETTING", request.against, "the setting whose answers are the measure")
+        ->capture_default_str();
+    parser.add_option("--observable NAME", request.observables, "scalar to be judged, may be repeated; default: all")
+        ->allow_extra_args(false);
+    parser.add_option("--tolerance X", request.tolerance, "largest error, relative to the mean")->capture_default_str();
+    parser.add_option("--db FILE", request.database, "database; default: NAME_accuracy.db in the current folder");
+    parser.add_option("-j N", request.workers, "worker processes; 0: all cores; default: execution.workers")
+        ->check(whole_number(0, 4096));
+    parser.add_flag("--quiet", request.quiet, "print no progress");
+}
+
+}  // namespace
+
+std::vector<Command> accuracy_commands() {
+    return {command<AccuracyRequest>("accuracy",
+                                     "measures error against cost of each accuracy setting and numerical input",
+                                     declare_accuracy, accuracy)};
+}
+
+}  // namespace grainsweep::cli

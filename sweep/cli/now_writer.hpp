@@ -1,0 +1,35 @@
+// Tells readers beside a run what it does now (live/now.hpp), once a second.
+#pragma once
+
+#include "sweep/live/now.hpp"
+#include "sweep/schedule/scheduler.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace grainsweep::cli {
+
+class NowWriter {
+public:
+    NowWriter(const std::filesystem::path& database, std::string campaign, std::size_t cores);
+    NowWriter(const NowWriter&) = delete;
+    NowWriter& operator=(const NowWriter&) = delete;
+    /// Removes the file.
+    ~NowWriter();
+
+    void update(const schedule::Progress& progress);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    std::filesystem::path file_;
+    live::Now now_;
+    std::size_t cores_;
+    Clock::time_point began_ = Clock::now(), written_{};
+    std::map<campaign::CaseId, Clock::time_point> since_;  ///< of the cases under way
+};
+
+}  // namespace grainsweep::cli

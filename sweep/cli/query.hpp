@@ -1,0 +1,19 @@
+// `query`: one statement that only reads, as text, csv, json or a workbook.
+#pragma once
+
+#include "sweep/report/table.hpp"
+
+#include <string>
+
+namespace grainsweep::cli {
+
+struct QueryRequest {
+    std::string database, sql;
+    std::string output;    ///< file of the workbook; empty: standard output
+    double seconds = 600;  ///< of processor time; 0: no limit
+};
+
+/// Returns the exit code. Throws WrongQuestion for a statement that is refused, and for a workbook on a terminal.
+[[nodiscard]] int query(const QueryRequest& request, report::Format format);
+
+}  // namespace grainsweep::cli

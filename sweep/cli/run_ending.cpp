@@ -1,0 +1,51 @@
+#include "sweep/cli/run_ending.hpp"
+
+#include <fmt/format.h>
+
+namespace grainsweep::cli {
+
+using schedule::Ending;
+
+std::string standing(const schedule::Judge* judge) {
+    if (judge == nullptr) return {};
+    if (const auto points = judge->converged_at()) return fmt::format("; converged at {} points", *points);
+    return "; not converged: " + judge->verdict();
+}
+
+std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
+    const auto left = [&](std::string_view how, std::string_view then = "; run again to resume") {
+        return fmt::format("{} with {} cases left{}{}", how, tally.questions - tally.decided, then, standing(judge));
+    };
+    switch (ending) {
+        case Ending::finished:
+            return (tally.failed == 0 ? "all cases are settled"
+                                      : fmt::format("all cases are finished, {} of them failed", tally.failed)) +
+                   standing(judge);
+        case Ending::converged:
+            return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
+        case Ending::limited:
+            return left("stopped");
+        case Ending::too_many_failures:
+            return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
+        case Ending::out_of_time:
+            return left("out of time");
+        case Ending::asked_to_end:
+            return left("ended by a signal");
+        case Ending::too_long:
+            return left("stopped",
+                        ", each predicted to exceed the time limit; extend it (execution.walltime, or the job's time "
+                        "limit)");
+        case Ending::interrupted:
+            return left("interrupted");
+    }
+    return {};
+}
+
+int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
+    if (ending == Ending::interrupted) return 130;
+    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
+    if (ending == Ending::converged) return 0;
+    return tally.failed == 0 && tally.decided == tally.questions ? 0 : 1;
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,20 @@
+// The last line of a run and its exit code.
+#pragma once
+
+#include "sweep/schedule/judge.hpp"
+#include "sweep/schedule/plan.hpp"
+#include "sweep/schedule/scheduler.hpp"
+
+#include <string>
+
+namespace grainsweep::cli {
+
+/// Returns what the last line says of convergence; empty where the campaign gives no rule.
+[[nodiscard]] std::string standing(const schedule::Judge* judge);
+/// Returns the sentence a run ends with.
+[[nodiscard]] std::string summary_of(schedule::Ending ending, const schedule::Plan::Tally& tally,
+                                     const schedule::Judge* judge);
+/// Returns 0: every case is settled, or the campaign converged; 1: some are not; 75: out of time; 130: interrupted.
+[[nodiscard]] int exit_code(schedule::Ending ending, const schedule::Plan::Tally& tally);
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,146 @@
+#include "sweep/live/follower.hpp"
+
+#include "sweep/files/broken_world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace grainsweep::live {
+namespace {
+
+using campaign::JsonText;
+
+std::int64_t whole(const store::Table::Cell& cell) {
+    const auto* number = std::get_if<std::int64_t>(&cell);
+    return number == nullptr ? 0 : *number;
+}
+std::string words(const store::Table::Cell& cell) {
+    const auto* text = std::get_if<std::string>(&cell);
+    return text == nullptr ? std::string() : *text;
+}
+
+double seconds_from(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+constexpr double rest_after_whole = 100;  // times what reading all cases took
+
+/// Differs between two results of a case; never 0. Beginning an attempt leaves it as it is.
+std::uint32_t mark_of(std::string_view outcome, const store::Table::Cell& wall_seconds, std::int64_t failures) {
+    const auto* seconds = std::get_if<double>(&wall_seconds);
+    const std::size_t hash = std::hash<std::string_view>{}(outcome) ^
+                             std::hash<double>{}(seconds == nullptr ? -1 : *seconds) * 0x9E3779B97F4A7C15U ^
+                             static_cast<std::size_t>(failures) * 0xC2B2AE3D27D4EB4FU;
+    return static_cast<std::uint32_t>(hash >> 32U ^ hash) | 1U;
+}
+
+}  // namespace
+
+Follower::Follower(std::filesystem::path database)
+    : database_(std::move(database)), store_(database_, store::Store::Mode::read) {
+    while (!fresh(1).empty()) {
+    }
+}
+
+Follower::Stamp Follower::stamp() const {
+    std::error_code absent;
+    auto log = database_;
+    log += "-wal";
+    return {std::filesystem::file_size(database_, absent), std::filesystem::file_size(log, absent),
+            std::filesystem::last_write_time(database_, absent), std::filesystem::last_write_time(log, absent)};
+}
+
+std::vector<Follower::Settled> Follower::fresh(std::int64_t first) {
+    std::vector<Settled> found;
+    bool gapless = true;
+    const auto each = [&](const std::vector<store::Table::Cell>& row) {
+        gapless = gapless && row[1].index() != 0 && found.size() < most_at_once;
+        if (row[1].index() == 0) return;
+        if (gapless) first_open_ = whole(row[0]) + 1;
+        const auto key = static_cast<std::size_t>(whole(row[0]));
+        if (known_.size() <= key) known_.resize(key + 1 + key / 2, 0);
+        const auto mark = mark_of(words(row[1]), row[4], whole(row[5]));
+        if (known_[key] == mark || found.size() >= most_at_once) return;
+        known_[key] = mark;
+        found.push_back({whole(row[0]), whole(row[2]), words(row[3]), words(row[1])});
+    };
+    store_.query(
+        fmt::format("SELECT case_key, outcome, attempts, case_id, wall_seconds, failures FROM sim_case "
+                    "WHERE case_key >= {} ORDER BY case_key",
+                    first),
+        {}, [](const auto&) {}, each);
+    return found;
+}
+
+std::vector<JsonText> Follower::told(std::span<const Settled> settled) const {
+    std::map<std::int64_t, JsonText> values, reasons;
+    std::string keys;
+    for (const auto& one : settled) fmt::format_to(std::back_inserter(keys), "{}{}", keys.empty() ? "" : ",", one.key);
+    store_.query(
+        fmt::format("SELECT o.case_key, b.name, o.value FROM observation AS o JOIN observable AS b "
+                    "USING (observable_id) WHERE o.case_key IN ({}) AND o.sample = 0 AND b.shape = 'scalar'",
+                    keys),
+        {}, [](const auto&) {},
+        [&](const auto& row) {
+            if (const auto* number = std::get_if<double>(&row[2]))
+                values.try_emplace(whole(row[0]), JsonText::object()).first->second.add(words(row[1]), *number);
+        });
+    store_.query(
+        fmt::format("SELECT case_key, message FROM attempt WHERE case_key IN ({}) AND message <> '' "
+                    "ORDER BY case_key, number",
+                    keys),
+        {}, [](const auto&) {},
+        [&](const auto& row) { reasons.insert_or_assign(whole(row[0]), JsonText(words(row[1]))); });
+    std::vector<JsonText> results;
+    for (const auto& one : settled) {
+        const auto known = values.find(one.key);
+        results.push_back({{"case", one.id},
+                           {"outcome", one.outcome},
+                           {"attempts", one.attempts},
+                           {"values", known == values.end() ? JsonText::object() : known->second}});
+        const auto reason = reasons.find(one.key);
+        if (reason != reasons.end()) results.back().add("reason", reason->second);
+    }
+    return results;
+}
+
+std::vector<JsonText> Follower::poll() {
+    constexpr std::size_t in_one_question = 500;
+    const auto now = stamp();
+    const bool whole_due = seen_whole_ != now && seconds_from(looked_whole_) >= rest_after_whole * whole_seconds_;
+    if (seen_ == now && !whole_due) return {};
+    const auto start = Clock::now();
+    const auto settled = fresh(whole_due ? 1 : first_open_);
+    if (settled.size() < most_at_once) {
+        seen_ = now;
+        if (whole_due) seen_whole_ = now;
+    }
+    if (whole_due) {
+        looked_whole_ = Clock::now();
+        whole_seconds_ = seconds_from(start);
+    }
+    std::vector<JsonText> results;
+    results.reserve(settled.size());
+    for (std::size_t first = 0; first < settled.size(); first += in_one_question)
+        for (auto& one : told(std::span(settled).subspan(first, std::min(in_one_question, settled.size() - first))))
+            results.push_back(std::move(one));
+    return results;
+}
+
+bool Follower::in_place() const {
+    try {
+        store_.require_in_place();
+        return true;
+    } catch (const BrokenWorld&) {
+        return false;
+    }
+}
+
+}  // namespace grainsweep::live

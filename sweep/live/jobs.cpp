@@ -1,0 +1,106 @@
+#include "sweep/live/jobs.hpp"
+
+#include "sweep/workers/process_start.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+namespace grainsweep::live {
+namespace {
+
+/// A file in memory that ends with its descriptors.
+files::Descriptor file_in_memory() {
+    return files::Descriptor(::memfd_create("grainsweep", MFD_CLOEXEC));
+}
+
+std::string all_of(const files::Descriptor& file) {
+    struct stat about {};
+    if (::fstat(file.number(), &about) != 0) return {};
+    std::string text(static_cast<std::size_t>(about.st_size), '\0');
+    const auto count = ::pread(file.number(), text.data(), text.size(), 0);
+    text.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
+    return text;
+}
+
+}  // namespace
+
+Jobs::~Jobs() {
+    for (const auto& [number, job] : jobs_) {
+        if (job.code) continue;
+        ::kill(-job.process, SIGKILL);
+        ::waitpid(job.process, nullptr, 0);
+    }
+}
+
+bool Jobs::Job::goes_on() {
+    int status = 0;
+    if (!code && ::waitpid(process, &status, WNOHANG) != 0)
+        code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + workers::ending_signal(status);
+    return !code;
+}
+
+std::optional<std::int64_t> Jobs::start(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                                        const Bounds& bounds) {
+    const auto running = std::ranges::count_if(jobs_, [](auto& one) { return one.second.goes_on(); });
+    if (static_cast<std::size_t>(running) >= bounds.most_at_once) return std::nullopt;
+    if (jobs_.size() >= most_kept)
+        jobs_.erase(std::ranges::find_if(jobs_, [](const auto& one) { return one.second.code.has_value(); }));
+    workers::ProcessStart start;
+    if (const auto nice = workers::find_program("nice"); !nice.empty()) start.argv = {nice, "-n", "10"};
+    start.argv.push_back(std::filesystem::read_symlink("/proc/self/exe").string());
+    start.argv.insert(start.argv.end(), arguments.begin(), arguments.end());
+    Job job{0, file_in_memory(), file_in_memory()};
+    const files::Descriptor inside(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+    if (!job.out.is_open() || !job.err.is_open() || !inside.is_open()) return std::nullopt;
+    start.streams = {-1, job.out.number(), job.err.number()};
+    start.folder = inside.number();
+    start.file = bounds.most_bytes;
+    start.stranger = true;
+    std::error_code error;
+    job.process = workers::start_process(start, error);
+    if (job.process < 0) return std::nullopt;
+    jobs_.emplace(++last_, std::move(job));
+    return last_;
+}
+
+Jobs::State Jobs::look_at(std::int64_t number) {
+    const auto found = jobs_.find(number);
+    if (found == jobs_.end()) return {};
+    auto& job = found->second;
+    if (job.goes_on()) return {.known = true, .ended = {}};
+    State state{true, Ended{*job.code, all_of(job.out), all_of(job.err)}};
+    jobs_.erase(found);
+    return state;
+}
+
+bool Runner::start(const std::vector<std::string>& arguments, const std::filesystem::path& database) {
+    auto log_file = database;
+    log_file.replace_extension(".run.log");
+    const files::Descriptor log(::open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    const files::Descriptor inside(::open(database.parent_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+    if (!log.is_open() || !inside.is_open()) return false;
+    workers::ProcessStart start;
+    start.argv = {std::filesystem::read_symlink("/proc/self/exe").string()};
+    start.argv.insert(start.argv.end(), arguments.begin(), arguments.end());
+    start.streams = {-1, log.number(), log.number()};
+    start.folder = inside.number();
+    std::error_code error;
+    const pid_t process = workers::start_process(start, error);
+    if (process >= 0) process_ = process;
+    return process >= 0;
+}
+
+bool Runner::running() {
+    if (process_ && ::waitpid(*process_, nullptr, WNOHANG) != 0) process_.reset();
+    return process_.has_value();
+}
+
+}  // namespace grainsweep::live

@@ -1,0 +1,324 @@
+#include "sweep/live/served.hpp"
+
+#include "sweep/campaign/case.hpp"
+#include "sweep/campaign/json_writer.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/whole_file.hpp"
+#include "sweep/report/page.hpp"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <csignal>
+#include <iterator>
+#include <sstream>
+#include <system_error>
+
+namespace grainsweep::live {
+namespace {
+
+namespace fs = std::filesystem;
+using campaign::JsonText;
+
+constexpr double least_pause = 0.4, rest_after_poll = 20;  // s; times what a poll took
+constexpr auto now_pause = std::chrono::seconds(1);
+constexpr std::size_t most_recent = 32U << 20U;  // bytes of events kept for readers that were away
+// A film takes as long as its case: SQL is still answered beside two of them.
+constexpr Jobs::Bounds of_query{.most_at_once = 4, .most_bytes = 16 << 20},
+    of_film{.most_at_once = 2, .most_bytes = 256 << 20};
+constexpr std::string_view json_type = "application/json";
+
+std::string drawn_word(std::size_t bytes) {
+    std::string raw(bytes, '\0'), word;
+    if (::getrandom(raw.data(), raw.size(), 0) != static_cast<ssize_t>(raw.size()))
+        throw BrokenWorld("the system gives no random numbers for the token of the page");
+    for (const char c : raw) word += fmt::format("{:02x}", static_cast<unsigned char>(c));
+    return word;
+}
+
+/// Takes as long for every text of that length, so that its time says nothing of how much is right.
+bool same_word(std::string_view given, std::string_view right) {
+    if (given.size() != right.size()) return false;
+    unsigned difference = 0;
+    for (std::size_t i = 0; i < right.size(); ++i)
+        difference |= static_cast<unsigned char>(given[i]) ^ static_cast<unsigned char>(right[i]);
+    return difference == 0;
+}
+
+bool of_this_machine(std::string_view host) {
+    const auto name = host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':'));
+    return name == "127.0.0.1" || name == "localhost" || name == "[::1]";
+}
+
+std::string_view argument(const HttpQuestion& question, std::string_view name) {
+    const auto found = question.query.find(name);
+    return found == question.query.end() ? std::string_view{} : std::string_view(found->second);
+}
+
+HttpReply refused(unsigned status, std::string sentence) {
+    return HttpAnswer{.status = status, .body = std::make_shared<const std::string>(std::move(sentence) + "\n")};
+}
+
+HttpReply json(const JsonText& value, unsigned status = 200) {
+    return HttpAnswer{
+        .status = status, .type = std::string(json_type), .body = std::make_shared<const std::string>(value.text())};
+}
+
+bool is_case_id(std::string_view word) {
+    return word.size() == 32 && word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+bool is_own_host(std::string_view name) {
+    std::array<char, 65> host{};
+    ::gethostname(host.data(), host.size() - 1);
+    return name == host.data();
+}
+
+/// Whether this process has the file open: the number comes from a file that anybody may have written.
+bool has_open(std::int64_t process, const fs::path& file) {
+    if (process <= 1) return false;
+    std::error_code error;
+    const fs::directory_iterator open_files(fmt::format("/proc/{}/fd", process), error);
+    return !error && std::ranges::any_of(open_files, [&](const auto& one) {
+        std::error_code ignored;
+        return fs::equivalent(one.path(), file, ignored);
+    });
+}
+
+std::vector<Follower> follow(const std::vector<fs::path>& databases) {
+    std::vector<Follower> followers;
+    followers.reserve(databases.size());
+    for (const auto& file : databases) followers.emplace_back(file);
+    return followers;
+}
+
+fs::path film_file(const fs::path& database, std::string_view id) {
+    fs::path folder = fs::absolute(database);
+    return folder.replace_extension(".films") / fmt::format("{}.html", id);
+}
+
+JsonText now_json(const Follower& follower) {
+    JsonText running;
+    if (const auto now = read_now(follower.file())) {
+        const auto running_json = [](const RunningCase& one) {
+            return JsonText{{"case", one.case_id},
+                            {"attempt", one.attempt},
+                            {"share", one.share},
+                            {"seconds", one.seconds},
+                            {"host", one.host}};
+        };
+        running = {{"campaign", now->campaign},   {"host", now->host},
+                   {"questions", now->questions}, {"decided", now->decided},
+                   {"failed", now->failed},       {"settled", now->settled},
+                   {"seconds", now->seconds},     {"seconds_left", now->seconds_left},
+                   {"judgement", now->judgement}, {"running", JsonText::list(now->running, running_json)}};
+    }
+    return {{"database", follower.file().filename().string()}, {"in_place", follower.in_place()}, {"run", running}};
+}
+
+}  // namespace
+
+std::string new_token() {
+    return drawn_word(16);
+}
+
+Served::Served(const std::vector<fs::path>& databases, std::optional<Control> control, std::string token)
+    : token_(std::move(token)),
+      run_(drawn_word(4)),
+      followers_(follow(databases)),
+      control_(std::move(control)),
+      page_(databases, told_) {
+    version_ = page_.latest()->version;
+}
+
+std::string Served::event(std::string_view kind, std::string_view data, std::int64_t number) const {
+    return fmt::format("id: {}-{}\nevent: {}\ndata: {}\n\n", run_, number, kind, data);
+}
+
+std::string Served::now_event() const {
+    return event("now",
+                 JsonText{{"databases", JsonText::list(followers_, now_json)}, {"error", page_.latest()->error}}.text(),
+                 told_.load());
+}
+
+std::string Served::changed() const {
+    return event("page", JsonText{{"version", version_}}.text(), told_.load());
+}
+
+std::string Served::look() {
+    const auto now = Clock::now();
+    const auto since = [&](Clock::time_point then) { return std::chrono::duration<double>(now - then).count(); };
+    std::string events;
+    if (since(polled_) >= std::max(least_pause, rest_after_poll * poll_seconds_)) {
+        std::size_t count = 0;
+        for (auto& follower : followers_) {
+            auto results = follower.poll();
+            if (results.empty()) continue;
+            count += results.size();
+            JsonText list = JsonText::array();
+            for (const auto& one : results) list.push_back(one);
+            told_ += static_cast<std::int64_t>(results.size());
+            auto text =
+                event("results", JsonText{{"database", follower.file().filename().string()}, {"results", list}}.text(),
+                      told_.load());
+            events += text;
+            recent_bytes_ += text.size();
+            recent_.emplace_back(told_.load(), std::move(text));
+        }
+        while (recent_bytes_ > most_recent && recent_.size() > 1) {
+            recent_bytes_ -= recent_.front().second.size();
+            recent_.pop_front();
+        }
+        polled_ = now;
+        poll_seconds_ = std::chrono::duration<double>(Clock::now() - now).count();
+        if (count > 0) page_.grown(computing_);
+    }
+    if (const auto latest = page_.latest(); latest->version != version_) {
+        version_ = latest->version;
+        events += event("page", JsonText{{"version", version_}}.text(), told_.load());
+    }
+    if (now - said_now_ >= now_pause) {
+        said_now_ = now;
+        const bool before = computing_;
+        computing_ = std::ranges::any_of(followers_, [](const auto& one) { return read_now(one.file()).has_value(); });
+        if (before && !computing_) page_.grown(false);  // the last figures of the run
+        events += now_event();
+    }
+    return events;
+}
+
+HttpReply Served::answer(const HttpQuestion& question) {
+    if (question.too_large)
+        return refused(413, fmt::format("the question has more than {} bytes", HttpServer::most_body));
+    if (!of_this_machine(question.host)) return refused(403, "this server answers to names of its own machine only");
+    if (!same_word(argument(question, "token"), token_))
+        return refused(403, "the token is wrong: open the address that `grainsweep serve` printed");
+    const bool asks = question.method == "GET", acts = question.method == "POST";
+    const auto& path = question.path;
+    if (asks && path == "/") return page();
+    if (asks && path == "/data") return data();
+    if (asks && path == "/events") return events(question);
+    if (asks && path == "/job") return job(question);
+    if (asks && path == "/film") return film(question);
+    if (acts && !question.origin.empty() && question.origin != "http://" + question.host)
+        return refused(403, "a page of another origin may not ask this");
+    if (acts && path == "/query") return start_query(question);
+    if (acts && path == "/film") return start_film(question);
+    if (acts && (path == "/stop" || path == "/run" || path == "/again")) return steer(question);
+    return asks || acts ? refused(404, "there is no such page") : refused(405, "only GET and POST");
+}
+
+HttpReply Served::page() const {
+    std::ostringstream stream;
+    const auto policy =
+        report::write_live_page(stream, fmt::format("{},\"event\":\"{}-{}\",\"steerable\":{}}}",
+                                                    page_.latest()->json.substr(0, page_.latest()->json.size() - 1),
+                                                    run_, page_.latest()->covered, control_.has_value()));
+    return HttpAnswer{.type = "text/html; charset=utf-8",
+                      .body = std::make_shared<const std::string>(std::move(stream).str()),
+                      .policy = policy};
+}
+
+HttpReply Served::data() const {
+    const auto latest = page_.latest();
+    return HttpAnswer{
+        .type = std::string(json_type),
+        .body = std::make_shared<const std::string>(fmt::format(
+            "{},\"event\":\"{}-{}\"}}", latest->json.substr(0, latest->json.size() - 1), run_, latest->covered))};
+}
+
+HttpReply Served::events(const HttpQuestion& question) const {
+    const std::string_view since = question.last_event.empty() ? argument(question, "since") : question.last_event;
+    std::int64_t number = -1;
+    if (since.starts_with(run_ + "-"))
+        std::from_chars(since.data() + run_.size() + 1, since.data() + since.size(), number);
+    std::string first = "retry: 1000\n\n";
+    const bool missed =
+        number < 0 || number > told_ || (!recent_.empty() && number < told_ && number + 1 < recent_.front().first);
+    if (missed) first += event("page", JsonText{{"version", version_}}.text(), told_.load());
+    for (const auto& [last, text] : recent_)
+        if (last > number) first += text;
+    return HttpStream{first + now_event()};
+}
+
+const Follower* Served::asked(const HttpQuestion& question) const {
+    const auto name = argument(question, "database");
+    for (const auto& follower : followers_)
+        if (follower.file().filename().string() == name) return &follower;
+    return name.empty() && followers_.size() == 1 ? &followers_.front() : nullptr;
+}
+
+HttpReply Served::start_query(const HttpQuestion& question) {
+    const auto* follower = asked(question);
+    if (follower == nullptr) return refused(404, "there is no such database");
+    if (question.body.empty()) return refused(400, "the question is empty");
+    const auto file = fs::absolute(follower->file());
+    const auto number =
+        jobs_.start({"query", "--format", "json", "--limit-seconds", "10", "--", file.string(), question.body},
+                    file.parent_path(), of_query);
+    return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
+}
+
+HttpReply Served::start_film(const HttpQuestion& question) {
+    const auto* follower = asked(question);
+    const auto id = argument(question, "case");
+    if (follower == nullptr || !is_case_id(id)) return refused(404, "there is no such case");
+    const auto file = fs::absolute(follower->file()), film = film_file(file, id);
+    std::error_code error;
+    if (fs::exists(film, error)) return json({{"film", true}});
+    fs::create_directories(film.parent_path(), error);
+    if (error) return refused(500, fmt::format("'{}': {}", film.parent_path().string(), error.message()));
+    const auto number =
+        jobs_.start({"replay", file.string(), std::string(id), "--watch", film.string()}, file.parent_path(), of_film);
+    return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
+}
+
+HttpReply Served::film(const HttpQuestion& question) const {
+    const auto* follower = asked(question);
+    const auto id = argument(question, "case");
+    if (follower == nullptr || !is_case_id(id)) return refused(404, "there is no such case");
+    std::error_code error;
+    auto text = files::whole_file(film_file(follower->file(), id), error);
+    if (error) return refused(404, "there is no film of this case yet");
+    return HttpAnswer{.type = "text/html; charset=utf-8", .body = std::make_shared<const std::string>(std::move(text))};
+}
+
+HttpReply Served::job(const HttpQuestion& question) {
+    const auto word = argument(question, "number");
+    std::int64_t number = 0;
+    std::from_chars(word.data(), word.data() + word.size(), number);
+    const auto state = jobs_.look_at(number);
+    if (!state.known) return refused(404, "there is no such job");
+    if (!state.ended) return json({{"running", true}});
+    return json({{"code", state.ended->code}, {"out", state.ended->out}, {"err", state.ended->err}});
+}
+
+HttpReply Served::steer(const HttpQuestion& question) {
+    if (!control_) return refused(403, "`grainsweep serve --control CONFIG` allows this");
+    const auto* follower = asked(question);
+    if (follower == nullptr) return refused(404, "there is no such database");
+    const auto file = fs::absolute(follower->file());
+    const auto now = read_now(file);
+    if (question.path == "/stop") {
+        if (!now) return refused(409, "nothing runs");
+        if (!is_own_host(now->host)) return refused(409, fmt::format("the run is on host {}", now->host));
+        if (!has_open(now->process, file) || ::kill(static_cast<pid_t>(now->process), SIGINT) != 0)
+            return refused(409, "the run has ended");
+        return json({{"stopping", true}});
+    }
+    if (now || runner_.running()) return refused(409, "a run is under way; stop it first");
+    std::vector<std::string> arguments = {"run", fs::absolute(control_->config).string(), "--db", file.string()};
+    if (question.path == "/again") {
+        const auto outcome = argument(question, "outcome");
+        if (!campaign::outcome_named(outcome)) return refused(400, "there is no such outcome");
+        arguments.insert(arguments.end(), {"--again", std::string(outcome)});
+    }
+    if (!runner_.start(arguments, file)) return refused(503, "the run cannot be started");
+    return json({{"started", true}});
+}
+
+}  // namespace grainsweep::live

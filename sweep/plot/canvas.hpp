@@ -1,0 +1,43 @@
+// What is drawn on: lines and texts in points of print (1/72 inch), y downwards.
+#pragma once
+
+#include "sweep/plot/plot.hpp"
+
+#include <cairo.h>
+
+#include <string>
+#include <vector>
+
+namespace grainsweep::plot {
+
+inline constexpr double points_per_mm = 72 / 25.4;
+inline constexpr double title_size = 8, label_size = 7, line_height = 1.25;
+
+/// Which point of a text stands at a place.
+enum class Anchor { start, middle, end };
+
+class Canvas {
+public:
+    /// `context` stays its owner's.
+    explicit Canvas(cairo_t* context);
+
+    [[nodiscard]] cairo_t* context() const { return context_; }
+    void use(Colour tone);
+    void use(Colour tone, double line_width, bool dashed = false);
+    void segment(double x0, double y0, double x1, double y1);
+    void rectangle(double left, double top, double right, double bottom);
+    void stroke();
+    void fill();
+
+    /// Width of a line of text. Raised digits (m³, 10⁻⁶) are drawn as small ones, which every font has.
+    [[nodiscard]] double width(const std::string& text, double size);
+    /// `y` is the middle of small letters' height; `turn` in radians, clockwise.
+    void text(double x, double y, const std::string& text, double size, Anchor anchor = Anchor::start, double turn = 0);
+    /// The text in lines no longer than `length`, broken at spaces.
+    [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, double size, double length);
+
+private:
+    cairo_t* context_;
+};
+
+}  // namespace grainsweep::plot

@@ -1,0 +1,12 @@
+// The marks of a panel, drawn between its axes.
+#pragma once
+
+#include "sweep/plot/axes.hpp"
+
+namespace grainsweep::plot {
+
+void draw_mark(Canvas& canvas, const PlacedAxis& x, const PlacedAxis& y, const Mark& mark);
+/// A sign as Points are drawn.
+void draw_sign(Canvas& canvas, double x, double y, Points::Shape shape, double radius, Colour tone);
+
+}  // namespace grainsweep::plot

@@ -1,0 +1,143 @@
+#include "sweep/report/accuracy_tables.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/study/error_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace grainsweep::report {
+namespace {
+
+using Cell = store::Table::Cell;
+using study::Bias;
+using study::NumericsCost;
+
+std::string share_text(double share) {
+    return std::isfinite(share) ? fmt::format("{:.2g} %", 100 * share) : "-";
+}
+
+store::Table text_table(std::span<const NumericsCost> costs, const std::string& observable) {
+    store::Table table{{"setting", "core-s a case", "pairs", "bias", "of the mean", "at most"}, {}};
+    std::vector<const NumericsCost*> by_cost;
+    for (const auto& cost : costs) by_cost.push_back(&cost);
+    std::ranges::stable_sort(by_cost, {}, &NumericsCost::seconds);
+    for (const auto* one : by_cost) {
+        const auto& cost = *one;
+        const auto found = std::ranges::find(cost.biases, observable, &Bias::observable);
+        if (found == cost.biases.end()) continue;
+        const bool last = one == &costs.back();
+        table.rows.push_back({cost.numerics.says, to_cell(cost.seconds), static_cast<std::int64_t>(found->pairs),
+                              last ? Cell{"the measure"} : Cell{study::with_error(found->bias, found->half_width)},
+                              last ? Cell{} : Cell{share_text(found->bias / std::abs(found->mean))},
+                              last ? Cell{} : Cell{share_text(found->relative_bound())}});
+    }
+    return table;
+}
+
+/// Points at which the bias of a setting would be known to be within the tolerance, if it is as found; of the cheapest
+/// setting that can be.
+std::string points_text(std::span<const NumericsCost> costs, std::span<const std::string> observables,
+                        double tolerance) {
+    const NumericsCost* cheapest = nullptr;
+    double points = 0;
+    for (const auto& cost : costs.first(costs.size() - 1)) {
+        double needed = 0;
+        for (const auto& name : observables) {
+            const auto one = std::ranges::find(cost.biases, name, &Bias::observable);
+            const double room = tolerance * std::abs(one->mean) - std::abs(one->bias);
+            const double ratio = room > 0 ? one->half_width / room : std::numeric_limits<double>::infinity();
+            needed = std::max(needed, static_cast<double>(one->pairs) * ratio * ratio);
+        }
+        if (!std::isfinite(needed) || (cheapest != nullptr && cost.seconds >= cheapest->seconds)) continue;
+        cheapest = &cost;
+        points = needed;
+    }
+    return cheapest == nullptr
+               ? std::string()
+               : fmt::format("; about {:.2g} points would show it of {}", points, cheapest->numerics.says);
+}
+
+store::Table all_rows(std::string_view campaign, std::span<const NumericsCost> costs) {
+    store::Table table{{"campaign", "setting", "observable", "unit", "cases", "answered", "core_seconds", "pairs",
+                        "mean", "bias", "bias_error", "scatter", "relative_bound"},
+                       {}};
+    for (const auto& cost : costs)
+        for (const auto& one : cost.biases)
+            table.rows.push_back({std::string(campaign), cost.numerics.says, one.observable, one.unit,
+                                  static_cast<std::int64_t>(cost.cases), static_cast<std::int64_t>(cost.answered),
+                                  to_cell(cost.seconds), static_cast<std::int64_t>(one.pairs), to_cell(one.mean),
+                                  to_cell(one.bias), to_cell(one.half_width), to_cell(one.scatter),
+                                  to_cell(one.relative_bound())});
+    return table;
+}
+
+std::vector<std::string> names_in(std::span<const NumericsCost> costs) {
+    std::vector<std::string> names;
+    for (const auto& one : costs.back().biases) names.push_back(one.observable);
+    return names;
+}
+
+}  // namespace
+
+Document accuracy_document(std::string_view campaign, std::span<const NumericsCost> costs,
+                           std::span<const std::string> observables, double tolerance) {
+    Document document;
+    if (costs.empty()) return document;
+    const auto known = names_in(costs);
+    for (const auto& name : observables)
+        if (std::ranges::count(known, name) == 0)
+            throw campaign::wrong_question(
+                "--observable", name, fmt::format("no case has a value of it; there are {}", campaign::listed(known)),
+                campaign::nearest_word(name, known));
+    const std::vector<std::string> asked =
+        observables.empty() ? known : std::vector<std::string>(observables.begin(), observables.end());
+    for (const auto& name : asked) {
+        const auto& reference = *std::ranges::find(costs.back().biases, name, &Bias::observable);
+        document.say(fmt::format("{}: {}{}, mean {:.6g}", campaign, name,
+                                 reference.unit.empty() || reference.unit == "1" ? "" : " (" + reference.unit + ")",
+                                 reference.mean));
+        document.show(text_table(costs, name));
+        document.say();
+    }
+    const auto best = study::cheapest_within(costs, asked, tolerance);
+    const auto& measure = costs.back();
+    const auto subject = asked.size() == 1 ? asked.front() : fmt::format("{} observables", asked.size());
+    document.say(
+        best ? fmt::format("within {} of {} at 95 %: {}, {:.3g} core-s a case, {:.3g} times cheaper than {}",
+                           share_text(tolerance), subject, costs[*best].numerics.says, costs[*best].seconds,
+                           measure.seconds / costs[*best].seconds, measure.numerics.says)
+             : fmt::format("no cheaper setting is shown to be within {} of {} at 95 %: {} takes {:.3g} core-s a "
+                           "case{}",
+                           share_text(tolerance), subject, measure.numerics.says, measure.seconds,
+                           points_text(costs, asked, tolerance)));
+    document.rows = all_rows(campaign, costs);
+    const auto setting_json = [](const NumericsCost& cost) {
+        const auto bias_json = [](const Bias& one) {
+            return Json{{"observable", one.observable},
+                        {"unit", one.unit},
+                        {"pairs", one.pairs},
+                        {"mean", one.mean},
+                        {"bias", one.bias},
+                        {"bias_error", one.half_width},
+                        {"scatter", one.scatter},
+                        {"relative_bound", one.relative_bound()}};
+        };
+        return Json{{"setting", cost.numerics.says}, {"campaign", cost.numerics.campaign},
+                    {"cases", cost.cases},           {"answered", cost.answered},
+                    {"core_seconds", cost.seconds},  {"biases", Json::list(cost.biases, bias_json)}};
+    };
+    document.value = {{"campaign", campaign},
+                      {"tolerance", tolerance},
+                      {"observables", asked},
+                      {"cheapest", best ? Json(costs[*best].numerics.says) : Json()},
+                      {"settings", Json::list(costs, setting_json)}};
+    return document;
+}
+
+}  // namespace grainsweep::report

@@ -1,0 +1,196 @@
+// The page of `grainsweep serve`: the report whose data grows. Results come one by one and are drawn at once; figures that
+// need all of them (moments, indices, models) come with the next data of the whole page.
+const token = new URLSearchParams(location.search).get("token");
+const address = (path, more) => `${path}?${new URLSearchParams({ token, ...more })}`;
+
+async function ask(path, more, body) {
+  const answer = await fetch(address(path, more), body === undefined ? {} : { method: "POST", body });
+  if (!answer.ok) throw new Error((await answer.text()).trim() || `the server answers ${answer.status}`);
+  return answer.json();
+}
+
+// Asks for work and waits for its end.
+async function work(path, more, body) {
+  const begun = await ask(path, more, body);
+  if (begun.job === undefined) return begun;
+  for (;;) {
+    await new Promise((go) => setTimeout(go, 300));
+    const state = await ask("job", { number: begun.job });
+    if (state.running) continue;
+    if (state.code !== 0) throw new Error(state.err.trim().replace(/^grainsweep: /, "") || `it ended with code ${state.code}`);
+    return state;
+  }
+}
+
+// ---- what runs now
+
+function spanText(seconds) {
+  if (!Number.isFinite(seconds)) return "";
+  const s = Math.round(seconds), two = (n) => String(n).padStart(2, "0");
+  return s < 60 ? `${s} s` : s < 3600 ? `${Math.floor(s / 60)}:${two(s % 60)} min` : `${Math.floor(s / 3600)}:${two(Math.floor((s % 3600) / 60))} h`;
+}
+
+const live = { now: null, lost: false, failures: [], panel: el("section", { id: "now", "aria-live": "polite" }) };
+
+// Where a case stands, in words: its point and its factors.
+function placeOf(database, id) {
+  for (let index = 0; index < data.campaigns.length; ++index) {
+    if (data.campaigns[index].database !== database) continue;
+    const model = open(index), rows = rowsOf(model, id);
+    if (rows.length > 0) return { model, row: rows[0] };
+  }
+  return null;
+}
+
+function runningTable(state) {
+  const shown = state.run.running.slice(0, 64);
+  const rows = shown.map((one) => {
+    const place = placeOf(state.database, one.case);
+    const factors = place ? place.model.factors.map((f) => `${f.name} ${f.levels.length > 0 ? textOf(f, place.row) : quantity(f).says(f.values[place.row])}`).join(", ") : "";
+    const done = one.share === null ? el("span", {}, "begins") : el("progress", { max: 1, value: one.share, title: `${Math.round(100 * one.share)} %` });
+    return [place ? place.model.places[0].values[place.row] : "", done, spanText(one.seconds), factors, one.attempt, one.host,
+      place ? el("button", { type: "button", class: "plain", click: () => selectCase(place.model, place.row) }, one.case.slice(0, 10)) : one.case.slice(0, 10)];
+  });
+  const more = state.run.running.length - shown.length;
+  return [table([["point", "number"], ["done"], ["for", "number"], ["factors", "text"], ["attempt", "number"], ["host"], ["case"]], rows),
+    more > 0 ? el("p", { class: "says" }, `and ${more} more`) : null];
+}
+
+function steering(state) {
+  if (!data.steerable) return null;
+  const said = el("span", { class: "quiet" });
+  const act = (path, more) => async () => { try { await ask(path, { database: state.database, ...more }, ""); said.textContent = "asked"; } catch (error) { said.textContent = error.message; } };
+  return el("div", { class: "controls" }, state.run ? button("Stop after the running cases", act("stop")) : [button("Run", act("run")),
+    button("Run crashed cases again", act("again", { outcome: "crashed" })), button("Run timed-out cases again", act("again", { outcome: "timed_out" }))], said);
+}
+
+function stateOf(state) {
+  const many = data.databases.length > 1, name = many ? `${state.database}: ` : "";
+  if (!state.in_place) return el("div", { class: "verdict no" }, `${name}the database was moved or deleted. The page shows what it held.`);
+  if (!state.run) return el("div", { class: "card" }, el("p", { class: "says" }, `${name}no run is under way.`), steering(state));
+  const { run } = state, share = run.questions > 0 ? run.decided / run.questions : 1, rate = run.seconds > 0 ? run.settled / run.seconds : 0;
+  const facts = [`${run.decided} of ${plural(run.questions, "case")}`, rate > 0 ? (rate >= 0.5 ? `${show(rate, 3)}/s` : `${show(60 * rate, 3)}/min`) : null,
+    run.decided < run.questions ? `${spanText(run.seconds_left)} left` : null, run.failed > 0 ? `${run.failed} failed` : null].filter(Boolean).join(" · ");
+  return el("div", { class: "card" },
+    el("div", { class: "caption" }, el("h3", {}, `${name}${run.campaign}`), el("span", { class: "quiet" }, facts)),
+    el("progress", { class: "whole", max: 1, value: share, "aria-label": "share of the cases that are decided" }),
+    run.judgement ? el("p", { class: "says" }, run.judgement) : null, runningTable(state), steering(state));
+}
+
+function failuresNow() {
+  if (live.failures.length === 0) return null;
+  return el("div", { class: "card" }, el("h3", {}, "Failed since this page was opened"),
+    table([["case"], ["outcome"], ["reason", "text"]], live.failures.slice(-8).reverse().map((one) => [one.case.slice(0, 10), one.outcome.replace("_", " "), one.reason || ""])));
+}
+
+function showNow() {
+  if (live.panel.contains(document.activeElement) && document.activeElement.tagName !== "BUTTON") return;
+  const away = live.lost ? el("div", { class: "verdict no" }, "The server does not answer. The page shows the last it said and asks again.") : null;
+  const broken = live.now && live.now.error ? el("div", { class: "verdict no" }, live.now.error) : null;
+  live.panel.replaceChildren(...[away, broken, ...(live.now ? live.now.databases.map(stateOf) : []), failuresNow()].filter(Boolean));
+}
+
+// ---- results as they come
+
+const waiting = new Map();  // results by the case's id, not drawn yet
+let drawing = 0, drawCost = 0;
+
+function take(database, results) {
+  for (const one of results) {
+    waiting.set(`${database} ${one.case}`, { database, one });
+    if (!["completed", "skipped", "abandoned"].includes(one.outcome)) live.failures.push(one);
+  }
+  live.failures.splice(0, Math.max(0, live.failures.length - 50));
+  if (!drawing) drawing = setTimeout(draw, Math.max(400, 5 * drawCost));
+}
+
+function draw() {
+  drawing = 0;
+  const begun = performance.now(), touched = new Set();
+  for (let index = 0; index < data.campaigns.length; ++index) {
+    const model = open(index);
+    for (const { database, one } of waiting.values()) {
+      if (model.campaign.database !== database) continue;
+      for (const row of rowsOf(model, one.case)) {
+        model.settle(row, one.outcome);
+        for (const response of model.responses) if (response.name in one.values) response.values[row] = one.values[response.name];
+        touched.add(index);
+      }
+    }
+  }
+  waiting.clear();
+  if (touched.has(chosen.campaign)) dataChanged.forEach((changed) => changed());
+  document.documentElement.dataset.results = String(Number(document.documentElement.dataset.results || 0) + 1);
+  drawCost = performance.now() - begun;
+}
+
+// ---- newer data of the whole page
+
+let refreshing = false;
+async function refresh() {
+  const busy = document.activeElement && document.activeElement.tagName === "SELECT" && document.activeElement.matches(":focus");
+  if (refreshing || busy || document.hidden) { live.stale = true; return; }
+  refreshing = true;
+  live.stale = false;
+  try {
+    replaceData(await ask("data"));
+  } catch (error) {
+    live.stale = true;
+  }
+  refreshing = false;
+}
+setInterval(() => { if (live.stale) refresh(); }, 1500);
+document.addEventListener("visibilitychange", () => { if (live.stale) refresh(); });
+
+// ---- SQL
+
+function sqlConsole() {
+  const text = el("textarea", { rows: 3, spellcheck: "false", "aria-label": "SQL", placeholder: "SELECT ..." });
+  text.value = data.campaigns.length > 0 ? `SELECT * FROM ${data.campaigns[0].name} LIMIT 20` : "";
+  const out = el("div", {}), database = data.databases.length > 1 ? choice("database", data.databases.map((name) => [name, name]), data.databases[0], () => {}) : null;
+  const run = async () => {
+    out.replaceChildren(el("p", { class: "says" }, "…"));
+    try {
+      const answer = await work("query", database ? { database: database.querySelector("select").value } : {}, text.value);
+      const rows = JSON.parse(answer.out), columns = rows.length > 0 ? Object.keys(rows[0]) : [];
+      out.replaceChildren(el("p", { class: "says" }, plural(rows.length, "row") + (rows.length > 500 ? ", the first 500 shown" : "")),
+        rows.length > 0 ? table(columns.map((name) => [name, typeof rows[0][name] === "number" ? "number" : ""]), rows.slice(0, 500).map((row) => columns.map((name) => row[name] ?? ""))) : "");
+    } catch (error) {
+      out.replaceChildren(el("div", { class: "verdict no" }, error.message));
+    }
+  };
+  text.addEventListener("keydown", (event) => { if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) run(); });
+  return section("sql", "SQL", "One read-only statement, 10 s of processor time at most. Ctrl+Enter runs it.",
+    el("div", { class: "card" }, text, el("div", { class: "controls" }, button("Run", run), database), out));
+}
+
+// ---- films
+
+document.addEventListener("grainsweep:case", (event) => {
+  const { campaign, case_id: id } = event.detail, found = data.campaigns.find((one) => one.name === campaign);
+  const said = el("span", { class: "says" });
+  const show = button("▶ Film", async () => {
+    said.textContent = " computing it again, at low priority …";
+    try {
+      await work("film", { database: found.database, case: id }, "");
+      said.replaceChildren(" ", el("a", { href: address("film", { database: found.database, case: id }), target: "_blank", rel: "noopener" }, "open it"));
+    } catch (error) {
+      said.textContent = ` ${error.message}`;
+    }
+  });
+  casePanel().querySelector(".watch").replaceChildren(el("p", {}, show, said));
+});
+
+// ---- begin
+
+document.title = document.title.replace("report", "live");
+document.getElementById("page").before(live.panel);
+const consoleOfSql = sqlConsole();
+document.getElementById("page").after(el("main", { class: "beside" }, consoleOfSql));
+
+const events = new EventSource(address("events", { since: data.event }));
+const told = (kind, use) => events.addEventListener(kind, (event) => { live.lost = false; use(JSON.parse(event.data)); });
+told("results", ({ database, results }) => take(database, results));
+told("now", (now) => { live.now = now; showNow(); });
+told("page", refresh);
+events.addEventListener("error", () => { live.lost = true; showNow(); });

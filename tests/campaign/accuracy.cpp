@@ -1,0 +1,99 @@
+// Error against cost through the real program: the same points at every setting with the same random numbers.
+#include "tests/support/process.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace grainsweep::tests::accuracy_test {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json spreading(const json& fixed) {
+    json campaign = {{"campaign", "a"},
+                     {"scene", "powder_spreading"},
+                     {"factors", {{{"name", "friction"}, {"between", {0.1, 0.5}}}}},
+                     {"fixed", {{"width", 3}, {"layer_area", 1e-4}}},
+                     {"design", {{"kind", "halton"}, {"points", 8}}}};
+    campaign["fixed"].update(fixed);
+    return campaign;
+}
+
+TEST(Accuracy, EverySettingIsComparedPointByPointAndResumes) {
+    const Folder folder;
+    folder.write("a.json", spreading(json::object()).dump());
+    const std::vector<std::string> arguments = {"accuracy", "a.json",  "--points", "3",   "--against",
+                                                "balanced", "--quiet", "--format", "json"};
+    const auto first = run_program(arguments, folder.path());
+    ASSERT_EQ(first.code, 0) << first.err;
+    const auto found = json::parse(first.out);
+    std::vector<std::string> settings;
+    for (const auto& one : found["settings"]) {
+        settings.push_back(one["setting"]);
+        EXPECT_EQ(one["answered"], 3);
+        EXPECT_GT(one["core_seconds"], 0);
+    }
+    EXPECT_THAT(settings, testing::IsSupersetOf({"fast", "reference", "balanced"}));
+    EXPECT_EQ(settings.back(), "balanced");
+    // The mean difference is that of the answers in the database.
+    const auto query = run_program(
+        {"query", "a_accuracy.db",
+         "SELECT avg(f.mfr - b.mfr) AS bias FROM a_fast AS f JOIN a_balanced AS b USING (point)", "--format", "json"},
+        folder.path());
+    const double bias = json::parse(query.out)[0]["bias"];
+    for (const auto& one : found["settings"]) {
+        if (one["setting"] != "fast") continue;
+        for (const auto& of : one["biases"]) {
+            if (of["observable"] == "mfr") {
+                EXPECT_NEAR(of["bias"], bias, 1e-12);
+            }
+        }
+    }
+    // Common random numbers: seeds are equal where the numerics differ alone.
+    const auto seeds = run_program({"query", "a_accuracy.db",
+                                    "SELECT count(*) AS n FROM a_fast AS f JOIN a_balanced AS b USING (point) "
+                                    "WHERE f.seed = b.seed AND f.case_id <> b.case_id",
+                                    "--format", "json"},
+                                   folder.path());
+    EXPECT_EQ(json::parse(seeds.out)[0]["n"], 3) << seeds.err;
+    const auto again = run_program(arguments, folder.path());
+    EXPECT_EQ(again.out, first.out) << "nothing is computed again";
+    EXPECT_FALSE(std::filesystem::exists(folder / "a_fast.json"));
+}
+
+TEST(Accuracy, ANumericalInputThatTheFileHoldsIsNotMoved) {
+    const Folder folder;
+    folder.write("a.json", spreading({{"precision", "mixed"}}).dump());
+    const auto ended = run_program(
+        {"accuracy", "a.json", "--points", "2", "--against", "fast", "--quiet", "--format", "csv"}, folder.path());
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.out, testing::Not(HasSubstr("precision")));
+}
+
+TEST(Accuracy, WrongQuestionsAreOneSentence) {
+    const Folder folder;
+    folder.write("a.json", spreading(json::object()).dump());
+    folder.write("r.json", json({{"campaign", "r"},
+                                 {"scene", "rehearsal"},
+                                 {"factors", {{{"name", "x1"}, {"between", {0, 1}}}}},
+                                 {"design", {{"kind", "halton"}, {"points", 8}}}})
+                               .dump());
+    const auto says = [&](const std::vector<std::string>& arguments) {
+        const auto ended = run_program(arguments, folder.path());
+        EXPECT_EQ(ended.code, 2) << ended.out;
+        return ended.err;
+    };
+    EXPECT_THAT(says({"accuracy", "a.json", "--against", "refernce"}), HasSubstr("Did you mean 'reference'?"));
+    EXPECT_THAT(says({"accuracy", "r.json"}), HasSubstr("has no accuracy settings"));
+    EXPECT_THAT(says({"accuracy", "a.json", "--tolerance", "2"}), HasSubstr("--tolerance"));
+    EXPECT_THAT(says({"accuracy", "a.json", "--points", "1"}), HasSubstr("from 2"));
+    folder.write("a_fast.json", "{}");
+    EXPECT_THAT(says({"accuracy", "a.json", "--quiet"}), HasSubstr("a file of this name exists"));
+}
+
+}  // namespace grainsweep::tests::accuracy_test
