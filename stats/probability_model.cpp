@@ -30,7 +30,7 @@ struct ProbabilityModel::State {
 namespace {
 
 constexpr double inside_by = 1e-9;  // of the box: what round-off of a feature may do
-constexpr double length_prior = 1.5, signal_prior = 4;
+constexpr double length_prior = 1.5, signal_prior = 2;
 const double typical_signal = std::log(400.0);
 constexpr std::size_t places_in_search = 200, most_places = 1000, places_at_once = 1024;
 constexpr std::size_t compared_starts = 8, climbed_starts = 2;
