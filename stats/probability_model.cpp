@@ -30,8 +30,8 @@ struct ProbabilityModel::State {
 namespace {
 
 constexpr double inside_by = 1e-9;  // of the box: what round-off of a feature may do
-constexpr double length_prior = 1.5, signal_prior = 1.5;
-const double typical_signal = std::log(4.0);
+constexpr double length_prior = 1.5, signal_prior = 2;
+const double typical_signal = std::log(400.0);
 constexpr std::size_t places_in_search = 200, most_places = 1000, places_at_once = 1024;
 constexpr std::size_t compared_starts = 8, climbed_starts = 2;
 constexpr int most_looks = 30;
@@ -128,7 +128,7 @@ void climb_from(EvidenceSearch& search, const Eigen::VectorXd& from) {
     response::Bounds bounds{Eigen::VectorXd::Constant(d + 1, std::log(0.05)),
                             Eigen::VectorXd::Constant(d + 1, std::log(50.0))};
     bounds.low(d) = -4;
-    bounds.high(d) = 5;
+    bounds.high(d) = 8;
     (void)response::climb([&](const auto& at, auto& gradient) { return search.look(at, &gradient); }, from, bounds,
                           1e-2, most_looks);
 }
@@ -142,7 +142,7 @@ std::optional<Hyperparameters> likeliest(const Trials& trials) {
     for (std::size_t s = 0; s < compared_starts; ++s) {
         Eigen::VectorXd at(d + 1);
         for (Eigen::Index j = 0; j < d; ++j) at(j) = -1.5 + 3 * sequence.next_fraction();
-        at(d) = 3 * sequence.next_fraction();
+        at(d) = 7 * sequence.next_fraction();
         const double value = search.look(at, nullptr);
         starts.emplace_back(value, std::move(at));
     }
