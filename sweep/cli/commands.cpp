@@ -11,7 +11,7 @@ namespace grainsweep::cli {
 namespace {
 
 /// A line of shell for each command that --help lists.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 27> command_examples{{
+constexpr auto command_examples = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"plan", "plan configs/quickstart.json"},
     {"run", "run configs/quickstart.json --db quick.db"},
     {"calibrate", "calibrate configs/calibrate_drum.json"},
@@ -39,7 +39,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 27> command_
     {"schema", "schema > campaign.schema.json"},
     {"completion", "completion bash"},
     {"manual", "manual | man -l -"},
-}};
+});
 
 }  // namespace
 
@@ -65,7 +65,7 @@ std::vector<Command> all_commands() {
     }
     for (auto& command : commands) {
         const auto found = std::ranges::find(command_examples, std::string_view(command.name),
-                                             &decltype(command_examples)::value_type::first);
+                                             &std::pair<std::string_view, std::string_view>::first);
         if (found != command_examples.end()) command.example = found->second;
     }
     return commands;
