@@ -148,7 +148,7 @@ const std::vector<Library>& libraries() {
         {"udunits2.h", {"sweep/campaign/quantity.cpp"}},
         {"xlsxwriter.h", {"sweep/report/workbook.cpp"}},
         {"cairo", {"sweep/plot/"}},
-        {"nlopt", {"stats/response/fit.cpp"}},
+        {"nlopt", {"stats/response/climb.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler
         {"microhttpd.h", {"sweep/live/http_server.cpp"}},
