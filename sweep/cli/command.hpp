@@ -66,6 +66,7 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, machines, designs, schema
 [[nodiscard]] std::vector<Command> draw_commands();       // draw
+[[nodiscard]] std::vector<Command> powder_commands();     // powder
 [[nodiscard]] std::vector<Command> manual_commands();     // completion, manual
 
 /// All of them, in the order --help shows.

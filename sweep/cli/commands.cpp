@@ -58,6 +58,7 @@ std::vector<Command> all_commands() {
              accuracy_commands(),
              solve_commands(),
              draw_commands(),
+             powder_commands(),
              catalogue_commands(),
              manual_commands(),
          }) {

@@ -26,7 +26,7 @@
 #include "sweep/study/model_view.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
-#include "sweep/workers/staged_machine.hpp"
+#include "sweep/workers/staged_campaign.hpp"
 #include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
@@ -340,7 +340,7 @@ private:
         workers::Pool pool(pool_options(campaign_, {artefacts_, cases}, workers_, request_.path));
         files::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
-        workers::stage_machine(campaign_.scene().name, folder);
+        workers::stage_campaign(campaign_, folder);
         schedule::Watchers watchers;
         NowWriter now(database_, campaign_.name, workers_ * threads_of_a_case(campaign_));
         watchers.progress = [&](const schedule::Progress& progress) {

@@ -92,6 +92,9 @@ const std::vector<Rule>& rules() {
         {"sweep/campaign/machine",  // a machine file becomes numbers for the solver
          {"sweep/campaign/", "sweep/files/", "solver/machine/", "solver/plain_text.hpp", "solver/scenes/values.hpp",
           "solver/scenes/scene.hpp"}},
+        {"sweep/campaign/powder",  // a powder file becomes parameters of scenes
+         {"sweep/campaign/", "sweep/files/", "solver/plain_text.hpp", "solver/particles/size_",
+          "solver/dem/time_step.hpp", "solver/scenes/kit/", "solver/scenes/values.hpp"}},
         {"sweep/campaign/",
          {"sweep/campaign/", "sweep/designs/", "sweep/files/", "stats/convergence_rule.hpp", "solver/plain_text.hpp",
           "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},

@@ -3,6 +3,7 @@
 #include "sweep/plot/plot.hpp"
 #include "sweep/plot/ticks.hpp"
 
+#include <cairo.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
