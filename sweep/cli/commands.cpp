@@ -33,6 +33,7 @@ constexpr auto command_examples = std::to_array<std::pair<std::string_view, std:
     {"solve", "solve configs/quickstart.json --watch case.html"},
     {"accuracy", "accuracy configs/quickstart.json"},
     {"draw", "draw v_blender -o v_blender.html"},
+    {"powder", "powder import export.csv -o sizes.csv"},
     {"scenes", "scenes powder_spreading"},
     {"machines", "machines v_blender"},
     {"designs", "designs halton"},
