@@ -11,7 +11,7 @@ namespace grainsweep::cli {
 namespace {
 
 /// A line of shell for each command that --help lists.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 27> command_examples{{
+constexpr auto command_examples = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"plan", "plan configs/quickstart.json"},
     {"run", "run configs/quickstart.json --db quick.db"},
     {"calibrate", "calibrate configs/calibrate_drum.json"},
@@ -33,13 +33,14 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 27> command_
     {"solve", "solve configs/quickstart.json --watch case.html"},
     {"accuracy", "accuracy configs/quickstart.json"},
     {"draw", "draw v_blender -o v_blender.html"},
+    {"powder", "powder import export.csv -o sizes.csv"},
     {"scenes", "scenes powder_spreading"},
     {"machines", "machines v_blender"},
     {"designs", "designs halton"},
     {"schema", "schema > campaign.schema.json"},
     {"completion", "completion bash"},
     {"manual", "manual | man -l -"},
-}};
+});
 
 }  // namespace
 
@@ -66,7 +67,7 @@ std::vector<Command> all_commands() {
     }
     for (auto& command : commands) {
         const auto found = std::ranges::find(command_examples, std::string_view(command.name),
-                                             &decltype(command_examples)::value_type::first);
+                                             &std::pair<std::string_view, std::string_view>::first);
         if (found != command_examples.end()) command.example = found->second;
     }
     return commands;

@@ -18,8 +18,11 @@ function heading(model) {
     plural(campaign.factors.length, "factor"),
     campaign.replicates > 1 ? plural(campaign.replicates, "repeat") + " of each point" : null,
     campaign.where ? `where ${campaign.where}` : null].filter(Boolean);
-  const ranges = campaign.factors.map((f) => [f.name, unitText(f.unit),
-    f.levels.length > 0 ? f.levels.join(", ") : `${show(f.low)} to ${show(f.high)}${f.log ? ", logarithmic" : ""}`, f.meaning]);
+  const ranges = model.factors.map((f) => {
+    const shown = quantity(f);  // in the unit of the figures
+    return f.levels.length > 0 ? [f.name, unitText(f.unit), f.levels.join(", "), f.meaning]
+      : [f.name, shown.unit, `${show(shown.of(f.low))} to ${show(shown.of(f.high))}${f.log ? ", logarithmic" : ""}`, f.meaning];
+  });
   return [el("h1", {}, campaign.name), el("p", { class: "says" }, parts.join(" · ")),
     campaign.summary ? el("p", {}, campaign.summary) : null,
     campaign.notes ? el("p", { class: "notes" }, campaign.notes) : null,
