@@ -1,11 +1,11 @@
 #include "stats/probability_model.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/response/climb.hpp"
 #include "stats/response/expectation.hpp"
 #include "stats/response/fit.hpp"
 #include "stats/sobol_sequence.hpp"
 
-#include <nlopt.h>
 #include <boost/math/special_functions/owens_t.hpp>
 
 #include <algorithm>
@@ -30,12 +30,11 @@ struct ProbabilityModel::State {
 namespace {
 
 constexpr double inside_by = 1e-9;  // of the box: what round-off of a feature may do
-constexpr double length_prior = 1.5, signal_prior = 1.5;
-const double typical_signal = std::log(4.0);
+constexpr double length_prior = 1.5, signal_prior = 2;
+const double typical_signal = std::log(400.0);
 constexpr std::size_t places_in_search = 200, most_places = 1000, places_at_once = 1024;
 constexpr std::size_t compared_starts = 8, climbed_starts = 2;
 constexpr int most_looks = 30;
-constexpr double lost = 1e10;  // stands for an infinite minus log density
 
 Eigen::MatrixXd place_in_box(Rows points, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -99,7 +98,7 @@ Hyperparameters hyperparameters_of(const Eigen::VectorXd& at) {
     return {at.head(d), at(d), 0, Eigen::MatrixXd::Identity(d, d)};
 }
 
-/// Log posterior density of log l and log s^2, as NLopt calls it; factors of the last look start the next.
+/// Log posterior density of log l and log s^2,; factors of the last look start the next.
 struct EvidenceSearch {
     const Trials* trials;
     std::optional<Expectation> last = {};
@@ -124,30 +123,14 @@ struct EvidenceSearch {
     }
 };
 
-double minus_density(unsigned size, const double* x, double* gradient, void* data) {
-    const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(x, static_cast<Eigen::Index>(size));
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(at.size());
-    const double value = static_cast<EvidenceSearch*>(data)->look(at, gradient ? &slope : nullptr);
-    if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, slope.size()) = -slope;
-    return std::isfinite(value) ? -value : lost;
-}
-
 void climb_from(EvidenceSearch& search, const Eigen::VectorXd& from) {
     const Eigen::Index d = from.size() - 1;
-    Eigen::VectorXd low = Eigen::VectorXd::Constant(d + 1, std::log(0.05)), x = from;
-    Eigen::VectorXd high = Eigen::VectorXd::Constant(d + 1, std::log(50.0));
-    low(d) = -4;
-    high(d) = 5;
-    const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> opt(
-        nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(from.size())), &nlopt_destroy);
-    nlopt_set_lower_bounds(opt.get(), low.data());
-    nlopt_set_upper_bounds(opt.get(), high.data());
-    nlopt_set_min_objective(opt.get(), minus_density, &search);
-    nlopt_set_ftol_abs(opt.get(), 1e-2);
-    nlopt_set_maxeval(opt.get(), most_looks);
-    double value = 0;
-    // A line search that ends on round-off is reported as a failure; the best point seen counts either way.
-    (void)nlopt_optimize(opt.get(), x.data(), &value);
+    response::Bounds bounds{Eigen::VectorXd::Constant(d + 1, std::log(0.05)),
+                            Eigen::VectorXd::Constant(d + 1, std::log(50.0))};
+    bounds.low(d) = -4;
+    bounds.high(d) = 8;
+    (void)response::climb([&](const auto& at, auto& gradient) { return search.look(at, &gradient); }, from, bounds,
+                          1e-2, most_looks);
 }
 
 /// The maximum that the best of Sobol starts lead to; none where every look is singular.
@@ -159,7 +142,7 @@ std::optional<Hyperparameters> likeliest(const Trials& trials) {
     for (std::size_t s = 0; s < compared_starts; ++s) {
         Eigen::VectorXd at(d + 1);
         for (Eigen::Index j = 0; j < d; ++j) at(j) = -1.5 + 3 * sequence.next_fraction();
-        at(d) = 3 * sequence.next_fraction();
+        at(d) = 7 * sequence.next_fraction();
         const double value = search.look(at, nullptr);
         starts.emplace_back(value, std::move(at));
     }

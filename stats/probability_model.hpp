@@ -7,7 +7,8 @@
 // section 3.6: response/expectation.hpp), which keeps the probabilities calibrated where the Laplace approximation of
 // their section 3.4 draws them to 1/2 (Kuss & Rasmussen 2005, J. Mach. Learn. Res. 6, 1679). Cases at one place are
 // counted together, so that replicates count as what they are. Lengths and s^2 maximise the evidence times the priors
-// log l ~ N(0, 1.5^2), log s^2 ~ N(log 4, 1.5^2), on at most 200 places, half of them with the rarer outcome.
+// log l ~ N(0, 1.5^2), log s^2 ~ N(log 400, 2^2), on at most 200 places, half of them with the rarer outcome: a
+// large s stands for a sharp border.
 //
 //   P(x) = Phi(m/sqrt(1 + v)),  f(x) ~ N(m, v)                                                          (eq. 3.82)
 //   error^2 = E Phi(f)^2 - P^2 = Phi(h) - 2 T(h, 1/sqrt(1 + 2 v)) - P^2,  h = m/sqrt(1 + v),  T Owen's function

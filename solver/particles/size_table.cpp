@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -98,6 +99,17 @@ double SizeTable::Piece::moment(int power) const {
     return integral(power - 3) / integral(-3);
 }
 
+SizeTable::Piece SizeTable::Piece::between(double low, double high) const {
+    if (from == to) return {from, to, from >= low && from <= high ? share : 0, even};
+    Piece part{std::max(from, low), std::min(to, high), 0, even};
+    if (!(part.from < part.to)) return part;
+    const auto particles = [this](double a, double b) {
+        return even == Even::number ? b - a : 1 / (a * a) - 1 / (b * b);
+    };
+    part.share = share * particles(part.from, part.to) / particles(from, to);
+    return part;
+}
+
 SizeTable SizeTable::read(std::string_view csv) {
     if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // byte-order mark
     const Header* header = nullptr;
@@ -155,6 +167,62 @@ double SizeTable::moment(int power) const {
     double sum = 0;
     for (const Piece& piece : pieces_) sum += piece.share * piece.moment(power);
     return sum;
+}
+
+double SizeTable::share_below(double diameter, int power) const {
+    double below = 0;
+    for (const Piece& piece : pieces_)
+        if (const Piece part = piece.between(0, diameter); part.share > 0) below += part.share * part.moment(power);
+    return below / moment(power);
+}
+
+double SizeTable::quantile(double share, int power) const {
+    double low = smallest(), high = largest();
+    constexpr int halvings = 60;
+    for (int k = 0; k < halvings; ++k) {
+        const double middle = low + (high - low) / 2;
+        (share_below(middle, power) < share ? low : high) = middle;
+    }
+    return high;
+}
+
+SizeTable SizeTable::between(double low, double high) const {
+    SizeTable part;
+    double sum = 0;
+    for (const Piece& piece : pieces_)
+        if (const Piece inside = piece.between(low, high); inside.share > 0) {
+            part.pieces_.push_back(inside);
+            sum += inside.share;
+        }
+    if (part.pieces_.empty())
+        refuse_table(": none lies between " + shortest_text(low) + " and " + shortest_text(high) + " m");
+    for (Piece& piece : part.pieces_) piece.share /= sum;
+    return part;
+}
+
+std::string SizeTable::text() const {
+    const auto number = [](double x) {
+        std::array<char, 32> digits{};
+        std::snprintf(digits.data(), digits.size(), "%.9g", x);
+        return std::string(digits.data());
+    };
+    const bool classes = pieces_.front().from == pieces_.front().to;
+    const bool by_volume = pieces_.front().even == Even::volume;
+    const int power = by_volume ? 3 : 0;
+    std::string csv = std::string("diameter,") + (by_volume ? "volume_" : "number_") + (classes ? "fraction" : "below");
+    csv += "\n";
+    const double all = moment(power);
+    if (!classes) csv += number(smallest()) + ",0\n";
+    double below = 0, end = smallest();
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+        const Piece& piece = pieces_[k];
+        if (!classes && piece.from > end) csv += number(piece.from) + "," + number(below) + "\n";
+        const double share = piece.share * piece.moment(power) / all;
+        below += share;
+        end = piece.to;
+        csv += number(end) + "," + number(classes ? share : k + 1 == pieces_.size() ? 1 : below) + "\n";
+    }
+    return csv;
 }
 
 }  // namespace grainsweep::particles

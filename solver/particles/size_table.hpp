@@ -11,6 +11,7 @@
 // number of particles falls as d^-3: with x = d^-2 its inverse is x = x_0 - u (x_0 - x_1).
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,6 +30,14 @@ public:
     [[nodiscard]] double largest() const { return pieces_.back().to; }
     /// E[d^power] by number.
     [[nodiscard]] double moment(int power) const;
+    /// Share of all d^power below a diameter: of particles for 0, of volume for 3.
+    [[nodiscard]] double share_below(double diameter, int power) const;
+    /// The diameter below which lies the share of all d^power, 0 <= share <= 1.
+    [[nodiscard]] double quantile(double share, int power) const;
+    /// What lies between two diameters, both included. Throws std::invalid_argument where that is nothing.
+    [[nodiscard]] SizeTable between(double low, double high) const;
+    /// The table as text that read() takes, with nine digits.
+    [[nodiscard]] std::string text() const;
 
 private:
     enum class Even { number, volume };  ///< what is the same in every interval of a piece
@@ -39,6 +48,8 @@ private:
 
         [[nodiscard]] double diameter(double u) const;
         [[nodiscard]] double moment(int power) const;
+        /// What lies between two diameters; its share is 0 where that is nothing.
+        [[nodiscard]] Piece between(double low, double high) const;
     };
 
     std::vector<Piece> pieces_;

@@ -16,8 +16,7 @@ constexpr double mean_variance = 4;  // c^2
 constexpr int most_rounds = 100, most_newton_steps = 50;
 constexpr double settled = 1e-5;
 constexpr double first_step = 0.8, least_step = 0.1;
-constexpr int nodes_each_side = 40;
-constexpr double node_spacing = 0.4;  // in widths of the mode
+constexpr double reach = 16, node_spacing = 0.4, finest = 0.5;  // in widths of the mode; in f, whose Phi turns within 1
 
 /// phi(f)/Phi(f)
 double hazard(double f) {
@@ -48,8 +47,17 @@ struct Moments {
     double log_size = 0, mean = 0, variance = 1;
 };
 
+/// Of N(f | mean, variance) times Phi(sign f), in closed form (eq. 3.58).
+Moments moments_of_one(double sign, double mean, double variance) {
+    const double root = std::sqrt(1 + variance), z = sign * mean / root, h = hazard(z);
+    return {log_normal_cdf(z), mean + sign * variance * h / root,
+            variance - variance * variance * h * (z + h) / (1 + variance)};
+}
+
 /// Of N(f | mean, variance) times the factor (eq. 3.57).
 Moments moments_of(const Seen& seen, double mean, double variance) {
+    if (seen.successes + seen.failures == 1 && (seen.successes == 0 || seen.failures == 0))
+        return moments_of_one(seen.successes - seen.failures, mean, variance);
     double mode = mean;
     for (int step = 0; step < most_newton_steps; ++step) {
         const double move =
@@ -61,15 +69,17 @@ Moments moments_of(const Seen& seen, double mean, double variance) {
     const auto log_density = [&](double f) { return seen.log_factor(f) - 0.5 * (f - mean) * (f - mean) / variance; };
     const double top = log_density(mode);
     double sum = 0, first = 0, second = 0;
-    for (int k = -nodes_each_side; k <= nodes_each_side; ++k) {
-        const double t = node_spacing * k, weight = std::exp(log_density(mode + width * t) - top);
+    const double spacing = std::min(node_spacing, finest / width);
+    const int each_side = static_cast<int>(std::ceil(reach / spacing));
+    for (int k = -each_side; k <= each_side; ++k) {
+        const double t = spacing * k, weight = std::exp(log_density(mode + width * t) - top);
         sum += weight;
         first += weight * t;
         second += weight * t * t;
     }
     first /= sum;
     second /= sum;
-    const double size = sum * node_spacing * width / std::sqrt(2 * std::numbers::pi * variance);
+    const double size = sum * spacing * width / std::sqrt(2 * std::numbers::pi * variance);
     return {top + std::log(size), mode + width * first, width * width * (second - first * first)};
 }
 

@@ -1,15 +1,13 @@
 #include "stats/response/fit.hpp"
 
 #include "stats/random.hpp"
+#include "stats/response/climb.hpp"
 #include "stats/response/kriging.hpp"
 #include "stats/sobol_sequence.hpp"
-
-#include <nlopt.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -19,31 +17,6 @@ namespace {
 constexpr std::size_t cases_of_first_search = 200, cases_for_map = 200, compared_per_start = 8, followed = 2;
 constexpr int most_evaluations = 80;
 constexpr double value_tolerance = 1e-3;  // of a log density: far below what tells models apart
-constexpr double singular = 1e10;         // stands for an infinite minus log density
-
-/// The objective as NLopt calls it, and the best point it was called at: L-BFGS may end on a worse one.
-struct Search {
-    const Likelihood* likelihood;
-    Eigen::VectorXd best;
-    double best_value = -std::numeric_limits<double>::infinity();
-};
-
-double objective(unsigned size, const double* x, double* gradient, void* data) {
-    auto& search = *static_cast<Search*>(data);
-    const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(x, static_cast<Eigen::Index>(size));
-    Eigen::VectorXd slope;
-    const double value = search.likelihood->value(at, slope);
-    if (value > search.best_value) {
-        search.best_value = value;
-        search.best = at;
-    }
-    if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, slope.size()) = -slope;
-    return std::isfinite(value) ? -value : singular;
-}
-
-struct Bounds {
-    Eigen::VectorXd low, high;
-};
 
 Bounds bounds(const Likelihood& likelihood) {
     const Eigen::Index d = likelihood.points().cols(), size = likelihood.parameters();
@@ -57,21 +30,11 @@ Bounds bounds(const Likelihood& likelihood) {
     return b;
 }
 
-Search climb(const Likelihood& likelihood, const Eigen::VectorXd& from) {
-    const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> opt(
-        nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(likelihood.parameters())), &nlopt_destroy);
-    const Bounds b = bounds(likelihood);
-    Search search{&likelihood, from};
-    nlopt_set_lower_bounds(opt.get(), b.low.data());
-    nlopt_set_upper_bounds(opt.get(), b.high.data());
-    nlopt_set_min_objective(opt.get(), objective, &search);
-    nlopt_set_ftol_abs(opt.get(), value_tolerance);
-    nlopt_set_maxeval(opt.get(), most_evaluations);
-    Eigen::VectorXd x = from.cwiseMax(b.low).cwiseMin(b.high);
-    double value = 0;
-    // A line search that ends on round-off is reported as a failure; the best point seen counts either way.
-    (void)nlopt_optimize(opt.get(), x.data(), &value);
-    return search;
+Climbed climb_likelihood(const Likelihood& likelihood, const Eigen::VectorXd& from) {
+    const Ascent density = [&](const Eigen::VectorXd& at, Eigen::VectorXd& slope) {
+        return likelihood.value(at, slope);
+    };
+    return climb(density, from, bounds(likelihood), value_tolerance, most_evaluations);
 }
 
 std::vector<Eigen::VectorXd> starting_points(Eigen::Index d, std::size_t count) {
@@ -113,8 +76,8 @@ Maximum best_followed(const std::vector<Maximum>& maxima, const Eigen::MatrixXd&
         const bool met = std::ranges::any_of(climbed, [&a = at](const auto& c) { return (a - c).norm() < 0.3; });
         if (met || climbed.size() == followed || !std::isfinite(value)) continue;
         climbed.push_back(at);
-        Search found = climb(large, at);
-        if (found.best_value > best.first) best = {found.best_value, std::move(found.best)};
+        Climbed found = climb_likelihood(large, at);
+        if (found.value > best.first) best = {found.value, std::move(found.at)};
     }
     return best;
 }
@@ -142,8 +105,8 @@ std::optional<Hyperparameters> fit_lengths(const Eigen::MatrixXd& points, const 
     std::ranges::stable_sort(starts, better);
     starts.resize(std::max<std::size_t>(settings.starts, 1));
     for (auto& start : starts) {
-        const Search found = climb(small, start.second);
-        start = {found.best_value, found.best};
+        const Climbed found = climb_likelihood(small, start.second);
+        start = {found.value, found.at};
     }
     std::ranges::stable_sort(starts, better);
     const auto most = std::min(settings.cases, static_cast<std::size_t>(points.rows()));
@@ -156,9 +119,9 @@ std::optional<Hyperparameters> fit_lengths(const Eigen::MatrixXd& points, const 
 std::optional<Hyperparameters> fit_map(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                        const Hyperparameters& lengths, const FitSettings& settings) {
     const Likelihood likelihood = likelihood_of(points, values, settings.cases, true);
-    const Search found = climb(likelihood, likelihood.parameters(lengths));
-    if (!std::isfinite(found.best_value)) return std::nullopt;
-    return likelihood.hyperparameters(found.best);
+    const Climbed found = climb_likelihood(likelihood, likelihood.parameters(lengths));
+    if (!std::isfinite(found.value)) return std::nullopt;
+    return likelihood.hyperparameters(found.at);
 }
 
 std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
@@ -175,8 +138,8 @@ std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& point
 Hyperparameters follow(const Hyperparameters& found, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                        std::size_t cases) {
     const Likelihood likelihood = likelihood_of(points, values, cases, !found.shear.isIdentity(0));
-    const Search better = climb(likelihood, likelihood.parameters(found));
-    return std::isfinite(better.best_value) ? likelihood.hyperparameters(better.best) : found;
+    const Climbed better = climb_likelihood(likelihood, likelihood.parameters(found));
+    return std::isfinite(better.value) ? likelihood.hyperparameters(better.at) : found;
 }
 
 double leave_one_out_rms(const Hyperparameters& h, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,

@@ -10,6 +10,7 @@
 #include "sweep/designs/design.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -104,6 +105,14 @@ struct Execution {
     std::optional<double> silence_seconds = 60;    ///< so is one that says nothing for so long while it has a case
 };
 
+/// A file that a campaign uses, to be kept with it.
+struct CampaignFile {
+    std::string place;           ///< where the campaign file names it: "$.fixed.size_file"
+    std::string name;            ///< as it is named there
+    std::string hash;            ///< of its contents
+    std::filesystem::path path;  ///< empty: the program made it, and its contents are known
+};
+
 struct Campaign {
     std::string name;
     ParameterSpace space;
@@ -122,7 +131,9 @@ struct Campaign {
     std::vector<std::string> features;
     Limits limits;
     Execution execution;
-    std::string text;  ///< the campaign file as read
+    std::string text;    ///< the campaign file as read
+    std::string powder;  ///< what its powder file sets, in a sentence; empty: it names none
+    std::vector<CampaignFile> files;
 
     [[nodiscard]] const SceneInfo& scene() const { return *space.scene; }
 };

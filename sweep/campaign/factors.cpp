@@ -93,8 +93,8 @@ const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) 
     const auto* parameter = name.json().is_string() ? scene.find_parameter(name.json().get<std::string>()) : nullptr;
     if (parameter != nullptr) return *parameter;
     name.refuse(
-        fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)", scene.name,
-                    scene.name),
+        fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)", scene.shown(),
+                    scene.shown()),
         name.json().is_string() ? nearest_word(name.json().get<std::string>(), names_of(scene.parameters)) : "");
 }
 
@@ -135,7 +135,7 @@ void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesyste
             throw wrong_question(
                 here.path(), "",
                 fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)",
-                            space.scene->name, space.scene->name),
+                            space.scene->shown(), space.scene->shown()),
                 nearest_word(key, names_of(space.scene->parameters)));
         }
         if (std::ranges::find(space.factors, key, &Factor::name) != space.factors.end()) {

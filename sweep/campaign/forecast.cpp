@@ -1,9 +1,9 @@
 #include "sweep/campaign/forecast.hpp"
 
+#include "sweep/campaign/file_contents.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration_layout.hpp"
-#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 #include <map>
 #include <memory>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 namespace grainsweep::campaign {
@@ -24,26 +23,21 @@ class NamedFiles {
 public:
     /// Throws std::invalid_argument where one cannot be read.
     const Files& of(const Inputs& inputs) {
-        std::map<std::string, std::string> words;
+        Inputs words;
         for (const auto& [name, value] : inputs) {
             const auto* word = std::get_if<std::string>(&value);
             if (word != nullptr && file_word(*word)) words.emplace(name, *word);
         }
         if (words == words_) return files_;
-        Files files;
-        for (const auto& [name, word] : words) {
-            const std::string path(file_word(word)->path);
-            std::error_code error;
-            files.emplace(name, files::whole_file(path, error));
-            if (error) throw std::invalid_argument(fmt::format("{}: cannot read {}: {}", name, path, error.message()));
-        }
-        files_ = std::move(files);
+        auto files = files_named(words);
+        if (const auto* why = std::get_if<std::string>(&files)) throw std::invalid_argument(*why);
+        files_ = std::get<Files>(std::move(files));
         words_ = std::move(words);
         return files_;
     }
 
 private:
-    std::map<std::string, std::string> words_;
+    Inputs words_;
     Files files_;
 };
 

@@ -84,6 +84,9 @@ std::span<const Key> campaign_keys() {
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
         {"program", Kind::object, "with \"scene\": \"program\": the command that answers a case"},
         {"machine", Kind::value, "with \"scene\": \"machine\": a machine file beside the campaign file, or its object"},
+        {"powder", Kind::text,
+         "a powder file beside the campaign file: gives the scene what it says of the powder and the campaign does "
+         "not"},
         {"limits", Kind::object, "what one case may cost"},
         {"execution", Kind::object, "how the cases run; changes no result"},
     });
@@ -341,6 +344,7 @@ std::span<const std::string_view> reserved_names() {
                                                                    "inputs",
                                                                    "json_each",
                                                                    "json_tree",
+                                                                   "campaign_file",
                                                                    "attempt_computer",
                                                                    "table_checksum",
                                                                    "file_checksum",

@@ -3,6 +3,7 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/machine_reading.hpp"
+#include "sweep/campaign/machine_species_powder.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include "solver/machine/setup.hpp"
@@ -217,7 +218,12 @@ std::string_view MachineReading::contents(const Cursor& place) const {
 }
 
 std::shared_ptr<const Machine> make_machine(Json document, std::string root, const FileReader& read_file) {
-    return checked(std::move(document), root, read_file);
+    std::map<std::string, std::string, std::less<>> made;
+    document = with_powders(std::move(document), root, read_file, made);
+    return checked(std::move(document), root, [&](const std::string& name) {
+        const auto found = made.find(name);
+        return found == made.end() ? read_file(name) : found->second;
+    });
 }
 
 FileReader beside(const fs::path& folder) {
@@ -226,7 +232,7 @@ FileReader beside(const fs::path& folder) {
         std::string contents = files::whole_file(folder / name, error, largest_machine_file);
         if (error)
             throw std::invalid_argument(
-                fmt::format("the file '{}' beside the machine file cannot be read: {}", name, error.message()));
+                fmt::format("the file '{}' beside it cannot be read: {}", name, error.message()));
         return contents;
     };
 }

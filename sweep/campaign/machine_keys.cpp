@@ -119,6 +119,9 @@ constexpr auto species_keys = std::to_array<Key>({
     {"material", MachineKey::text, "one of the materials; default: the only one, or the only one with a density"},
     {"diameter", MachineKey::value, "m; of unequal sizes the unit D; with a file of sizes their mean by default"},
     {"sizes", MachineKey::object, "how diameters are distributed; default: all equal"},
+    {"powder", MachineKey::text,
+     "a powder file beside the machine file: gives material, diameter, sizes and contacts as far as the machine does "
+     "not"},
 });
 
 constexpr auto size_keys = std::to_array<Key>({

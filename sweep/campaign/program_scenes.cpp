@@ -3,6 +3,7 @@
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -24,6 +25,7 @@ Register& entered() {
 SceneInfo scene_of(const Program& program, std::string name) {
     SceneInfo scene;
     scene.name = std::move(name);
+    scene.label = "program " + std::filesystem::path(program.command.front()).filename().string();
     scene.summary = "answered by " + program.command.front();
     for (const auto& parameter : program.parameters) {
         // Part of every id, so that the value of a default asks for nothing.

@@ -1,8 +1,10 @@
 #include "sweep/campaign/reader.hpp"
 
+#include "sweep/campaign/campaign_files.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/relevance.hpp"
@@ -14,6 +16,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 namespace grainsweep::campaign {
 
@@ -47,6 +50,14 @@ std::string read_name(const Cursor& place) {
     return name;
 }
 
+std::vector<std::string> json_files_beside(const fs::path& file) {
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(file.has_parent_path() ? file.parent_path() : ".", none))
+        if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
+    return names;
+}
+
 /// "machine": the name of a file, or the object itself, whose files lie beside the campaign file.
 std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& folder) {
     const auto place = top.find("machine");
@@ -59,8 +70,7 @@ std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& fo
     if (!fs::is_regular_file(file, none)) {
         if (auto installed = installed_machine(place->text())) return installed;
         std::vector<std::string> others = installed_machines();
-        for (const auto& entry : fs::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), none))
-            if (entry.path().extension() == ".json") others.push_back(entry.path().filename().string());
+        std::ranges::move(json_files_beside(file), std::back_inserter(others));
         place->refuse(
             "there is no such machine file beside the campaign file, and no machine of this name is installed",
             nearest_word(file.filename().string(), others));
@@ -73,6 +83,24 @@ std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
     if (offered.empty()) place.refuse(fmt::format("scene '{}' offers no accuracy settings; leave it out", scene.name));
     return place.word(offered);
+}
+
+/// "powder": parameters from a powder file, under what the campaign gives itself.
+void use_powder(const Cursor& place, const fs::path& folder, Campaign& campaign) {
+    if (is_program(campaign.scene().name))
+        place.refuse("a program has no powder of this kind; name the file in its \"files\"");
+    const fs::path file = folder / place.text();
+    std::error_code none;
+    if (!fs::is_regular_file(file, none))
+        place.refuse("there is no such powder file beside the campaign file",
+                     nearest_word(file.filename().string(), json_files_beside(file)));
+    const Powder powder = read_powder(file);
+    const PowderUse use = apply_powder(powder, campaign.space);
+    if (use.set.empty() && use.overridden.empty())
+        place.refuse(
+            fmt::format("scene '{}' has no parameter that powder '{}' gives", campaign.scene().shown(), powder.name));
+    campaign.powder = fmt::format("{} ({}) {}", powder.name, file.filename().string(), use.sentence());
+    add_powder_files(place.path(), powder, campaign);
 }
 
 std::vector<std::string> read_common(const Section& top, const SceneInfo& scene) {
@@ -105,13 +133,8 @@ std::string read_text(const fs::path& file) {
     std::error_code error;
     const std::string shown_name = file.string();
     if (!fs::exists(file, error)) {
-        std::vector<std::string> beside;
-        const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-        for (const auto& entry : fs::directory_iterator(folder, error)) {
-            if (entry.path().extension() == ".json") beside.push_back(entry.path().filename().string());
-        }
         throw wrong_question(shown_name, "", "there is no such campaign file",
-                             nearest_word(file.filename().string(), beside));
+                             nearest_word(file.filename().string(), json_files_beside(file)));
     }
     if (fs::is_directory(file, error)) throw wrong_question(shown_name, "", "is a folder, not a campaign file");
     std::string text = files::whole_file(file, error, largest_text);
@@ -166,6 +189,8 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     }
     if (calibration) read_calibration(*calibration, campaign, folder);
     const Inputs given = fixed_as_stated(space);
+    campaign.files = files_beside(document, folder);
+    if (const auto powder = top.find("powder")) use_powder(*powder, folder, campaign);
     if (const auto accuracy = top.find("accuracy")) campaign.accuracy = read_accuracy(*accuracy, *space.scene);
     resolve_accuracy(space, campaign.accuracy);
     check_relevance(top, space, declared, given);

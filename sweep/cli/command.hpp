@@ -23,6 +23,7 @@ struct Command {
     std::function<Action(Parser& parser, const report::Format& format)> declare;
     bool hidden = false;
     bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
+    std::string example = {};  ///< a line of shell that --help ends with
     bool workbook = false;  ///< --format may be xlsx
 };
 
@@ -65,6 +66,7 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, machines, designs, schema
 [[nodiscard]] std::vector<Command> draw_commands();       // draw
+[[nodiscard]] std::vector<Command> powder_commands();     // powder
 [[nodiscard]] std::vector<Command> manual_commands();     // completion, manual
 
 /// All of them, in the order --help shows.

@@ -188,6 +188,13 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
     return table;
 }
 
+Table files_table(const std::vector<store::StoredFile>& files) {
+    Table table{{"file", "named at", "bytes", "hash"}, {}};
+    for (const auto& file : files)
+        table.rows.push_back({file.name, file.place, report::to_cell(file.bytes), file.hash});
+    return table;
+}
+
 int explain(const Arguments& asked, Format format) {
     const Store archive(asked.database, Store::Mode::read);
     const campaign::Case question = require_case(archive, asked.text);
@@ -204,6 +211,7 @@ int explain(const Arguments& asked, Format format) {
                                       {"revision", question.revision},
                                       {"seed", report::to_json(Table::Cell{static_cast<std::int64_t>(question.seed)})},
                                       {"inputs", report::to_json(question.inputs)},
+                                      {"files", report::to_json(files_table(archive.files_of(question.id)))},
                                       {"attempts", report::to_json(table)},
                                       {"why", reason}});
         return 0;
@@ -217,6 +225,10 @@ int explain(const Arguments& asked, Format format) {
         std::cout << fmt::format("  {} = {}\n", name, campaign::to_text(value));
     }
     std::cout << '\n';
+    if (const auto files = files_table(archive.files_of(question.id)); !files.rows.empty()) {
+        report::write(std::cout, files, format);
+        std::cout << '\n';
+    }
     report::write(std::cout, table, format);
     std::cout << '\n' << reason << '\n';
     return 0;

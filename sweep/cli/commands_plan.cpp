@@ -208,6 +208,7 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
                  {"threads", campaign::is_program(campaign.scene().name) ? Json()
                              : threads                                   ? Json(*threads)
                                                                          : Json("auto")},
+                 {"powder", campaign.powder.empty() ? Json() : Json(campaign.powder)},
                  {"factors", report::to_json(factors_of(campaign))},
                  {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
     if (const auto distributions = distributions_of(campaign); !distributions.rows.empty())
@@ -290,6 +291,7 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
         std::cout << fmt::format("rule       {} on {}, tolerance {}, checked every {} points\n", convergence->rule,
                                  convergence->observable, convergence->tolerance, convergence->block);
     }
+    if (!campaign.powder.empty()) std::cout << fmt::format("powder     {}\n", campaign.powder);
     for (const auto& [name, value] : campaign::fixed_as_stated(campaign.space)) {
         const auto& unit = scene.find_parameter(name)->unit;
         const bool bare = unit.empty() || unit == "1" || !campaign.space.fixed.contains(name);

@@ -71,6 +71,8 @@ void declare_run(Parser& parser, RunArguments& request) {
         ->check(whole_number(0));
     parser.add_option("--again OUTCOME", request.outcome,
                       "rerun cases with this outcome, for example unstable or crashed");
+    parser.add_option("--adopt CAMPAIGN", request.adopt,
+                      "take over the answers of a campaign whose program differs only in the contents of its files");
     parser.add_option("--max-cases N", request.max_cases, "finish at most N cases in this run; 0: all")
         ->check(whole_number(0));
     parser.add_flag("--network-disk", request.network_disk,

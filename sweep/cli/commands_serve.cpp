@@ -44,14 +44,16 @@ bool is_database(const fs::path& file) {
     }
 }
 
-/// The file, or every database of the folder, by name.
-std::vector<fs::path> databases_at(const fs::path& place) {
-    if (!fs::is_directory(place)) return {place};
+/// The file, or every database of the folder, by name. Those that are `known` are not opened.
+std::vector<fs::path> databases_at(const fs::path& place, const std::vector<fs::path>& known = {}) {
+    std::error_code error;
+    if (!fs::is_directory(place, error)) return {place};
     std::vector<fs::path> found;
-    for (const auto& entry : fs::directory_iterator(place))
-        if (entry.is_regular_file() && entry.path().extension() == ".db") found.push_back(entry.path());
+    for (const auto& entry : fs::directory_iterator(place, error))
+        if (entry.is_regular_file(error) && entry.path().extension() == ".db") found.push_back(entry.path());
     std::ranges::sort(found);
-    std::erase_if(found, [](const fs::path& file) { return !is_database(file); });
+    std::erase_if(found,
+                  [&](const fs::path& file) { return !std::ranges::binary_search(known, file) && !is_database(file); });
     return found;
 }
 
@@ -79,9 +81,10 @@ int serve(const ServeRequest& request, report::Format) {
         control = live::Control{request.control};
     }
     const auto token = live::new_token();
-    auto served = std::make_unique<live::Served>(databases, control, token);
+    std::unique_ptr<live::Served> served;
     live::HttpServer server(static_cast<std::uint16_t>(request.port),
                             [&](const live::HttpQuestion& question) { return served->answer(question); });
+    served = std::make_unique<live::Served>(databases, control, token);
     const auto address = fmt::format("http://127.0.0.1:{}/?token={}", server.port(), token);
     std::cout << address << '\n' << std::flush;
     std::cerr << fmt::format("{} database{}; Ctrl-C ends the page, not the run\n", databases.size(),
@@ -93,12 +96,16 @@ int serve(const ServeRequest& request, report::Format) {
     while (asked_to_end == 0) {
         server.run(200ms);
         server.publish(served->look());
-        if (!fs::is_directory(place) || std::chrono::steady_clock::now() - listed < 2s) continue;
+        if (std::chrono::steady_clock::now() - listed < 2s) continue;
         listed = std::chrono::steady_clock::now();
-        if (auto found = databases_at(place); found != databases && !found.empty()) {
-            databases = std::move(found);
+        auto found = databases_at(place, databases);
+        if (found == databases || found.empty()) continue;
+        databases = std::move(found);
+        try {
             served = std::make_unique<live::Served>(databases, control, token);
             server.publish(served->changed());
+        } catch (const BrokenWorld& error) {  // of one of them; the others stay on the page as they are
+            std::cerr << "grainsweep: " << error.what() << '\n';
         }
     }
     return 0;

@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/installed_machines.hpp"
+#include "sweep/campaign/powder_export.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/designs/design.hpp"
 
@@ -57,6 +58,11 @@ const std::vector<Rule>& rules() {
         {"DB", {.ending = ".db"}},
         {"--db", {.ending = ".db"}},
         {"--with", {.ending = ".db"}},
+        {"powder --output", {.ending = ".csv"}},
+        {"powder ACTION", {.words = {"import", "show"}}},
+        {"powder --as", {.words = {campaign::export_as.begin(), campaign::export_as.end()}}},
+        {"powder --by", {.words = {campaign::export_by.begin(), campaign::export_by.end()}}},
+        {"powder --edge", {.words = {campaign::export_edges.begin(), campaign::export_edges.end()}}},
         {"--output", {.ending = ".html"}},
         {"--watch", {.ending = ".html"}},
         {"--points", {.ending = ".csv"}},

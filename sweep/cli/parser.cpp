@@ -53,6 +53,7 @@ void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Par
     for (const auto& command : commands) {
         CLI::App* subcommand = app.add_subcommand(command.name, command.summary);
         if (command.hidden) subcommand->group("");
+        if (!command.example.empty()) subcommand->footer("Example:\n  grainsweep " + command.example);
         auto format = std::make_shared<report::Format>(report::Format::text);
         subcommand
             ->add_option_function<std::string>(
@@ -81,8 +82,7 @@ void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Par
 }
 
 /// The first argument that is no option must name a command: else WrongQuestion with the nearest.
-void check_command(const std::vector<Command>& commands, int argc, const char* const* argv) {
-    if (argc < 2) throw campaign::WrongQuestion("name a command; grainsweep --help lists them.");
+void check_command(const std::vector<Command>& commands, const char* const* argv) {
     const std::string word = argv[1];
     if (word.starts_with('-') || std::ranges::find(commands, word, &Command::name) != commands.end()) return;
     std::vector<std::string> names;
@@ -206,7 +206,13 @@ Action parse_command_line(const std::vector<Command>& commands, int argc, const 
         app.set_version_flag("--version", version_text, "print version, commit, compiler, flags and instruction path");
         app.require_subcommand(0, 1);
         declare(app, commands, parsers, chosen);
-        check_command(commands, argc, argv);
+        app.footer("Example:\n  grainsweep run --help");
+        if (argc < 2)
+            return [help = app.help()] {
+                std::cout << help;
+                return 2;
+            };
+        check_command(commands, argv);
         app.parse(argc, argv);
         return chosen ? chosen : [] { return 0; };
     } catch (const CLI::Success& asked) {  // --help and --version

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string_view>
 
 namespace grainsweep::cli {
@@ -26,6 +27,13 @@ constexpr std::size_t note_bytes = 500;
 std::size_t terminal_width() {
     winsize size{};
     return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+/// Whether the terminal shows colours and the user has not forbidden them (no-color.org).
+bool wants_colour() {
+    const char* const forbidden = std::getenv("NO_COLOR");
+    const char* const terminal = std::getenv("TERM");
+    return (forbidden == nullptr || *forbidden == '\0') && terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
 /// Standard error may be a full disk, a closed terminal or a pipe without a reader: the campaign goes on without it.
@@ -71,7 +79,10 @@ double seconds_left(const schedule::Progress& progress, double elapsed, std::siz
 }
 
 ProgressLine::ProgressLine(bool quiet, std::size_t cores)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), cores_(std::max<std::size_t>(cores, 1)) {}
+    : quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      coloured_(terminal_ && wants_colour()),
+      cores_(std::max<std::size_t>(cores, 1)) {}
 
 ProgressLine::~ProgressLine() {
     if (line_open_) show("\n");
@@ -94,7 +105,7 @@ void ProgressLine::update(const schedule::Progress& progress) {
     shown_ = now;
     last_ = text;
     if (terminal_) {
-        show("\r\033[K" + text.substr(0, terminal_width() - 1));
+        show("\r\033[K" + on_terminal(text, progress.tally));
         line_open_ = true;
     } else {
         show(text + '\n');
@@ -113,18 +124,32 @@ void ProgressLine::erase() {
     line_open_ = false;
 }
 
+std::string ProgressLine::on_terminal(const std::string& text, const schedule::Plan::Tally& tally) const {
+    const auto painted = [&](std::string_view code, const std::string& words) {
+        return coloured_ ? fmt::format("\033[{}m{}\033[0m", code, words) : words;
+    };
+    const std::size_t width = terminal_width() - 1;
+    auto line = text.substr(0, width);
+    const auto room = width - line.size();
+    const auto failed = fmt::format("{} failed", tally.failed);
+    if (const auto at = line.find(", " + failed); at != std::string::npos)
+        line.replace(at + 2, failed.size(), painted("31", failed));
+    constexpr std::size_t narrowest = 8, around = 3;  // columns; brackets and a space
+    if (room < narrowest + around) return line;
+    const auto bar = std::min(bar_width, room - around);
+    const double share =
+        tally.questions == 0 ? 1 : static_cast<double>(tally.decided) / static_cast<double>(tally.questions);
+    const auto full = static_cast<std::size_t>(share * static_cast<double>(bar));
+    return "[" + painted("32", std::string(full, '#')) + std::string(bar - full, '.') + "] " + line;
+}
+
 std::string ProgressLine::describe(const schedule::Progress& progress, Clock::time_point now) {
     const auto& tally = progress.tally;
     const double elapsed = std::chrono::duration<double>(now - began_).count();
-    const double share =
-        tally.questions == 0 ? 1 : static_cast<double>(tally.decided) / static_cast<double>(tally.questions);
     const double rate = elapsed > 0 ? static_cast<double>(progress.durable) / elapsed : 0;
     const double left = seconds_left(progress, elapsed, cores_);
 
-    const auto full = static_cast<std::size_t>(share * bar_width);
-    std::string text;
-    if (terminal_) text = "[" + std::string(full, '#') + std::string(bar_width - full, '.') + "] ";
-    text += fmt::format("{}/{} cases", tally.decided, tally.questions);
+    auto text = fmt::format("{}/{} cases", tally.decided, tally.questions);
     if (rate > 0) {
         text += rate >= 0.5 ? fmt::format(", {:.3g}/s", rate) : fmt::format(", {:.3g}/min", 60 * rate);
     }

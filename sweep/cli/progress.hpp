@@ -23,9 +23,11 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     [[nodiscard]] std::string describe(const schedule::Progress& progress, Clock::time_point now);
+    /// Fits the text to the terminal, with a bar where there is room, and colours it.
+    [[nodiscard]] std::string on_terminal(const std::string& text, const schedule::Plan::Tally& tally) const;
     void erase();
 
-    bool quiet_, terminal_;
+    bool quiet_, terminal_, coloured_;
     std::size_t cores_;
     Clock::time_point began_ = Clock::now();
     Clock::time_point shown_{};

@@ -128,6 +128,7 @@ int replay(const ReplayRequest& request, Format format) {
     const campaign::Case as_stored = require_case(archive, request.id);
     const auto program = archive.program(as_stored.scene);
     const campaign::Case question = as_asked_today(as_stored);
+    archive.enter_files_of(question);
     const auto stored = archive.result(question.id);
     if (!stored) throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
     if (stored->outcome == Outcome::abandoned)

@@ -37,6 +37,7 @@ std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t c
             continue;
         }
         const campaign::Case question = as_asked_today(stored);
+        store.enter_files_of(question);
         report::Film film(limits);
         const workers::Camera camera{frames, [&film](const Scene& scene) { film.add(scene.snapshot(), scene.time()); }};
         NoArtefacts artefacts;

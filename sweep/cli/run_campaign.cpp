@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
@@ -25,7 +26,7 @@
 #include "sweep/study/model_view.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
-#include "sweep/workers/staged_machine.hpp"
+#include "sweep/workers/staged_campaign.hpp"
 #include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
@@ -201,6 +202,9 @@ void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunReque
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
+    if (!request.adopt.empty() && !fs::exists(database))
+        throw campaign::wrong_question("--adopt", fmt::format("'{}'", request.adopt),
+                                       fmt::format("there is no database '{}'", database.string()));
     if (request.again && designs::design_named(campaign.design).grows)
         throw campaign::wrong_question("--again", to_string(*request.again),
                                        fmt::format("the later points of a {} design depend on the stored results; use "
@@ -229,6 +233,7 @@ public:
     }
 
     RunReport operator()() {
+        if (!request_.adopt.empty()) adopted_ = adopted_program(*store_, campaign_, request_.adopt);
         if (campaign::reorder_factors(campaign_, store_->factor_order(campaign_.name))) {
             line_->note(fmt::format("note: the factors of '{}' keep their stored order: {}", campaign_.name,
                                     campaign::factor_list(campaign_.space)));
@@ -277,6 +282,7 @@ private:
         states_ = campaign::asked_in(request_.config,
                                      [&] { return store_->enrol(campaign_, placed_, provenance(), entered_first); });
         for (const auto& note : store_->notes()) line_->note(note);
+        if (adopted_ != nullptr) adopt();
         if (!request_.spool.empty())
             collected_ =
                 import_answers(request_.spool, campaign_, placed_, *store_, states_, [](const std::string& text) {
@@ -289,6 +295,14 @@ private:
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
         judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
         questions_ = questions_of(campaign_, placement);
+    }
+    /// Answers of the earlier program, then where the cases stand with them.
+    void adopt() {
+        for (const auto& changed : changed_files(*adopted_, *campaign::known_program(campaign_.scene().name)))
+            line_->note("note: " + changed);
+        line_->note(fmt::format("note: {} answers of '{}' are adopted",
+                                adopt_answers(*store_, campaign_, placed_, *adopted_), request_.adopt));
+        states_ = store_->enrol(campaign_, placed_, provenance(), entered_first);
     }
     RunReport collect() {
         enrol(true);
@@ -326,7 +340,7 @@ private:
         workers::Pool pool(pool_options(campaign_, {artefacts_, cases}, workers_, request_.path));
         files::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
-        workers::stage_machine(campaign_.scene().name, folder);
+        workers::stage_campaign(campaign_, folder);
         schedule::Watchers watchers;
         NowWriter now(database_, campaign_.name, workers_ * threads_of_a_case(campaign_));
         watchers.progress = [&](const schedule::Progress& progress) {
@@ -347,6 +361,7 @@ private:
     fs::path database_, artefacts_;
     std::optional<ProgressLine> line_;
     std::optional<store::Store> store_;
+    std::shared_ptr<const campaign::Program> adopted_;  ///< whose answers are taken over; nullptr: none are
     campaign::Cases placed_;
     campaign::Forecast forecast_;
     std::vector<store::CaseState> states_;

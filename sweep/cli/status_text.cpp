@@ -1,5 +1,6 @@
 #include "sweep/cli/status_text.hpp"
 
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/report/table.hpp"
@@ -66,7 +67,7 @@ void write_status(std::ostream& out, const store::Table& status) {
             if (column == "campaign") {
                 name = report::cell_text(cells[j]);
             } else if (column == "scene") {
-                scene = report::cell_text(cells[j]);
+                scene = shown_scene(report::cell_text(cells[j]));
             } else if (auto value = with_unit(column, cells[j]); !value.empty()) {
                 lines.emplace_back(label_of(column), std::move(value));
                 widest = std::max(widest, lines.back().first.size());

@@ -14,7 +14,7 @@
 #include "sweep/study/features.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
-#include "sweep/workers/staged_machine.hpp"
+#include "sweep/workers/staged_campaign.hpp"
 #include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
@@ -130,7 +130,7 @@ WorkReport work_on(const WorkRequest& request) {
 
     spool::TaskRules rules{share, campaign.limits.attempts, request.lease, walltime_of(campaign)};
     files::ArtefactFolder artefacts(spool.artefacts());
-    workers::stage_machine(campaign.scene().name, artefacts);
+    workers::stage_campaign(campaign, artefacts);
     spool::Task::Watchers watchers;
     watchers.progress = [&](const spool::Task::Tally& tally) {
         schedule::Progress progress;

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -24,11 +26,26 @@ std::string words(const store::Table::Cell& cell) {
     return text == nullptr ? std::string() : *text;
 }
 
+double seconds_from(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+constexpr double rest_after_whole = 100;  // times what reading all cases took
+
+/// Differs between two results of a case; never 0. Beginning an attempt leaves it as it is.
+std::uint32_t mark_of(std::string_view outcome, const store::Table::Cell& wall_seconds, std::int64_t failures) {
+    const auto* seconds = std::get_if<double>(&wall_seconds);
+    const std::size_t hash = std::hash<std::string_view>{}(outcome) ^
+                             std::hash<double>{}(seconds == nullptr ? -1 : *seconds) * 0x9E3779B97F4A7C15U ^
+                             static_cast<std::size_t>(failures) * 0xC2B2AE3D27D4EB4FU;
+    return static_cast<std::uint32_t>(hash >> 32U ^ hash) | 1U;
+}
+
 }  // namespace
 
 Follower::Follower(std::filesystem::path database)
     : database_(std::move(database)), store_(database_, store::Store::Mode::read) {
-    while (!fresh().empty()) {
+    while (!fresh(1).empty()) {
     }
 }
 
@@ -40,27 +57,24 @@ Follower::Stamp Follower::stamp() const {
             std::filesystem::last_write_time(database_, absent), std::filesystem::last_write_time(log, absent)};
 }
 
-std::vector<Follower::Settled> Follower::fresh() {
+std::vector<Follower::Settled> Follower::fresh(std::int64_t first) {
     std::vector<Settled> found;
     bool gapless = true;
     const auto each = [&](const std::vector<store::Table::Cell>& row) {
+        gapless = gapless && row[1].index() != 0 && found.size() < most_at_once;
+        if (row[1].index() == 0) return;
+        if (gapless) first_open_ = whole(row[0]) + 1;
         const auto key = static_cast<std::size_t>(whole(row[0]));
         if (known_.size() <= key) known_.resize(key + 1 + key / 2, 0);
-        const auto attempts = static_cast<std::uint32_t>(whole(row[2])) + 1;
-        if (row[1].index() == 0) {
-            gapless = false;
-            return;
-        }
-        if (gapless) first_open_ = whole(row[0]) + 1;
-        if (known_[key] == attempts || found.size() >= most_at_once) return;
-        known_[key] = attempts;
+        const auto mark = mark_of(words(row[1]), row[4], whole(row[5]));
+        if (known_[key] == mark || found.size() >= most_at_once) return;
+        known_[key] = mark;
         found.push_back({whole(row[0]), whole(row[2]), words(row[3]), words(row[1])});
     };
-    // A case that is asked again after it was settled stands before the first open one: the whole page has it later.
     store_.query(
-        fmt::format("SELECT case_key, outcome, attempts, case_id FROM sim_case WHERE case_key >= {} "
-                    "ORDER BY case_key",
-                    first_open_),
+        fmt::format("SELECT case_key, outcome, attempts, case_id, wall_seconds, failures FROM sim_case "
+                    "WHERE case_key >= {} ORDER BY case_key",
+                    first),
         {}, [](const auto&) {}, each);
     return found;
 }
@@ -100,9 +114,18 @@ std::vector<JsonText> Follower::told(std::span<const Settled> settled) const {
 std::vector<JsonText> Follower::poll() {
     constexpr std::size_t in_one_question = 500;
     const auto now = stamp();
-    if (seen_ == now) return {};
-    const auto settled = fresh();
-    if (settled.size() < most_at_once) seen_ = now;
+    const bool whole_due = seen_whole_ != now && seconds_from(looked_whole_) >= rest_after_whole * whole_seconds_;
+    if (seen_ == now && !whole_due) return {};
+    const auto start = Clock::now();
+    const auto settled = fresh(whole_due ? 1 : first_open_);
+    if (settled.size() < most_at_once) {
+        seen_ = now;
+        if (whole_due) seen_whole_ = now;
+    }
+    if (whole_due) {
+        looked_whole_ = Clock::now();
+        whole_seconds_ = seconds_from(start);
+    }
     std::vector<JsonText> results;
     results.reserve(settled.size());
     for (std::size_t first = 0; first < settled.size(); first += in_one_question)

@@ -18,7 +18,7 @@
 namespace grainsweep::live {
 namespace {
 
-constexpr unsigned silent_seconds = 30;
+constexpr unsigned silent_seconds = 10;
 constexpr std::size_t piece = 32U << 10U;
 
 std::string field(MHD_Connection* connection, const char* name) {
@@ -30,12 +30,6 @@ MHD_Result take_argument(void* into, MHD_ValueKind, const char* name, const char
     static_cast<HttpQuestion*>(into)->query.insert_or_assign(name, value == nullptr ? "" : value);
     return MHD_YES;
 }
-
-/// A question as it comes in.
-struct Incoming {
-    HttpQuestion question;
-    bool too_large = false;
-};
 
 void add_common_fields(MHD_Response* response, const std::string& type, const std::string& policy) {
     const auto add = [&](const char* name, const char* value) { MHD_add_response_header(response, name, value); };
@@ -116,13 +110,10 @@ struct HttpServer::Impl {
         return queued;
     }
 
-    MHD_Result answer(MHD_Connection* connection, Incoming& incoming) {
+    MHD_Result answer(MHD_Connection* connection, const HttpQuestion& question) {
         HttpReply reply;
         try {
-            if (incoming.too_large)
-                reply = HttpAnswer{.status = MHD_HTTP_CONTENT_TOO_LARGE};
-            else
-                reply = respond(incoming.question);
+            reply = respond(question);
         } catch (const std::exception& error) {
             reply = HttpAnswer{.status = MHD_HTTP_INTERNAL_SERVER_ERROR,
                                .body = std::make_shared<const std::string>(error.what())};
@@ -135,9 +126,8 @@ struct HttpServer::Impl {
     static MHD_Result handle(void* self, MHD_Connection* connection, const char* path, const char* method, const char*,
                              const char* data, std::size_t* size, void** state) {
         if (*state == nullptr) {
-            auto* incoming = new Incoming;
-            *state = incoming;
-            auto& question = incoming->question;
+            auto& question = *new HttpQuestion;
+            *state = &question;
             question.method = method;
             question.path = path;
             question.host = field(connection, MHD_HTTP_HEADER_HOST);
@@ -146,21 +136,18 @@ struct HttpServer::Impl {
             MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, &take_argument, &question);
             return MHD_YES;
         }
-        auto& incoming = *static_cast<Incoming*>(*state);
+        auto& question = *static_cast<HttpQuestion*>(*state);
         if (*size > 0) {
-            auto& body = incoming.question.body;
-            if (body.size() + *size > most_body)
-                incoming.too_large = true;
-            else
-                body.append(data, *size);
+            question.too_large = question.too_large || question.body.size() + *size > most_body;
+            if (!question.too_large) question.body.append(data, *size);
             *size = 0;
             return MHD_YES;
         }
-        return static_cast<Impl*>(self)->answer(connection, incoming);
+        return static_cast<Impl*>(self)->answer(connection, question);
     }
 
     static void completed(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
-        delete static_cast<Incoming*>(*state);
+        delete static_cast<HttpQuestion*>(*state);
         *state = nullptr;
     }
 };
@@ -172,10 +159,10 @@ HttpServer::HttpServer(std::uint16_t port, Respond respond) : impl_(std::make_un
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     errno = 0;
-    impl_->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, port, nullptr, nullptr, &Impl::handle,
-                                     impl_.get(), MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT,
-                                     most_connections, MHD_OPTION_CONNECTION_TIMEOUT, silent_seconds,
-                                     MHD_OPTION_NOTIFY_COMPLETED, &Impl::completed, nullptr, MHD_OPTION_END);
+    impl_->daemon = MHD_start_daemon(MHD_ALLOW_SUSPEND_RESUME, port, nullptr, nullptr, &Impl::handle, impl_.get(),
+                                     MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, most_connections,
+                                     MHD_OPTION_CONNECTION_TIMEOUT, silent_seconds, MHD_OPTION_NOTIFY_COMPLETED,
+                                     &Impl::completed, nullptr, MHD_OPTION_END);
     if (impl_->daemon == nullptr)
         throw BrokenWorld(fmt::format("port {} of this machine cannot be opened: {}; --port names another", port,
                                       errno == 0 ? "it is taken" : std::strerror(errno)));
@@ -199,6 +186,7 @@ void HttpServer::run(std::chrono::milliseconds at_most) {
 }
 
 void HttpServer::publish(std::string_view events) {
+    if (events.empty()) return;  // waking a connection for nothing would turn the loop without rest
     for (auto& reader : impl_->readers) {
         if (reader.closed) continue;
         if (reader.waiting.size() + events.size() > most_waiting) {

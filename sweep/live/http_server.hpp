@@ -21,6 +21,7 @@ struct HttpQuestion {
     std::map<std::string, std::string, std::less<>> query;
     std::string host, origin, last_event;  ///< header fields Host, Origin and Last-Event-ID
     std::string body;
+    bool too_large = false;  ///< the body has more than HttpServer::most_body bytes and is left out
 };
 
 struct HttpAnswer {

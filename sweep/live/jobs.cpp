@@ -34,14 +34,25 @@ std::string all_of(const files::Descriptor& file) {
 
 Jobs::~Jobs() {
     for (const auto& [number, job] : jobs_) {
+        if (job.code) continue;
         ::kill(-job.process, SIGKILL);
         ::waitpid(job.process, nullptr, 0);
     }
 }
 
+bool Jobs::Job::goes_on() {
+    int status = 0;
+    if (!code && ::waitpid(process, &status, WNOHANG) != 0)
+        code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + workers::ending_signal(status);
+    return !code;
+}
+
 std::optional<std::int64_t> Jobs::start(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                                        std::int64_t most_bytes) {
-    if (jobs_.size() >= most_at_once) return std::nullopt;
+                                        const Bounds& bounds) {
+    const auto running = std::ranges::count_if(jobs_, [](auto& one) { return one.second.goes_on(); });
+    if (static_cast<std::size_t>(running) >= bounds.most_at_once) return std::nullopt;
+    if (jobs_.size() >= most_kept)
+        jobs_.erase(std::ranges::find_if(jobs_, [](const auto& one) { return one.second.code.has_value(); }));
     workers::ProcessStart start;
     if (const auto nice = workers::find_program("nice"); !nice.empty()) start.argv = {nice, "-n", "10"};
     start.argv.push_back(std::filesystem::read_symlink("/proc/self/exe").string());
@@ -51,7 +62,7 @@ std::optional<std::int64_t> Jobs::start(const std::vector<std::string>& argument
     if (!job.out.is_open() || !job.err.is_open() || !inside.is_open()) return std::nullopt;
     start.streams = {-1, job.out.number(), job.err.number()};
     start.folder = inside.number();
-    start.file = most_bytes;
+    start.file = bounds.most_bytes;
     start.stranger = true;
     std::error_code error;
     job.process = workers::start_process(start, error);
@@ -63,10 +74,9 @@ std::optional<std::int64_t> Jobs::start(const std::vector<std::string>& argument
 Jobs::State Jobs::look_at(std::int64_t number) {
     const auto found = jobs_.find(number);
     if (found == jobs_.end()) return {};
-    int status = 0;
-    if (::waitpid(found->second.process, &status, WNOHANG) == 0) return {.known = true, .ended = {}};
-    State state{true, Ended{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + workers::ending_signal(status),
-                            all_of(found->second.out), all_of(found->second.err)}};
+    auto& job = found->second;
+    if (job.goes_on()) return {.known = true, .ended = {}};
+    State state{true, Ended{*job.code, all_of(job.out), all_of(job.err)}};
     jobs_.erase(found);
     return state;
 }

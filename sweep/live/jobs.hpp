@@ -23,12 +23,14 @@ public:
     Jobs& operator=(const Jobs&) = delete;
     ~Jobs();
 
-    static constexpr std::size_t most_at_once = 4;
-
-    /// Runs this program with these arguments, which may write so many bytes into a file; its number, or nothing where
-    /// enough are running or none can be started.
+    /// What one job may take.
+    struct Bounds {
+        std::size_t most_at_once = 4;  ///< it does not start beside so many
+        std::int64_t most_bytes = 0;   ///< of a file that it writes
+    };
+    /// Runs this program with these arguments; its number, or nothing where enough are running or none can be started.
     [[nodiscard]] std::optional<std::int64_t> start(const std::vector<std::string>& arguments,
-                                                    const std::filesystem::path& folder, std::int64_t most_bytes);
+                                                    const std::filesystem::path& folder, const Bounds& bounds);
     struct Ended {
         int code = 0;
         std::string out, err;
@@ -44,7 +46,11 @@ private:
     struct Job {
         pid_t process = 0;
         files::Descriptor out, err;
+        std::optional<int> code = {};  ///< once it has ended
+        /// Whether it still runs.
+        [[nodiscard]] bool goes_on();
     };
+    static constexpr std::size_t most_kept = 16;  ///< ended jobs whose reader does not come
     std::map<std::int64_t, Job> jobs_;
     std::int64_t last_ = 0;
 };

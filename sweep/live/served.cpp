@@ -27,7 +27,9 @@ using campaign::JsonText;
 constexpr double least_pause = 0.4, rest_after_poll = 20;  // s; times what a poll took
 constexpr auto now_pause = std::chrono::seconds(1);
 constexpr std::size_t most_recent = 32U << 20U;  // bytes of events kept for readers that were away
-constexpr std::int64_t most_answer = 16 << 20, most_film = 256 << 20;  // bytes
+// A film takes as long as its case: SQL is still answered beside two of them.
+constexpr Jobs::Bounds of_query{.most_at_once = 4, .most_bytes = 16 << 20},
+    of_film{.most_at_once = 2, .most_bytes = 256 << 20};
 constexpr std::string_view json_type = "application/json";
 
 std::string drawn_word(std::size_t bytes) {
@@ -74,6 +76,17 @@ bool is_own_host(std::string_view name) {
     std::array<char, 65> host{};
     ::gethostname(host.data(), host.size() - 1);
     return name == host.data();
+}
+
+/// Whether this process has the file open: the number comes from a file that anybody may have written.
+bool has_open(std::int64_t process, const fs::path& file) {
+    if (process <= 1) return false;
+    std::error_code error;
+    const fs::directory_iterator open_files(fmt::format("/proc/{}/fd", process), error);
+    return !error && std::ranges::any_of(open_files, [&](const auto& one) {
+        std::error_code ignored;
+        return fs::equivalent(one.path(), file, ignored);
+    });
 }
 
 std::vector<Follower> follow(const std::vector<fs::path>& databases) {
@@ -179,6 +192,8 @@ std::string Served::look() {
 }
 
 HttpReply Served::answer(const HttpQuestion& question) {
+    if (question.too_large)
+        return refused(413, fmt::format("the question has more than {} bytes", HttpServer::most_body));
     if (!of_this_machine(question.host)) return refused(403, "this server answers to names of its own machine only");
     if (!same_word(argument(question, "token"), token_))
         return refused(403, "the token is wrong: open the address that `grainsweep serve` printed");
@@ -243,8 +258,8 @@ HttpReply Served::start_query(const HttpQuestion& question) {
     if (question.body.empty()) return refused(400, "the question is empty");
     const auto file = fs::absolute(follower->file());
     const auto number =
-        jobs_.start({"query", file.string(), question.body, "--format", "json", "--limit-seconds", "10"},
-                    file.parent_path(), most_answer);
+        jobs_.start({"query", "--format", "json", "--limit-seconds", "10", "--", file.string(), question.body},
+                    file.parent_path(), of_query);
     return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
 }
 
@@ -257,8 +272,8 @@ HttpReply Served::start_film(const HttpQuestion& question) {
     if (fs::exists(film, error)) return json({{"film", true}});
     fs::create_directories(film.parent_path(), error);
     if (error) return refused(500, fmt::format("'{}': {}", film.parent_path().string(), error.message()));
-    const auto number = jobs_.start({"replay", file.string(), std::string(id), "--watch", film.string()},
-                                    file.parent_path(), most_film);
+    const auto number =
+        jobs_.start({"replay", file.string(), std::string(id), "--watch", film.string()}, file.parent_path(), of_film);
     return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
 }
 
@@ -291,7 +306,8 @@ HttpReply Served::steer(const HttpQuestion& question) {
     if (question.path == "/stop") {
         if (!now) return refused(409, "nothing runs");
         if (!is_own_host(now->host)) return refused(409, fmt::format("the run is on host {}", now->host));
-        if (::kill(static_cast<pid_t>(now->process), SIGINT) != 0) return refused(409, "the run has ended");
+        if (!has_open(now->process, file) || ::kill(static_cast<pid_t>(now->process), SIGINT) != 0)
+            return refused(409, "the run has ended");
         return json({{"stopping", true}});
     }
     if (now || runner_.running()) return refused(409, "a run is under way; stop it first");

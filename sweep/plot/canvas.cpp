@@ -1,5 +1,7 @@
 #include "sweep/plot/canvas.hpp"
 
+#include <cairo.h>
+
 #include <array>
 #include <string_view>
 #include <utility>

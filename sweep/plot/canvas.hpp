@@ -3,10 +3,10 @@
 
 #include "sweep/plot/plot.hpp"
 
-#include <cairo.h>
-
 #include <string>
 #include <vector>
+
+struct _cairo;  // cairo_t
 
 namespace grainsweep::plot {
 
@@ -19,9 +19,9 @@ enum class Anchor { start, middle, end };
 class Canvas {
 public:
     /// `context` stays its owner's.
-    explicit Canvas(cairo_t* context);
+    explicit Canvas(_cairo* context);
 
-    [[nodiscard]] cairo_t* context() const { return context_; }
+    [[nodiscard]] _cairo* context() const { return context_; }
     void use(Colour tone);
     void use(Colour tone, double line_width, bool dashed = false);
     void segment(double x0, double y0, double x1, double y1);
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, double size, double length);
 
 private:
-    cairo_t* context_;
+    _cairo* context_;
 };
 
 }  // namespace grainsweep::plot

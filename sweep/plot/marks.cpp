@@ -1,5 +1,7 @@
 #include "sweep/plot/marks.hpp"
 
+#include <cairo.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,7 @@
 #include "sweep/plot/panel.hpp"
 
+#include <cairo.h>
+
 #include "sweep/plot/axes.hpp"
 #include "sweep/plot/marks.hpp"
 

@@ -17,12 +17,12 @@ std::string with_minus(const std::string& number) {
     return number.starts_with('-') ? std::string(minus) + number.substr(1) : number;
 }
 
-/// 10 with a raised exponent, else the number to three digits.
+/// 10 with a raised exponent, else the number.
 std::string power_label(double x) {
     static constexpr std::array<std::string_view, 10> raised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     const double exponent = std::log10(x);
     if (std::abs(exponent) < 3.5 || std::abs(exponent - std::round(exponent)) > slack)
-        return with_minus(fmt::format("{:.3g}", x));
+        return fmt::format("{:.6g}", x);
     std::string text = exponent < 0 ? "10⁻" : "10";
     for (const char digit : std::to_string(std::abs(std::lround(exponent))))
         text += raised[static_cast<std::size_t>(digit - '0')];

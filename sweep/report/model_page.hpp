@@ -4,9 +4,8 @@
 //   averaged   mean over 128 Sobol points of the other factors of the mean response; points that the campaign's `where`
 //              leaves out and points where an answer is less likely than none (answers.hpp) do not count, where less
 //              than four are left there is nothing
-//   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of the
-//   mean and of a
-//              single run about it
+//   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of
+//              the mean and of a single run about it
 //
 // Curves have 31 points, the map 21 x 21 cells, evenly over the ranges (logarithmic ones over their logarithms). A
 // factor matters by the range of its averaged curve.

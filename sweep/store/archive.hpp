@@ -137,6 +137,13 @@ void store_machine(Connection& db, const campaign::Campaign& campaign);
 /// Returns what of machines is not as it was written, a sentence each.
 [[nodiscard]] std::vector<std::string> damaged_machines(const Connection& db);
 
+// files.cpp
+/// Stores the files that a campaign uses and their contents. Throws WrongQuestion where one has changed since it was
+/// read.
+void store_files(Connection& db, std::int64_t campaign_key, const campaign::Campaign& campaign);
+/// Returns what of them is not as it was written, a sentence each.
+[[nodiscard]] std::vector<std::string> damaged_files(const Connection& db);
+
 /// Creates or renews the view that bears the campaign's name; where a view of ours was dropped or altered, all of them.
 void make_views(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);
 

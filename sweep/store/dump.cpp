@@ -3,7 +3,8 @@
 //
 //     case ID scene=NAME revision=N seed=N outcome=WORD
 //       NAME = VALUE                      inputs that differ from the scene's defaults
-//       message TEXT                      why: skipped, unstable, rejected (a crash is of the machine)
+//       message TEXT                      why: skipped, unstable, rejected (a crash is of the machine); where an
+//                                         adopted answer comes from
 //       scalar NAME = VALUE
 //       series NAME K time bin value      "-" where undefined
 //     campaign NAME scene=NAME revision=N seed=N design=KIND [stopped_at=N]
@@ -99,8 +100,8 @@ std::vector<std::int64_t> counted_cases(const Connection& db) {
 void dump_cases(const Connection& db, const Sink& sink) {
     const auto counted = counted_cases(db);
     auto rows = db.ask(
-        "SELECT case_key, case_id, scene, revision, seed, outcome, CASE WHEN outcome IN ('skipped', 'unstable', "
-        "'rejected') "
+        "SELECT case_key, case_id, scene, revision, seed, outcome, CASE WHEN outcome IN ('completed', 'skipped', "
+        "'unstable', 'rejected') "
         "THEN (SELECT message FROM attempt AS t WHERE t.case_key = c.case_key AND t.outcome = c.outcome "
         "ORDER BY number DESC LIMIT 1) END FROM sim_case AS c NOT INDEXED WHERE outcome <> 'abandoned' "
         "ORDER BY +case_id");

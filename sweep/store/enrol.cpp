@@ -234,6 +234,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
     store_provenance(*impl_, campaign, key, provenance);
     store_program(db, campaign);
     store_machine(db, campaign);
+    store_files(db, key, campaign);
 
     KnownCases known = known_cases(db, cases);
     const bool as_remembered = std::exchange(impl_->as_remembered, false);

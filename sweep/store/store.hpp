@@ -88,6 +88,12 @@ struct CasePlace {
     std::optional<std::int64_t> attempts;    ///< limits.attempts of its last run, where that said so
 };
 
+/// A file that a campaign used.
+struct StoredFile {
+    std::string place, name, hash;      ///< where its campaign file names it, how, and the hash of its contents
+    std::optional<std::int64_t> bytes;  ///< none: the contents are not stored
+};
+
 /// How much of its design a campaign has: points the design numbers, and repeats of each.
 struct Extent {
     std::int64_t candidates = 0;  ///< those that the `where` clause leaves out included
@@ -204,6 +210,11 @@ public:
     /// The program that answers the cases of a scene, with the contents of its files; none where it is no program's, or
     /// of an archive that has none. Throws BrokenWorld where it is not as it was written.
     [[nodiscard]] std::shared_ptr<const campaign::Program> program(std::string_view scene) const;
+    /// Files of the campaigns that a case belongs to.
+    [[nodiscard]] std::vector<StoredFile> files_of(std::string_view case_id) const;
+    /// Makes the contents of files that a case names known to this process, as far as they are stored: they stand
+    /// before what lies at the paths of then. Throws BrokenWorld where they are not as written.
+    void enter_files_of(const campaign::Case& question) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
     [[nodiscard]] std::vector<CasePlace> places(std::string_view case_id) const;
     /// The answer that stands, or how the last attempt ended where there is none.

@@ -74,16 +74,17 @@ std::vector<double> Answers::rows(std::span<const Setting> settings) const {
     return rows_of(features_, settings);
 }
 
-std::vector<double> Answers::probability(std::span<const Setting> settings) const {
-    std::vector<double> p(settings.size(), 1);
+std::vector<Answers::Answer> Answers::at(std::span<const Setting> settings) const {
+    std::vector<Answer> answers(settings.size());
     if (model_) {
         const auto asked = rows(settings);
-        p = model_->probabilities({asked, features_.names.size()});
+        const auto predicted = model_->predict({asked, features_.names.size()});
+        for (std::size_t i = 0; i < answers.size(); ++i) answers[i] = {predicted[i].mean, predicted[i].mean_low()};
     }
     if (possible_)
-        for (std::size_t i = 0; i < p.size(); ++i)
-            if (!possible_(settings[i])) p[i] = 0;
-    return p;
+        for (std::size_t i = 0; i < answers.size(); ++i)
+            if (!possible_(settings[i])) answers[i] = {0, 0};
+    return answers;
 }
 
 std::vector<bool> Answers::expected(std::span<const Setting> settings) const {

@@ -36,8 +36,12 @@ class Answers {
 public:
     explicit Answers(const ModelCases& cases);
 
-    /// 1 everywhere where no case failed.
-    [[nodiscard]] std::vector<double> probability(std::span<const Setting> settings) const;
+    struct Answer {
+        double probability = 1;
+        double low = 1;  ///< lower end of its 95 % interval
+    };
+    /// Both are 1 everywhere where no case failed.
+    [[nodiscard]] std::vector<Answer> at(std::span<const Setting> settings) const;
     /// Whether an answer is likelier than none, which is faster.
     [[nodiscard]] std::vector<bool> expected(std::span<const Setting> settings) const;
     [[nodiscard]] Near near(const Setting& setting) const;

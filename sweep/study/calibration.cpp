@@ -220,7 +220,7 @@ std::string undetermined(const CalibrationReport& report) {
     return text;
 }
 
-std::optional<Verdict> verdict_of(const CalibrationReport& report) {
+std::optional<Verdict> calibration_verdict(const CalibrationReport& report) {
     const auto& found = report.found;
     const auto miss = designs::largest_miss(found.targets, found.check);
     if (!found.waves_end || !found.posterior || !miss) return std::nullopt;
@@ -282,7 +282,7 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
         const auto* measured = scene == nullptr ? nullptr : scene->find_observable(place.observable);
         if (measured != nullptr) check.unit = measured->unit;
     }
-    report.verdict = verdict_of(report);
+    report.verdict = calibration_verdict(report);
     report.notes = notes_of(report);
     if (by_another_program)
         report.notes.push_back(fmt::format(

@@ -34,7 +34,7 @@ Predicted predict(const ModelCases& cases, const ObservableModel& model, std::ve
     predicted.predictions = model.predict(predicted.settings);
     predicted.defined = model.defined(predicted.settings);
     const Answers answers(cases);
-    predicted.answers = answers.probability(predicted.settings);
+    for (const auto& one : answers.at(predicted.settings)) predicted.answers.push_back(one.probability);
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
         predicted.near.push_back(answers.near(predicted.settings[i]));
         constexpr double none = std::numeric_limits<double>::quiet_NaN();

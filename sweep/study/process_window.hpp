@@ -3,15 +3,15 @@
 // Every observable that condition or objective names has a response model (response_models.hpp); the models' errors
 // are independent of one another (stats/process_window.hpp). window_question.hpp has the probability P(x) that the
 // condition holds at a setting, with that of an answer in it: no setting is best, counted for the share or on the front
-// where P or the probability of an answer is below 1 - risk. The objective may be a factor, too (the fastest setting
-// that is good enough): it has no error, and next cases are those of the largest P(x) (x_j - x_j*), the expected
-// improvement on the best x_j* of the window. The box is searched at 4,096 Sobol points (levels as they are), less
-// those that the campaign's `where` leaves out; the best is then improved by Sobol points in boxes about it that shrink
-// to a thousandth of the range. Best is the largest mean less one standard error, the effective best of Huang et al.
-// 2006 (stats/process_window.hpp), with which next cases are compared, too. Settings are rounded to what an engineer
-// can set: a two-thousandth of the range or finer. Of factors that
-// follow a distribution the box is its range (stats::Distribution::range), the points are its quantiles, and a share of
-// them is a probability. Nothing is drawn: same cases in, same window out.
+// where P or the probability of an answer is below 1 - risk, and the best one answers surely where one does. The
+// objective may be a factor, too (the fastest setting that is good enough): it has no error, and next cases are those
+// of the largest P(x) (x_j - x_j*), the expected improvement on the best x_j* of the window. The box is searched at
+// 4,096 Sobol points (levels as they are), less those that the campaign's `where` leaves out; the best is then improved
+// by Sobol points in boxes about it that shrink to a thousandth of the range. Best is the largest mean less one
+// standard error, the effective best of Huang et al. 2006 (stats/process_window.hpp), with which next cases are
+// compared, too. Settings are rounded to what an engineer can set: a two-thousandth of the range or finer. Of factors
+// that follow a distribution the box is its range (stats::Distribution::range), the points are its quantiles, and a
+// share of them is a probability. Nothing is drawn: same cases in, same window out.
 #pragma once
 
 #include "sweep/study/window_question.hpp"

@@ -121,10 +121,11 @@ std::vector<Judgement> WindowQuestion::judge_by(std::span<const ObservableModel>
 std::vector<Judgement> WindowQuestion::judge_each(std::span<const ObservableModel> by,
                                                   std::span<const Setting> settings) const {
     std::vector<Judgement> judged(settings.size());
-    const auto answers = answers_->probability(settings);
+    const auto answers = answers_->at(settings);
     for (std::size_t i = 0; i < settings.size(); ++i) {
         judged[i].setting = settings[i];
-        judged[i].answers = answers[i];
+        judged[i].answers = answers[i].probability;
+        judged[i].answers_low = answers[i].low;
     }
     for (const auto& model : by) {
         const auto predictions = model.predict(settings);
@@ -154,13 +155,15 @@ Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::
         const auto group = behind.subspan(from, size);
         from += size;
         if (size == 0) continue;
-        double probability = 0, answers = 0;
+        double probability = 0, answers = 0, low = 0;
         for (const auto& each : group) {
             probability += each.probability / static_cast<double>(size);
             answers += each.answers / static_cast<double>(size);
+            low += each.answers_low / static_cast<double>(size);
         }
         one.probability = std::min(one.probability, probability);
         one.answers = std::min(one.answers, answers);
+        one.answers_low = std::min(one.answers_low, low);
     }
     for (std::size_t k = 0; k < models_.size(); ++k) {
         one.predictions.push_back(mean_prediction(behind, k));
@@ -193,6 +196,8 @@ bool WindowQuestion::better(const Judgement& a, const Judgement& b) const {
     const bool a_meets = meets(a), b_meets = meets(b);
     if (a_meets != b_meets) return a_meets;
     if (a.believed != b.believed) return a.believed;
+    const bool a_sure = a.answers_low >= 1 - request_->risk, b_sure = b.answers_low >= 1 - request_->risk;
+    if (a_sure != b_sure) return a_sure;
     if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
     // The objective less one standard error: the largest mean alone is as often an error as a peak.
     const double sign = request_->maximise ? 1 : -1;

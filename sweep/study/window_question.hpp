@@ -43,6 +43,7 @@ struct Judgement {
     std::vector<double> defined;                 ///< the same: probability that the observable is defined
     stats::Prediction objective{};               ///< where there is one; of a factor its value, without error
     double answers = 1;                          ///< probability that a case has an answer
+    double answers_low = 1;                      ///< lower end of its 95 % interval
     bool believed = true;                        ///< an answer is likelier than none, every feature has a number
     double probability = std::numeric_limits<double>::quiet_NaN();
 };
@@ -62,6 +63,9 @@ public:
     [[nodiscard]] Setting least_known(std::span<const ObservableModel> by, const Setting& setting) const;
 
     /// Whether `a` is the better answer: the objective where the condition is met surely enough, else the probability.
+    /// Settings whose answer is sure, answers_low >= 1 - risk, come before all others: where cases fail beyond a sharp
+    /// border, an objective that grows towards it leads to where P has just sunk to 1 - risk, and of 20 such settings
+    /// one lies beyond.
     [[nodiscard]] bool better(const Judgement& a, const Judgement& b) const;
     [[nodiscard]] bool meets(const Judgement& one) const { return one.probability >= 1 - request_->risk; }
 

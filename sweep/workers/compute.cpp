@@ -1,7 +1,6 @@
 #include "sweep/workers/compute.hpp"
 
-#include "sweep/files/broken_world.hpp"
-#include "sweep/files/whole_file.hpp"
+#include "sweep/campaign/file_contents.hpp"
 
 #include <fmt/format.h>
 #include <time.h>
@@ -12,7 +11,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -158,34 +156,6 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera, Mean& used) {
     return true;
 }
 
-/// Nothing where there is no such file. One that is there and cannot be read is no matter of the case: BrokenWorld.
-std::optional<std::string> contents_of(const std::string& path) {
-    std::error_code error;
-    auto text = files::whole_file(path, error);
-    if (error == std::errc::no_such_file_or_directory) return std::nullopt;
-    if (error) throw BrokenWorld(fmt::format("'{}': cannot be read: {}", path, error.message()));
-    return text;
-}
-
-/// The files that inputs name, or why they cannot be used: they are part of the question by their contents, so what has
-/// changed since the campaign was read must not be computed under its name.
-std::variant<Files, std::string> read_files(const Inputs& inputs) {
-    Files files;
-    for (const auto& [name, value] : inputs) {
-        const auto* word = std::get_if<std::string>(&value);
-        const auto file = word == nullptr ? std::nullopt : file_word(*word);
-        if (!file) continue;
-        auto read = contents_of(std::string(file->path));
-        if (!read) return fmt::format("{}: cannot read {}", name, file->path);
-        std::string contents = std::move(*read);
-        if (campaign::content_hash(contents) != file->hash)
-            return fmt::format("{}: {} has changed since the campaign was read; run the campaign file again", name,
-                               file->path);
-        files.emplace(name, std::move(contents));
-    }
-    return files;
-}
-
 bool all_finite(const Observations& observations) {
     const auto infinite = [](double x) { return std::isinf(x); };
     for (const auto& [name, value] : observations.scalars) {
@@ -220,7 +190,7 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         return close(campaign::Outcome::rejected,
                      fmt::format("this build has no scene '{}' of revision {}", question.scene, question.revision));
     }
-    auto read = read_files(question.inputs);
+    auto read = campaign::files_named(question.inputs);
     if (auto* const why = std::get_if<std::string>(&read)) return close(campaign::Outcome::rejected, std::move(*why));
     const Files& files = std::get<Files>(read);
     const Inputs inputs = info->on_attempt ? info->on_attempt(question.inputs, attempt) : question.inputs;

@@ -1,7 +1,7 @@
 #include "sweep/workers/worker.hpp"
 
 #include "sweep/campaign/machine.hpp"
-#include "sweep/workers/staged_machine.hpp"
+#include "sweep/workers/staged_campaign.hpp"
 
 #include "sweep/files/artefacts.hpp"
 #include "sweep/files/broken_world.hpp"
@@ -127,8 +127,7 @@ public:
     }
     bool prepare(const Run& run) override {
         damage_.clear();
-        if (folder_ && campaign::is_machine(run.question.scene) && find_scene(run.question.scene) == nullptr)
-            enter_staged_machine(run.question.scene, *folder_);
+        if (folder_) enter_staged(run.question, *folder_);
         checkpoints_.emplace(folder_ ? &*folder_ : nullptr, run.question.id, options_.computer);
         // Looking for a checkpoint costs a failed open; only a case tried before can have one.
         resume_ = run.attempt > 1 ? checkpoints_->load() : std::nullopt;

@@ -92,6 +92,9 @@ const std::vector<Rule>& rules() {
         {"sweep/campaign/machine",  // a machine file becomes numbers for the solver
          {"sweep/campaign/", "sweep/files/", "solver/machine/", "solver/plain_text.hpp", "solver/scenes/values.hpp",
           "solver/scenes/scene.hpp"}},
+        {"sweep/campaign/powder",  // a powder file becomes parameters of scenes
+         {"sweep/campaign/", "sweep/files/", "solver/plain_text.hpp", "solver/particles/size_",
+          "solver/dem/time_step.hpp", "solver/scenes/kit/", "solver/scenes/values.hpp"}},
         {"sweep/campaign/",
          {"sweep/campaign/", "sweep/designs/", "sweep/files/", "stats/convergence_rule.hpp", "stats/distribution.hpp",
           "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
@@ -148,7 +151,7 @@ const std::vector<Library>& libraries() {
         {"udunits2.h", {"sweep/campaign/quantity.cpp"}},
         {"xlsxwriter.h", {"sweep/report/workbook.cpp"}},
         {"cairo", {"sweep/plot/"}},
-        {"nlopt", {"stats/response/fit.cpp"}},
+        {"nlopt", {"stats/response/climb.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler
         {"microhttpd.h", {"sweep/live/http_server.cpp"}},

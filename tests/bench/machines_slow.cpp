@@ -1,5 +1,6 @@
-// Ready machines against ensembles of LIGGGHTS: means over as many seeds, within three standard errors of their
-// difference; minutes: slow_machines. Reference: tests/reference/machines/ensembles.csv, definitions in its README.
+// Ready machines against ensembles of LIGGGHTS: means over seeds, within three standard errors of their difference;
+// minutes: slow_machines. References: ensembles.csv of tests/reference/machines and of tests/reference/laboratory,
+// definitions in their README.md.
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/installed_machines.hpp"
@@ -34,15 +35,17 @@ struct Reference {
 /// By case and quantity. `tolerance`: for the mean over as many seeds.
 const std::map<std::pair<std::string, std::string>, Reference>& references() {
     static const auto all = [] {
-        std::ifstream file(tests::source("tests/reference/machines/ensembles.csv"));
-        std::stringstream text;
-        text << file.rdbuf();
-        const std::string contents = text.str();
-        campaign::CsvTable table(contents, [](const std::string& rule) { throw std::invalid_argument(rule); });
         std::map<std::pair<std::string, std::string>, Reference> found;
-        while (const auto row = table.next()) {
-            if ((*row)[9].empty()) continue;  // no scatter is known
-            found[{(*row)[0], (*row)[3]}] = {std::stod((*row)[4]), std::stod((*row)[9]), std::stoi((*row)[1])};
+        for (const std::string folder : {"machines", "laboratory"}) {
+            std::ifstream file(tests::source("tests/reference/" + folder + "/ensembles.csv"));
+            std::stringstream text;
+            text << file.rdbuf();
+            const std::string contents = text.str();
+            campaign::CsvTable table(contents, [](const std::string& rule) { throw std::invalid_argument(rule); });
+            while (const auto row = table.next()) {
+                if ((*row)[9].empty()) continue;  // no scatter is known
+                found[{(*row)[0], (*row)[3]}] = {std::stod((*row)[4]), std::stod((*row)[9]), std::stoi((*row)[1])};
+            }
         }
         return found;
     }();
@@ -116,6 +119,12 @@ const std::vector<Quantity> of_rheometer = {
     same("energy_rotation_J", "rotation_energy"), same("energy_axial_J", "axial_energy"),
     same("flow_energy_J", "flow_energy"), same("torque_z20", "torque"), same("force_z20", "force")};
 
+std::vector<Quantity> of_laboratory(const std::vector<std::string>& observables) {
+    std::vector<Quantity> quantities;
+    for (const std::string& name : observables) quantities.push_back(same(name, name));
+    return quantities;
+}
+
 class MachinesAgainstLiggghts : public testing::TestWithParam<Case> {};
 
 TEST_P(MachinesAgainstLiggghts, AgreeWithinThreeStandardErrors) {
@@ -155,7 +164,30 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"rheometer_mu0.6", "rheometer", {{"friction", 0.6}}, of_rheometer},
                     Case{"compaction_hard0", "compaction", {{"hard", 0.0}}, of_compaction},
                     Case{"compaction_hard0.5", "compaction", {{"hard", 0.5}}, of_compaction},
-                    Case{"compaction_hard1", "compaction", {{"hard", 1.0}}, of_compaction}),
+                    Case{"compaction_hard1", "compaction", {{"hard", 1.0}}, of_compaction},
+                    Case{"hall_flow",
+                         "hall_flow",
+                         {{"particles", std::int64_t{1200}}, {"diameter", 0.00045}},
+                         of_laboratory({"flow_time", "fraction"})},
+                    Case{"apparent_density",
+                         "apparent_density",
+                         {{"cup_diameter", 0.008}, {"cup_height", 0.0116}, {"drop_height", 0.007}, {"opening", 0.005}},
+                         of_laboratory({"fraction", "core_fraction", "struck"})},
+                    Case{"tapped_density",
+                         "tapped_density",
+                         {{"cylinder_diameter", 0.01},
+                          {"particles", std::int64_t{700}},
+                          {"taps", std::int64_t{6}},
+                          {"density", 7800.0}},
+                         of_laboratory({"hausner", "poured_fraction", "tapped_fraction"})},
+                    Case{"angle_of_repose",
+                         "angle_of_repose",
+                         {{"plate_diameter", 0.02}, {"drop_height", 0.016}, {"opening", 0.006}, {"density", 7800.0}},
+                         of_laboratory({"angle", "angle_moment", "on_plate"})},
+                    Case{"shear_box",
+                         "shear_box",
+                         {{"width", 0.06}, {"displacement", 0.012}},
+                         of_laboratory({"stress_ratio", "shear_stress", "normal_stress"})}),
     [](const auto& one) {
         std::string name = one.param.reference;
         std::ranges::replace(name, '.', '_');

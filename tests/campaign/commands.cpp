@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 namespace grainsweep::tests::commands_test {
@@ -166,7 +167,6 @@ TEST(Commands, WrongArgumentsAreOneSentenceAndTwo) {
     const Folder folder;
     folder.write("c.json", config);
     const std::vector<std::pair<std::vector<std::string>, std::string>> wrongs = {
-        {{}, "grainsweep: name a command; grainsweep --help lists them.\n"},
         {{"plna"}, "grainsweep: there is no command 'plna'; grainsweep --help lists them. Did you mean 'plan'?\n"},
         {{"plan"}, "grainsweep: CONFIG is required.\n"},
         {{"plan", "d.json"}, "grainsweep: d.json: there is no such campaign file. Did you mean 'c.json'?\n"},
@@ -191,6 +191,26 @@ TEST(Commands, WrongArgumentsAreOneSentenceAndTwo) {
         EXPECT_EQ(ended.err, sentence);
         EXPECT_EQ(ended.out, "");
     }
+}
+
+TEST(Commands, AloneTheProgramListsItsCommandsAndEveryHelpEndsWithAnExample) {
+    const Folder folder;
+    const auto alone = in_folder(folder, {});
+    EXPECT_EQ(alone.code, 2);
+    EXPECT_EQ(alone.err, "");
+    EXPECT_EQ(alone.out, in_folder(folder, {"--help"}).out);
+    std::istringstream lines(alone.out.substr(alone.out.find("Subcommands:")));
+    std::size_t commands = 0;
+    for (std::string line; std::getline(lines, line) && line.find("Example") == std::string::npos;) {
+        if (!line.starts_with("  ") || line[2] == ' ') continue;
+        const auto name = line.substr(2, line.find(' ', 2) - 2);
+        const auto help = in_folder(folder, {name, "--help"}).out;
+        const auto at = help.find("Example:\n  grainsweep " + name);
+        EXPECT_NE(at, std::string::npos) << name;
+        EXPECT_EQ(std::ranges::count(help.substr(at), '\n'), 2) << name << " ends with it";
+        ++commands;
+    }
+    EXPECT_GT(commands, 20U);
 }
 
 // The particle loops of a narrower processor, through the whole program: the same answer to single precision, and the

@@ -25,7 +25,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 const char* mixed = R"({"campaign": "mixed", "scene": "rehearsal", "factors": [
   {"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0.001, 1], "scale": "log"},
   {"name": "behaviour", "levels": ["normal", "unstable"]}],
-  "fixed": {"noise": 0.1}, "design": {"kind": "halton", "points": 96, "sequences": 4},
+  "fixed": {"noise": 0.02}, "design": {"kind": "halton", "points": 192, "sequences": 4},
   "convergence": {"observable": "y", "block": 16, "tolerance": 0.001}})";
 
 struct Figures : testing::Test {
@@ -63,29 +63,29 @@ TEST_F(Figures, EveryOneIsDrawnInEveryFormAndTheSameAgain) {
     std::vector<std::string> names;
     for (const auto& figure : figures) names.push_back(figure.at("figure"));
     EXPECT_THAT(names, testing::ElementsAre("distribution", "convergence", "effects", "sensitivity", "variance",
-                                            "model", "model-map", "cases", "map", "against", "curves"));
+                                            "model", "model-map", "cases", "map", "against"));
     for (const auto& name : names) {
         for (const std::string width : {"85mm", "170mm"}) {
             const auto pdf = drawn("mixed.db", name, "a.pdf", {"--width", width});
             EXPECT_TRUE(pdf.starts_with("%PDF-")) << name;
-            EXPECT_EQ(pdf, drawn("mixed.db", name, "b.pdf", {"--width", width})) << name;
+            EXPECT_TRUE(pdf == drawn("mixed.db", name, "b.pdf", {"--width", width})) << name;
         }
-        EXPECT_TRUE(drawn("mixed.db", name, "a.svg").starts_with("<?xml")) << name;
+        const auto svg = drawn("mixed.db", name, "a.svg");
+        EXPECT_TRUE(svg.starts_with("<?xml")) << name;
+        EXPECT_TRUE(svg == drawn("mixed.db", name, "b.svg")) << name;
     }
     const auto png = drawn("mixed.db", "effects:x1", "a.png");
     EXPECT_TRUE(png.starts_with("\x89PNG"));
-    EXPECT_EQ(png, drawn("mixed.db", "effects:x1", "b.png", {"--width", "8.5 cm"}));
+    EXPECT_TRUE(png == drawn("mixed.db", "effects:x1", "b.png", {"--width", "8.5 cm"}));
 }
 
 TEST_F(Figures, VariablesAreChosen) {
     run(mixed, "mixed");
     const auto usual = drawn("mixed.db", "cases", "a.pdf");
     const auto other = drawn("mixed.db", "cases", "b.pdf", {"--across", "x1", "--up", "x2", "--colour", "y"});
-    EXPECT_NE(usual, other);
-    EXPECT_NE(drawn("mixed.db", "map", "a.pdf", {"--across", "x1", "--up", "x2"}),
-              drawn("mixed.db", "map", "b.pdf", {"--across", "x2", "--up", "x1"}));
-    EXPECT_NE(drawn("mixed.db", "curves", "a.pdf", {"--colour", "x1"}),
-              drawn("mixed.db", "curves", "b.pdf", {"--colour", "behaviour"}));
+    EXPECT_TRUE(usual != other);
+    EXPECT_TRUE(drawn("mixed.db", "map", "a.pdf", {"--across", "x1", "--up", "x2"}) !=
+                drawn("mixed.db", "map", "b.pdf", {"--across", "x2", "--up", "x1"}));
 }
 
 TEST_F(Figures, WrongUsesAreOneSentenceAndWriteNothing) {

@@ -183,6 +183,49 @@ TEST_F(Terminal, TheWidthIsThatOfTheTerminal) {
     }
 }
 
+/// What a run writes to a terminal of so many columns.
+std::string seen_on_terminal(const std::filesystem::path& folder, std::uint16_t width, const char* no_colour) {
+    int terminal = -1;
+    const winsize size{.ws_row = 24, .ws_col = width, .ws_xpixel = 0, .ws_ypixel = 0};
+    const std::string program = executable().string();
+    const pid_t child = ::forkpty(&terminal, nullptr, nullptr, &size);
+    if (child == 0) {
+        if (::chdir(folder.c_str()) != 0) ::_exit(126);
+        ::setenv("TERM", "xterm", 1);
+        ::setenv("NO_COLOR", no_colour, 1);
+        ::execl(program.c_str(), program.c_str(), "run", "slow.json", "-j", "1", nullptr);
+        ::_exit(127);
+    }
+    std::string seen;
+    std::array<char, 4096> bytes{};
+    for (ssize_t count = 0; (count = ::read(terminal, bytes.data(), bytes.size())) > 0;)
+        seen.append(bytes.data(), static_cast<std::size_t>(count));
+    ::close(terminal);
+    ::waitpid(child, nullptr, 0);
+    return seen;
+}
+
+TEST_F(Terminal, TheProgressLineFitsAndHasColourWhereItIsWanted) {
+    folder.write("slow.json", R"({"campaign": "slow", "scene": "rehearsal", "fixed": {"wait_seconds": 0.02},
+        "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}], "design": {"kind": "halton",
+        "points": 64, "sequences": 8}, "convergence": {"observable": "y", "tolerance": 1e-9}})");
+    for (const auto& [width, no_colour] : {std::pair(std::uint16_t{80}, ""), {std::uint16_t{40}, "1"}}) {
+        std::filesystem::remove(folder / "slow.db");
+        auto seen = seen_on_terminal(folder.path(), width, no_colour);
+        EXPECT_EQ(seen.find("\033[32m") != std::string::npos, *no_colour == '\0') << seen;
+        for (const std::string code : {"\033[32m", "\033[31m", "\033[0m", "\033[K"})
+            for (auto at = seen.find(code); at != std::string::npos; at = seen.find(code)) seen.erase(at, code.size());
+        std::istringstream lines(seen);
+        bool left = false;
+        for (std::string line; std::getline(lines, line, '\r');) {
+            if (line.find("/64 cases") == std::string::npos) continue;
+            EXPECT_LT(width_of(line), width) << line;
+            left = left || line.find(" left") != std::string::npos;
+        }
+        EXPECT_TRUE(left) << "the time left is shown before the verdict: " << seen;
+    }
+}
+
 TEST_F(Terminal, StatusHasAUnitOnEveryNumber) {
     const auto text = run({"status", "wide.db"}).out;
     std::istringstream lines(text);

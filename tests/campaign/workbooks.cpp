@@ -77,14 +77,14 @@ struct Workbooks : testing::Test {
 
 TEST_F(Workbooks, HoldNumbersAsNumbersUnitsAndWhereTheyComeFrom) {
     const auto book =
-        asked("SELECT point, x1, y, wait_seconds, outcome, NULL AS nothing FROM r, (SELECT 0.001 AS wait_seconds)");
+        asked("SELECT point, x1, y, wait_seconds, outcome, NULL AS blank FROM r, (SELECT 0.001 AS wait_seconds)");
     EXPECT_EQ(book["sheets"], json({"rows", "provenance"}));
     EXPECT_EQ(book["frozen"], json({"1"}));
     const auto& rows = book["rows"];
     ASSERT_EQ(rows.size(), 4U);
     EXPECT_EQ(
         rows[0],
-        json({{"A", "point"}, {"B", "x1"}, {"C", "y"}, {"D", "wait_seconds (s)"}, {"E", "outcome"}, {"F", "nothing"}}));
+        json({{"A", "point"}, {"B", "x1"}, {"C", "y"}, {"D", "wait_seconds (s)"}, {"E", "outcome"}, {"F", "blank"}}));
     EXPECT_EQ(rows[1]["A"], 0);
     EXPECT_EQ(rows[1]["B"], 0.5);
     EXPECT_TRUE(rows[1]["C"].is_number());
@@ -148,7 +148,7 @@ TEST_F(Workbooks, AreRefusedWhereTheyCannotBe) {
     refused({"query", "r.db", "SELECT 1", "--format", "xlsx", "-o", "r.db"}, "this belongs to the database");
     refused({"query", "r.db", "SELECT 1", "--format", "xlsx", "-o", "r.json"},
             "this file exists and is not a workbook");
-    refused({"query", "r.db", "SELECT nothing", "--format", "xlsx", "-o", "b.xlsx"}, "no such column");
+    refused({"query", "r.db", "SELECT gap2", "--format", "xlsx", "-o", "b.xlsx"}, "no such column");
     EXPECT_FALSE(std::filesystem::exists(folder / "b.xlsx"));
 }
 

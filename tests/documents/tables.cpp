@@ -1,5 +1,6 @@
 // Tables of the documents that repeat what the program knows are generated from it and compared here. To write them
 // anew after a change: GRAINSWEEP_WRITE_DOCUMENTS=1 build/tests/test_documents --gtest_filter='Tables.*'
+#include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/store/store.hpp"
 #include "tests/documents/machine_tables.hpp"
@@ -7,6 +8,7 @@
 #include "tests/documents/table_rows.hpp"
 #include "tests/support/archive.hpp"
 #include "tests/support/peer_suites.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <fmt/format.h>
@@ -171,6 +173,16 @@ std::string options_table(const std::string& design) {
     return table;
 }
 
+/// The keys of a powder file, object by object.
+std::string powder_keys_table() {
+    std::string table = head({"object", "key", "default", "meaning"});
+    for (const auto& [object, keys] : campaign::powder_keys::all())
+        for (const auto& key : keys)
+            table += row({code(std::string(object)), code(std::string(key.name)),
+                          key.required ? "required" : code(std::string(key.standard)), std::string(key.meaning)});
+    return table;
+}
+
 /// The keys of one object of the campaign file, as the JSON Schema tells them.
 std::string keys_table(const std::string& section) {
     const auto schema = ordered_json::parse(answer_of({"schema"}));
@@ -253,6 +265,7 @@ std::string generated(const std::string& what) {
         const auto machine = own_part_of_machine(name, part);
         return part == "parameters" ? parameters_table(machine) : observables_table(machine);
     }
+    if (kind == "powder") return powder_keys_table();
     if (kind == "peers") return peers_table();
     if (kind == "designs") return designs_table();
     if (kind == "design") return options_table(name);

@@ -159,8 +159,12 @@ TEST(Configs, EveryFileReadsWithoutError) {
     for (const auto& entry : std::filesystem::directory_iterator(tests::source("configs"))) {
         if (entry.path().extension() != ".json") continue;
         EXPECT_NO_THROW({
-            const auto campaign = read_campaign(entry.path());
-            EXPECT_EQ(campaign.name, entry.path().stem().string());
+            const auto experiments = read_experiment_names(entry.path());
+            if (experiments.empty()) {
+                EXPECT_EQ(read_campaign(entry.path()).name, entry.path().stem().string());
+            }
+            for (const auto& name : experiments)
+                EXPECT_EQ(read_campaign(entry.path(), name).name, entry.path().stem().string() + "_" + name);
         }) << entry.path();
         ++read;
     }

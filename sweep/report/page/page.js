@@ -18,8 +18,11 @@ function heading(model) {
     plural(campaign.factors.length, "factor"),
     campaign.replicates > 1 ? plural(campaign.replicates, "repeat") + " of each point" : null,
     campaign.where ? `where ${campaign.where}` : null].filter(Boolean);
-  const ranges = campaign.factors.map((f) => [f.name, unitText(f.unit),
-    f.levels.length > 0 ? f.levels.join(", ") : `${show(f.low)} to ${show(f.high)}${f.log ? ", logarithmic" : ""}`, f.meaning]);
+  const ranges = model.factors.map((f) => {
+    const shown = quantity(f);  // in the unit of the figures
+    return f.levels.length > 0 ? [f.name, unitText(f.unit), f.levels.join(", "), f.meaning]
+      : [f.name, shown.unit, `${show(shown.of(f.low))} to ${show(shown.of(f.high))}${f.log ? ", logarithmic" : ""}`, f.meaning];
+  });
   return [el("h1", {}, campaign.name), el("p", { class: "says" }, parts.join(" · ")),
     campaign.summary ? el("p", {}, campaign.summary) : null,
     campaign.notes ? el("p", { class: "notes" }, campaign.notes) : null,
@@ -231,7 +234,7 @@ function fillOthers() {
 function replaceData(fresh) {
   const name = (index) => { const one = data.campaigns[Number(index)]; return one && `${one.database} ${one.name}`; };
   const kept = { campaign: name(chosen.campaign), other: chosen.other === "" ? null : name(chosen.other), observable: observableName(), scroll: window.scrollY,
-    selected: selected && { campaign: name(selected.index), id: open(selected.index).id(selected.row) } };
+    selected: selected && { campaign: name(selected.index), id: open(selected.index).id(selected.row) }, typing: typedInto(document.activeElement) };
   const place = (text) => fresh.campaigns.findIndex((one) => `${one.database} ${one.name}` === text);
   Object.assign(data, fresh);
   opened.clear();
@@ -247,8 +250,21 @@ function replaceData(fresh) {
     const model = open(place(kept.selected.campaign)), [row] = rowsOf(model, kept.selected.id);
     if (row !== undefined) { selected = { index: model.index, row }; selectionChanged.forEach((changed) => changed()); }
   }
+  if (kept.typing) kept.typing();
   window.scrollTo(0, kept.scroll);
   figures.filter((one) => inWindow(one.canvas)).forEach((one) => one.draw());
+}
+
+// Returns a function that goes on typing where the reader typed, in the field of the same name of a new page.
+function typedInto(field) {
+  if (!field || !field.matches("#page input[aria-label]")) return null;
+  const { selectionStart, selectionEnd } = field, label = field.getAttribute("aria-label");
+  return () => {
+    const again = [...document.querySelectorAll("#page input[aria-label]")].find((one) => one.getAttribute("aria-label") === label);
+    if (!again) return;
+    again.focus({ preventScroll: true });
+    again.setSelectionRange(selectionStart, selectionEnd);
+  };
 }
 
 function observableName() {

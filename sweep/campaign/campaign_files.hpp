@@ -1,0 +1,20 @@
+// Files that a campaign uses, for the archive. Internal to the reader.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/powder.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+/// Returns every file in `folder` that a text of the campaign file names: lists, curves, tools, packings, sizes.
+/// Programs and machines keep their files themselves, and notes name none.
+[[nodiscard]] std::vector<CampaignFile> files_beside(const Json& document, const std::filesystem::path& folder);
+/// Adds the powder file, the files it names and the sizes it stands for.
+void add_powder_files(const std::string& place, const Powder& powder, Campaign& campaign);
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,111 @@
+#include "sweep/campaign/powder_keys.hpp"
+
+#include "sweep/campaign/powder_export.hpp"
+
+#include <array>
+
+namespace grainsweep::campaign::powder_keys {
+namespace {
+
+using PowderKind = Key::Kind;
+
+constexpr auto top_keys = std::to_array<Key>({
+    needed({"powder", PowderKind::text, "name of the powder"}),
+    {"material", PowderKind::object, "density and stiffness"},
+    {"sizes", PowderKind::object, "how diameters are distributed"},
+    {"cut", PowderKind::object, "sizes that are left out: what a sieve or a classifier takes away"},
+    {"contacts", PowderKind::object, "how particles touch each other and walls"},
+    {"measured", PowderKind::array, "what was measured of the powder; for readers"},
+    {"posterior", PowderKind::text, "CSV file of settings that a calibration found, beside the powder file"},
+});
+
+constexpr auto material_keys = std::to_array<Key>({
+    {"density", PowderKind::value, "kg/m3"},
+    {"youngs_modulus", PowderKind::value, "Pa"},
+    {"poisson_ratio", PowderKind::value, "Poisson's ratio"},
+});
+
+constexpr auto contact_keys = std::to_array<Key>({
+    {"restitution", PowderKind::value, "coefficient of restitution"},
+    {"friction", PowderKind::value, "Coulomb friction"},
+    {"rolling_friction", PowderKind::value, "tangent of the steepest slope a sphere stands on"},
+    {"rolling_law", PowderKind::text, "how rolling is resisted, as in the scenes"},
+    {"cohesion", PowderKind::value, "cohesion energy density, J/m3"},
+    {"cohesion_law", PowderKind::text, "attraction, as in the scenes"},
+    {"surface_energy", PowderKind::value, "work of adhesion of jkr and dmt, J/m2"},
+    {"wall_friction", PowderKind::value, "Coulomb friction at walls"},
+    {"wall_rolling_friction", PowderKind::value, "rolling friction at walls"},
+    {"wall_restitution", PowderKind::value, "restitution at walls"},
+    {"wall_cohesion", PowderKind::value, "cohesion energy density at walls, J/m3"},
+    {"wall_surface_energy", PowderKind::value, "work of adhesion at walls, J/m2"},
+});
+
+constexpr auto size_keys = std::to_array<Key>({
+    {"file", PowderKind::text, "a CSV file of sizes, as size_file of the scenes and as powder import writes"},
+    {"diameter", PowderKind::value, "all particles are equal, m"},
+    {"d10", PowderKind::value,
+     "10 % are smaller; with d50 and d90: two half lognormal distributions through the three, m"},
+    {"d50", PowderKind::value, "half is smaller, m"},
+    {"d90", PowderKind::value, "90 % are smaller, m"},
+    {"lognormal", PowderKind::object, "by median and sigma or ratio"},
+    {"rosin_rammler", PowderKind::object, "share above d: exp(-(d/d63)^n)"},
+    {"by", PowderKind::word, "what the shares are of; of a file its header says it", "\"volume\"", {}, export_by},
+});
+
+constexpr auto lognormal_keys = std::to_array<Key>({
+    needed({"median", PowderKind::value, "half is smaller, m"}),
+    {"sigma", PowderKind::value, "standard deviation of ln d"},
+    {"ratio", PowderKind::value, "or its exponential: the geometric standard deviation"},
+});
+
+constexpr auto rosin_rammler_keys = std::to_array<Key>({
+    needed({"d63", PowderKind::value, "63.2 % are smaller, m"}),
+    needed({"n", PowderKind::value, "exponent"}),
+});
+
+constexpr auto cut_keys = std::to_array<Key>({
+    {"below", PowderKind::value, "what is smaller is left out, m"},
+    {"above", PowderKind::value, "what is larger is left out, m"},
+});
+
+constexpr auto measured_keys = std::to_array<Key>({
+    needed({"what", PowderKind::text, "the quantity"}),
+    needed({"value", PowderKind::value, "number, or text with a unit"}),
+    {"error", PowderKind::value, "standard error"},
+    {"how", PowderKind::text, "method or standard"},
+});
+
+}  // namespace
+
+std::span<const Key> top() {
+    return top_keys;
+}
+std::span<const Key> material() {
+    return material_keys;
+}
+std::span<const Key> contacts() {
+    return contact_keys;
+}
+std::span<const Key> sizes() {
+    return size_keys;
+}
+std::span<const Key> lognormal() {
+    return lognormal_keys;
+}
+std::span<const Key> rosin_rammler() {
+    return rosin_rammler_keys;
+}
+std::span<const Key> cut() {
+    return cut_keys;
+}
+std::span<const Key> measured() {
+    return measured_keys;
+}
+
+std::vector<std::pair<std::string_view, std::span<const Key>>> all() {
+    return {{"powder", top()},  {"material", material()},   {"contacts", contacts()},
+            {"sizes", sizes()}, {"lognormal", lognormal()}, {"rosin_rammler", rosin_rammler()},
+            {"cut", cut()},     {"measured", measured()}};
+}
+
+}  // namespace grainsweep::campaign::powder_keys

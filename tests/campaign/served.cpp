@@ -1,0 +1,230 @@
+// `grainsweep serve` beside a run: what a reader of its events gets, and what the reader may do.
+#include "tests/support/live_server.hpp"
+#include "tests/support/progress.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace grainsweep::tests::served_test {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::json;
+using namespace std::chrono_literals;
+
+/// Cases of so many seconds over the unit square.
+std::string config_of(const std::string& name, int points, double seconds) {
+    return fmt::format(
+        R"({{"campaign": "{}", "scene": "rehearsal", "fixed": {{"wait_seconds": {}}}, "design": {{"kind": "halton",
+             "points": {}}}, "factors": [{{"name": "x1", "between": [0, 1]}}, {{"name": "x2", "between": [0, 1]}}]}})",
+        name, seconds, points);
+}
+
+/// Reads a stream of events as it comes.
+class Reader {
+public:
+    explicit Reader(Connected stream) : stream_(std::move(stream)) {}
+
+    /// Reads on until the condition holds; false where it does not for a minute, or the stream ends.
+    template <class Condition>
+    bool until(Condition holds) {
+        for (const auto last = Clock::now() + 60s; !holds();) {
+            const auto more = stream_.receive(20ms);
+            if (!more || Clock::now() > last) return false;
+            text_ += *more;
+            for (auto end = text_.find("\n\n"); end != std::string::npos; end = text_.find("\n\n")) {
+                take(text_.substr(0, end));
+                text_.erase(0, end + 2);
+            }
+        }
+        return true;
+    }
+
+    std::multiset<std::string> cases;  ///< told, by id
+    Json now;                          ///< the last of its kind
+    int pages = 0;
+
+private:
+    void take(const std::string& event) {
+        const auto kind = [&](const char* name) {
+            return event.find(std::string("event: ") + name) != std::string::npos;
+        };
+        if (kind("page")) ++pages;
+        if (kind("now")) now = data_of(event);
+        if (!kind("results")) return;
+        const auto data = data_of(event);
+        for (const auto& one : data["results"]) cases.insert(one["case"].get<std::string>());
+    }
+    static Json data_of(const std::string& event) { return Json::parse(event.substr(event.find("data: ") + 6)); }
+
+    Connected stream_;
+    std::string text_;
+};
+
+struct ServedCampaign : testing::Test {
+    Folder folder;
+
+    [[nodiscard]] std::vector<std::string> command_of(const std::string& name) const {
+        return program_command({"run", name + ".json", "--quiet", "-j", "1"});
+    }
+    void write(const std::string& name, int points, double seconds) const {
+        folder.write(name + ".json", config_of(name, points, seconds));
+    }
+    /// A database with its first case.
+    void begin(const std::string& name, int points, double seconds) const {
+        write(name, points, seconds);
+        const auto ended =
+            run_program({"run", name + ".json", "--quiet", "--max-cases", "1", "-j", "1"}, folder.path());
+        ASSERT_EQ(ended.code, points > 1 ? 1 : 0) << ended.err;
+    }
+    [[nodiscard]] std::int64_t settled(const std::string& name) const {
+        return number_in(folder / (name + ".db"), "SELECT count(outcome) FROM sim_case");
+    }
+};
+
+TEST_F(ServedCampaign, ResultsReachAReaderWithinTwoSeconds) {
+    begin("a", 300, 0.02);
+    const auto before = settled("a");
+    const LiveServer server(folder, "a.db");
+    Reader reader(server.events());
+    Process run(command_of("a"), folder.path());
+    std::vector<double> seconds;
+    while (run.running() && seconds.size() < 5) {
+        const auto stored = settled("a") - before;
+        const auto start = Clock::now();
+        if (!reader.until([&] { return static_cast<std::int64_t>(reader.cases.size()) > stored; })) break;
+        seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    }
+    ASSERT_FALSE(seconds.empty());
+    std::ranges::sort(seconds);
+    EXPECT_LT(seconds[seconds.size() / 2], 2) << "a result that is on disk is on the page";
+    EXPECT_TRUE(reader.until([&] { return reader.now.dump().find("\"running\":[{") != std::string::npos; }))
+        << reader.now.dump();
+    EXPECT_EQ(run.wait().code, 0);
+    EXPECT_TRUE(reader.until([&] { return std::cmp_equal(reader.cases.size(), 300 - before); }));
+    EXPECT_EQ(std::set(reader.cases.begin(), reader.cases.end()).size(), reader.cases.size()) << "each once";
+    EXPECT_FALSE(fs::exists(folder / "a.now")) << "the run took its file away";
+}
+
+TEST_F(ServedCampaign, AReaderStaysWhileTheRunIsKilledAndResumed) {
+    begin("a", 150, 0.02);
+    const auto before = settled("a");
+    const LiveServer server(folder, "a.db");
+    Reader reader(server.events());
+    {
+        Process run(command_of("a"), folder.path());
+        await_settled(run, folder / "a.db", 30);
+        run.signal(SIGKILL);
+    }
+    Process resumed(command_of("a"), folder.path());
+    EXPECT_EQ(resumed.wait().code, 0);
+    EXPECT_TRUE(reader.until(
+        [&] { return std::cmp_equal(std::set(reader.cases.begin(), reader.cases.end()).size(), 150 - before); }));
+    EXPECT_TRUE(reader.until([&] { return reader.now["databases"][0]["run"].is_null(); }));
+    EXPECT_GT(reader.pages, 0) << "moments and figures follow";
+}
+
+TEST_F(ServedCampaign, AFolderIsServedAndADatabaseThatAppears) {
+    for (const auto* name : {"a", "b"}) begin(name, 3, 0);
+    folder.write("notes.db", "no database");
+    const LiveServer server(folder, ".");
+    const auto databases = [&] { return Json::parse(server.get("/data").body)["databases"]; };
+    EXPECT_EQ(databases(), Json({"a.db", "b.db"}));
+    Reader reader(server.events());
+    EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
+    const int before = reader.pages;
+    begin("c", 3, 0);
+    EXPECT_TRUE(reader.until([&] { return reader.pages > before; }));
+    EXPECT_EQ(databases(), Json({"a.db", "b.db", "c.db"}));
+    EXPECT_TRUE(reader.until([&] { return reader.now["databases"].size() == 3; }));
+    EXPECT_EQ(server.work("/query", "database=c.db", "SELECT count(*) AS n FROM c").status, 200);
+}
+
+TEST_F(ServedCampaign, ADatabaseThatIsMovedAwayIsReported) {
+    begin("a", 3, 0);
+    const LiveServer server(folder, "a.db");
+    Reader reader(server.events());
+    EXPECT_TRUE(reader.until([&] { return reader.now.is_object() && reader.now["databases"][0]["in_place"] == true; }));
+    fs::rename(folder / "a.db", folder / "kept.db");
+    EXPECT_TRUE(reader.until([&] { return reader.now["databases"][0]["in_place"] == false; }));
+    EXPECT_EQ(server.get("/").status, 200) << "what it held is still shown";
+}
+
+TEST_F(ServedCampaign, AnEndedReaderAndCtrlCLeaveNothing) {
+    begin("a", 3, 0);
+    LiveServer server(folder, "a.db");
+    std::list<Reader> readers;
+    for (int k = 0; k < 20; ++k) readers.emplace_back(server.events());
+    for (auto& reader : readers) EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
+    for (int k = 0; k < 10; ++k) readers.pop_front();
+    const auto start = Clock::now();
+    server.process().signal(SIGINT);
+    EXPECT_EQ(server.process().wait().code, 0);
+    EXPECT_LT(Clock::now() - start, 5s);
+}
+
+TEST_F(ServedCampaign, APortThatIsTakenGetsOneSentence) {
+    begin("a", 3, 0);
+    const LiveServer server(folder, "a.db");
+    const auto port = std::to_string(server.port());
+    const auto ended = run_program({"serve", "a.db", "--port", port}, folder.path());
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_EQ(ended.err, fmt::format("grainsweep: port {} of this machine cannot be opened: Address already in use; "
+                                     "--port names another\n",
+                                     port));
+    EXPECT_EQ(ended.out, "");
+    EXPECT_EQ(run_program({"serve", "none.db"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"serve", "a.json"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"serve", "a.db", "--port", "70000"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"serve", "a.db", "--control", "none.json"}, folder.path()).code, 2);
+}
+
+TEST_F(ServedCampaign, WithControlTheReaderStopsAndStartsTheRun) {
+    begin("a", 100, 0.05);
+    const LiveServer server(folder, "a.db", {"--control", "a.json"});
+    Reader reader(server.events());
+    const auto runs = [&] { return reader.now.is_object() && reader.now["databases"][0]["run"].is_object(); };
+    Process run(command_of("a"), folder.path());
+    EXPECT_TRUE(reader.until(runs));
+    EXPECT_EQ(server.post("/run", "").status, 409) << "one is under way";
+    EXPECT_EQ(server.post("/stop", "").status, 200);
+    EXPECT_EQ(run.wait().code, 130) << "as Ctrl-C would end it";
+    EXPECT_LT(settled("a"), 100);
+    EXPECT_TRUE(reader.until([&] { return !runs(); }));
+    EXPECT_EQ(server.post("/again", "outcome=never").status, 400);
+    EXPECT_EQ(server.post("/run", "").status, 200);
+    EXPECT_TRUE(reader.until([&] { return settled("a") == 100; }));
+    EXPECT_TRUE(fs::exists(folder / "a.run.log"));
+}
+
+TEST_F(ServedCampaign, AFilmIsComputedOnceAndKeptBesideTheDatabase) {
+    folder.write("a.json", R"({"campaign": "a", "scene": "powder_spreading", "fixed": {"diameter": 0.003},
+        "factors": [{"name": "gap", "levels": [0.004]}], "design": {"kind": "lattice"}})");
+    ASSERT_EQ(run_program({"run", "a.json", "--quiet", "-j", "1"}, folder.path()).code, 0);
+    const LiveServer server(folder, "a.db");
+    const auto answer = Json::parse(server.work("/query", "", "SELECT case_id FROM a").body);
+    const auto id = Json::parse(answer["out"].get<std::string>())[0]["case_id"].get<std::string>();
+    EXPECT_EQ(server.get("/film", "case=" + id).status, 404) << "not yet";
+    const auto seen = Json::parse(server.work("/film", "case=" + id).body);
+    EXPECT_EQ(seen["code"], 0) << seen;
+    EXPECT_TRUE(fs::exists(folder / ("a.films/" + id + ".html")));
+    const auto film = server.get("/film", "case=" + id);
+    EXPECT_EQ(film.status, 200);
+    EXPECT_NE(film.body.find("watch-film"), std::string::npos);
+    EXPECT_EQ(server.post("/film", "case=" + id).body, R"({"film":true})") << "not computed twice";
+    const auto strange = Json::parse(server.work("/film", "case=" + std::string(32, '0')).body);
+    EXPECT_EQ(strange["code"], 2) << "no such case";
+    EXPECT_FALSE(fs::exists(folder / ("a.films/" + std::string(32, '0') + ".html")));
+}
+
+}  // namespace grainsweep::tests::served_test
