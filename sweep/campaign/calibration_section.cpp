@@ -4,6 +4,7 @@
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration.hpp"
@@ -225,11 +226,16 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
     const Section section(place, calibration_keys());
     auto& space = campaign.space;
     const std::size_t calibrated = space.factors.size();
-    for (const auto& factor : space.factors)
-        if (!std::holds_alternative<Between>(factor.range))
+    for (const auto& factor : space.factors) {
+        if (std::holds_alternative<Levels>(factor.range))
             throw wrong_question("$.factors", factor.name,
                                  "what is calibrated varies \"between\" two values; what differs from target to target "
                                  "stands in its \"inputs\"");
+        if (column_of(std::get_if<stats::Distribution>(&factor.range)) != nullptr)
+            throw wrong_question("$.factors", factor.name,
+                                 "a calibration begins from factors that are independent; give each a distribution of "
+                                 "its own, not a column of one file with another");
+    }
     std::vector<designs::MeasuredTarget> targets;
     const auto elements = section.at("targets").elements();
     std::vector<std::string> places;  // of each target

@@ -3,6 +3,7 @@
 
 #include "solver/scenes/scene.hpp"
 #include "stats/convergence_rule.hpp"
+#include "stats/distribution.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cases.hpp"
 #include "sweep/campaign/formula.hpp"
@@ -37,12 +38,14 @@ struct Levels {
 
 struct Factor {
     std::string name;
-    std::variant<Between, Levels> range;
+    std::variant<Between, Levels, stats::Distribution> range;
     bool operator==(const Factor&) const = default;
 };
 
 /// Its value at the coordinate u in [0, 1], not yet in the type of its parameter.
 [[nodiscard]] Value value_at(const Factor& factor, double u);
+/// The value of factor j at a point of all factors: columns of one sample are drawn together (joint_column.hpp).
+[[nodiscard]] Value value_at(std::span<const Factor> factors, std::size_t j, std::span<const double> u);
 
 /// A fixed parameter whose number follows from others.
 struct Expression {

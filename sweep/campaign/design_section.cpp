@@ -103,7 +103,9 @@ std::string read_option_word(const Cursor& place, const OptionSpec& option, cons
 
 designs::FactorRange range_of(const Factor& factor) {
     if (std::holds_alternative<Levels>(factor.range)) return {factor.name, {}};
-    return {factor.name, [factor](double u) { return std::get<double>(value_at(factor, u)); }};
+    const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
+    return {factor.name, [factor](double u) { return std::get<double>(value_at(factor, u)); },
+            distribution != nullptr && !distribution->has_ends()};
 }
 
 }  // namespace
@@ -115,11 +117,11 @@ void check_in_range(const Cursor& place, const Factor& factor, const Value& valu
         }
         return;
     }
-    const auto& range = std::get<Between>(factor.range);
-    if (!Interval{range.low, range.high}.contains(std::get<double>(value))) {
-        place.refuse(
-            fmt::format("factor '{}' goes from {} to {}", factor.name, shortest(range.low), shortest(range.high)));
-    }
+    const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
+    const double low = distribution != nullptr ? distribution->low() : std::get<Between>(factor.range).low;
+    const double high = distribution != nullptr ? distribution->high() : std::get<Between>(factor.range).high;
+    if (!Interval{low, high}.contains(std::get<double>(value)))
+        place.refuse(fmt::format("factor '{}' goes from {} to {}", factor.name, shortest(low), shortest(high)));
 }
 
 void set_factors(Campaign& campaign) {

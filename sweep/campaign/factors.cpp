@@ -5,6 +5,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,6 @@ namespace {
 
 Between read_between(const Section& factor, const ParameterSpec& parameter, const std::filesystem::path& folder) {
     const Cursor place = factor.at("between");
-    if (std::holds_alternative<std::string>(parameter.default_value)) {
-        place.refuse(fmt::format("the values of '{}' are words; vary it by \"levels\"", parameter.name));
-    }
-    if (std::holds_alternative<std::int64_t>(parameter.default_value)) {
-        place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", parameter.name));
-    }
     if (!place.json().is_array())
         place.refuse("must be [low, high]; what is the same in every case goes into \"fixed\"");
     const auto ends = place.elements();
@@ -42,7 +37,6 @@ Between read_between(const Section& factor, const ParameterSpec& parameter, cons
 
 Levels read_levels(const Section& factor, const ParameterSpec& parameter, const std::filesystem::path& folder) {
     const Cursor place = factor.at("levels");
-    if (const auto scale = factor.find("scale")) scale->refuse("levels have no scale; it belongs to \"between\"");
     Levels levels;
     std::set<std::string> seen;
     for (const auto& element : place.elements()) {
@@ -51,6 +45,28 @@ Levels read_levels(const Section& factor, const ParameterSpec& parameter, const 
     }
     if (levels.values.empty()) place.refuse("a factor needs at least one level");
     return levels;
+}
+
+/// The one key that says which values the factor takes.
+std::string_view range_key(const Section& section) {
+    std::vector<std::string_view> given;
+    for (const auto key : range_keys())
+        if (section.find(key)) given.push_back(key);
+    if (given.size() == 1) return given.front();
+    throw wrong_question(section.place().path(), given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")),
+                         fmt::format("a factor has one of {}", in_words(range_keys())));
+}
+
+void check_key(const Section& section, std::string_view key, const ParameterSpec& parameter) {
+    const Cursor place = section.at(key);
+    if (const auto scale = section.find("scale"); scale && key != "between")
+        scale->refuse(key == "levels" ? "levels have no scale; it belongs to \"between\""
+                                      : "a distribution has no scale; it belongs to \"between\"");
+    if (key == "levels") return;
+    if (std::holds_alternative<std::string>(parameter.default_value))
+        place.refuse(fmt::format("the values of '{}' are words; vary it by \"levels\"", parameter.name));
+    if (std::holds_alternative<std::int64_t>(parameter.default_value))
+        place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", parameter.name));
 }
 
 /// Whether a text is meant as a number and its unit, although it is not one.
@@ -84,6 +100,7 @@ const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) 
 
 std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, const std::filesystem::path& folder) {
     std::vector<Factor> factors;
+    std::vector<NamedColumn> sampled;
     for (const auto& element : place.elements()) {
         const Section section(element, factor_keys());
         const auto& parameter = read_parameter(section.at("name"), scene);
@@ -91,19 +108,22 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
             section.at("name").refuse("this factor is there twice");
         }
         (void)section.word("role", "control");  // read again from the stored file: remarks_in
-        const bool between = section.find("between").has_value();
-        if (between == section.find("levels").has_value()) {
-            throw wrong_question(element.path(), between ? "both" : "neither",
-                                 "a factor has either \"between\": [low, high] or \"levels\": [...]");
-        }
+        const auto key = range_key(section);
+        check_key(section, key, parameter);
         Factor factor{parameter.name, {}};
-        if (between) {
+        if (key == "between") {
             factor.range = read_between(section, parameter, folder);
-        } else {
+        } else if (key == "levels") {
             factor.range = read_levels(section, parameter, folder);
+        } else if (key == "sample") {
+            sampled.push_back(read_named_column(section, factors.size(), parameter));
+        } else {
+            std::visit([&](auto&& range) { factor.range = std::move(range); },
+                       read_distribution(section, key, parameter, folder));
         }
         factors.push_back(std::move(factor));
     }
+    read_samples(sampled, factors, scene, folder);
     if (factors.empty()) place.refuse("a campaign varies at least one factor");
     return factors;
 }

@@ -1,6 +1,7 @@
 #include "sweep/campaign/identity.hpp"
 
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,8 @@
 #include <charconv>
 #include <cstdlib>
 #include <limits>
+#include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -29,6 +32,8 @@ std::string line_of(const Factor& factor) {
         return fmt::format("{} between {} {} {}", factor.name, shortest(between->low), shortest(between->high),
                            between->scale == Scale::log ? "log" : "linear");
     }
+    if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
+        return fmt::format("{} {}", factor.name, stated_text(*distribution));
     return fmt::format("{} levels {}", factor.name, joined(std::get<Levels>(factor.range).values));
 }
 
@@ -75,19 +80,6 @@ std::string options_of(const designs::DesignInfo& design, const std::string& tex
     return lines;
 }
 
-/// Counts per factor as they act: without those of factors whose own levels decide, and one for all written out.
-std::string counts_that_act(const std::string& value, const std::vector<std::string>& factors) {
-    std::istringstream stream(value);
-    std::vector<std::int64_t> counts;
-    for (std::int64_t count = 0; stream >> count;) counts.push_back(count);
-    std::string acting;
-    for (std::size_t j = 0; j < factors.size() && !counts.empty(); ++j) {
-        if (factors[j].find(" between ") == std::string::npos) continue;
-        acting += fmt::format(" {}", counts[counts.size() == 1 ? 0 : std::min(j, counts.size() - 1)]);
-    }
-    return acting;
-}
-
 std::vector<std::string> split(std::string_view text, std::string_view separator) {
     std::vector<std::string> parts;
     for (auto at = text.find(separator); at != std::string_view::npos; at = text.find(separator)) {
@@ -104,7 +96,7 @@ double identity_number(const std::string& text) {
     return number;
 }
 
-/// What line_of() wrote.
+/// What line_of() wrote; of a sample the name alone.
 StatedFactor factor_in(const std::string& line) {
     constexpr std::string_view levels = " levels ", between = " between ";
     StatedFactor factor;
@@ -118,6 +110,44 @@ StatedFactor factor_in(const std::string& line) {
         factor.between = {identity_number(low), identity_number(high), scale == "log" ? Scale::log : Scale::linear};
     }
     return factor;
+}
+
+/// Adds the distributions that lines state; columns of one sample share its rows.
+void add_distributions(std::vector<StatedFactor>& factors, const std::vector<std::string>& lines) {
+    struct Member {
+        std::size_t factor;
+        StatedColumn stated;
+    };
+    std::map<std::string, std::vector<Member>> samples;
+    for (std::size_t j = 0; j < lines.size(); ++j) {
+        if (factors[j].between || !factors[j].levels.empty()) continue;
+        const auto end = std::min(factors[j].name.size() + 1, lines[j].size());
+        auto found = distribution_in(std::string_view(lines[j]).substr(end));
+        if (auto* whole = std::get_if<stats::Distribution>(&found)) factors[j].distribution = std::move(*whole);
+        if (auto* column = std::get_if<StatedColumn>(&found); column != nullptr && !column->values.empty())
+            samples[column->sample].push_back({j, std::move(*column)});
+    }
+    for (auto& [hash, members] : samples) {
+        std::ranges::sort(members, {}, [](const Member& member) { return member.stated.column; });
+        std::vector<std::vector<double>> columns;
+        for (auto& member : members) columns.push_back(std::move(member.stated.values));
+        const auto sample = std::make_shared<const stats::JointSample>(std::move(columns));
+        for (std::size_t k = 0; k < members.size(); ++k)
+            factors[members[k].factor].distribution = stats::Distribution(stats::SampleColumn{sample, k});
+    }
+}
+
+/// Counts per factor as they act: without those of factors whose own levels decide, and one for all written out.
+std::string counts_that_act(const std::string& value, const std::vector<std::string>& factors) {
+    std::istringstream stream(value);
+    std::vector<std::int64_t> counts;
+    for (std::int64_t count = 0; stream >> count;) counts.push_back(count);
+    std::string acting;
+    for (std::size_t j = 0; j < factors.size() && !counts.empty(); ++j) {
+        if (!factor_in(factors[j]).levels.empty()) continue;
+        acting += fmt::format(" {}", counts[counts.size() == 1 ? 0 : std::min(j, counts.size() - 1)]);
+    }
+    return acting;
 }
 
 /// "a = 1\nb = 2\n" -> "a = 1, b = 2".
@@ -176,7 +206,9 @@ Identity identity_of(const Campaign& campaign) {
 
 std::vector<StatedFactor> factors_of(const Identity& identity) {
     std::vector<StatedFactor> factors;
-    for (const auto& line : lines_of(identity.factors)) factors.push_back(factor_in(line));
+    const auto lines = lines_of(identity.factors);
+    for (const auto& line : lines) factors.push_back(factor_in(line));
+    add_distributions(factors, lines);
     return factors;
 }
 
@@ -188,13 +220,15 @@ std::string factors_line(const std::vector<Factor>& factors) {
 
 std::vector<StatedFactor> factors_in(std::string_view line) {
     std::vector<StatedFactor> factors;
-    for (const auto& part : split(line, factor_separator)) factors.push_back(factor_in(part));
+    const auto parts = split(line, factor_separator);
+    for (const auto& part : parts) factors.push_back(factor_in(part));
+    add_distributions(factors, parts);
     return factors;
 }
 
 std::vector<std::string> factor_names(const Identity& identity) {
     std::vector<std::string> names;
-    for (auto& factor : factors_of(identity)) names.push_back(std::move(factor.name));
+    for (const auto& line : lines_of(identity.factors)) names.push_back(line.substr(0, line.find(' ')));
     return names;
 }
 
@@ -291,7 +325,9 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
     const auto same = [&](std::string_view where, std::string_view what, const std::string& before,
                           const std::string& now, bool may_add_levels = false) {
         const auto [old, fresh] = first_difference(before, now, may_add_levels);
-        if (old != fresh) refuse(where, fresh, what.empty() ? old : fmt::format("{} {}", what, old));
+        if (old != fresh)
+            refuse(where, without_values(fresh),
+                   fmt::format("{}{}{}", what, what.empty() ? "" : " ", without_values(old)));
     };
     const auto& design = designs::design_named(asked.design);
     same("$.campaign", "the name", stored.name, asked.name);

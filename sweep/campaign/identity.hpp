@@ -22,7 +22,9 @@ struct Identity {
     std::string name, scene;
     std::int64_t revision = 1;
     std::uint64_t seed = 1;
-    std::string factors;    ///< one line each, in order: "name between low high scale" or "name levels a | b | ..."
+    /// One line each, in order: "name between low high scale", "name levels a | b | ..." or name and distribution
+    /// (stated_distribution.hpp).
+    std::string factors;
     std::string fixed;      ///< one line each: "name = value", the accuracy setting resolved
     std::string condition;  ///< the `where` clause; empty: every point
     std::string design;
@@ -35,12 +37,15 @@ struct Identity {
 /// name.
 void require_same(const Identity& stored, const Identity& asked, std::string_view archive);
 
-/// A factor as it stands in an identity: a range, or levels as `identity_text` writes them (a file by its contents).
+/// A factor as it stands in an identity: a range, a distribution, or levels as `identity_text` writes them (a file by
+/// its contents).
 struct StatedFactor {
     std::string name;
     std::optional<Between> between;
     std::vector<std::string> levels;  ///< in the order of the campaign file; empty where there is a range
+    std::optional<stats::Distribution> distribution = {};
     bool operator==(const StatedFactor&) const = default;
+    [[nodiscard]] bool continuous() const { return between || distribution; }
 };
 /// The factors in the order that fixes the dimensions of the design.
 [[nodiscard]] std::vector<StatedFactor> factors_of(const Identity& identity);

@@ -98,13 +98,82 @@ std::span<const Key> factor_keys() {
         needed({"name", Kind::word, "a parameter of the scene"}),
         {"between", Kind::array, "[low, high] of a real parameter, numbers or texts with a unit"},
         {"levels", Kind::array, "the values it takes, numbers, texts with a unit, or words"},
-        {"scale", Kind::word, "linear: low + u (high - low); log: low (high/low)^u", "\"linear\"", {}, scale_words},
+        {"scale",
+         Kind::word,
+         "of between; linear: low + u (high - low); log: low (high/low)^u",
+         "\"linear\"",
+         {},
+         scale_words},
+        {"uniform", Kind::object, "the same as between: low, high"},
+        {"normal", Kind::object, "normal distribution: mean, sd"},
+        {"lognormal", Kind::object, "lognormal distribution: median and sigma, the sd of ln x, or ratio, exp(sigma)"},
+        {"triangular", Kind::object, "triangular distribution: low, mode, high"},
+        {"beta", Kind::object, "beta distribution from low to high: low, high, a, b"},
+        {"sample", Kind::value, "CSV file with values in SI units under the name of the parameter; or file, column"},
         {"role",
          Kind::word,
          "control: it can be set; noise: it varies and nobody can set it, window averages over it; changes no result",
          "\"control\"",
          {},
          role_words},
+    });
+    return keys;
+}
+
+std::span<const std::string_view> range_keys() {
+    static constexpr std::array<std::string_view, 8> keys = {"between",   "levels",     "uniform", "normal",
+                                                             "lognormal", "triangular", "beta",    "sample"};
+    return keys;
+}
+
+std::span<const Key> uniform_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
+        needed({"high", Kind::value, "largest value"}),
+    });
+    return keys;
+}
+
+std::span<const Key> normal_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"mean", Kind::value, "mean, a number or a text with a unit"}),
+        needed({"sd", Kind::value, "standard deviation, above 0"}),
+    });
+    return keys;
+}
+
+std::span<const Key> lognormal_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"median", Kind::value, "median, a number or a text with a unit, above 0"}),
+        {"sigma", Kind::number, "standard deviation of the natural logarithm", {}, {0, 10, true}},
+        {"ratio", Kind::number, "exp(sigma): 68 % lie between median/ratio and median*ratio", {}, {1, 20'000, true}},
+    });
+    return keys;
+}
+
+std::span<const Key> triangular_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
+        needed({"mode", Kind::value, "likeliest value, from low to high"}),
+        needed({"high", Kind::value, "largest value"}),
+    });
+    return keys;
+}
+
+std::span<const Key> beta_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
+        needed({"high", Kind::value, "largest value"}),
+        needed({"a", Kind::number, "first shape parameter: the density grows as (x - low)^(a-1)", {}, shapes_of_beta}),
+        needed({"b", Kind::number, "second shape parameter: it falls as (high - x)^(b-1)", {}, shapes_of_beta}),
+    });
+    return keys;
+}
+
+std::span<const Key> sample_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"file", Kind::text, "CSV file beside the campaign file, a row per draw"}),
+        {"column", Kind::text, "its column; without it the name of the factor"},
     });
     return keys;
 }

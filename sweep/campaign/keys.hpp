@@ -34,6 +34,14 @@ inline constexpr std::string_view notes_key = "notes";
 
 [[nodiscard]] std::span<const Key> campaign_keys();
 [[nodiscard]] std::span<const Key> factor_keys();
+/// Those of factor_keys() that give a factor its values: it has one of them.
+[[nodiscard]] std::span<const std::string_view> range_keys();
+[[nodiscard]] std::span<const Key> uniform_keys();
+[[nodiscard]] std::span<const Key> normal_keys();
+[[nodiscard]] std::span<const Key> lognormal_keys();
+[[nodiscard]] std::span<const Key> triangular_keys();
+[[nodiscard]] std::span<const Key> beta_keys();
+[[nodiscard]] std::span<const Key> sample_keys();
 [[nodiscard]] std::span<const Key> convergence_keys();
 [[nodiscard]] std::span<const Key> model_keys();
 [[nodiscard]] std::span<const Key> calibration_keys();
@@ -48,6 +56,11 @@ inline constexpr std::string_view notes_key = "notes";
 /// Limits of time below these would end every worker before it can answer, s.
 inline constexpr double shortest_limit = 0.1;
 inline constexpr double shortest_silence = 3;  ///< a few signs of life
+
+/// Shape parameters of a beta distribution.
+inline constexpr Interval shapes_of_beta{0.05, 1e4};
+/// Rows of a sample, which are kept with the campaign.
+inline constexpr std::size_t most_sample_rows = 20'000;
 
 /// Features of a response model.
 inline constexpr std::size_t most_features = 30;

@@ -1,5 +1,6 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <algorithm>
@@ -30,10 +31,21 @@ const Value& value_at(const Levels& range, double u) {
     return range.values[static_cast<std::size_t>(index)];
 }
 
+double value_at(const stats::Distribution& range, double u) {
+    return range.quantile(u);
+}
+
 }  // namespace
 
 Value value_at(const Factor& factor, double u) {
     return std::visit([u](const auto& range) -> Value { return value_at(range, u); }, factor.range);
+}
+
+Value value_at(std::span<const Factor> factors, std::size_t j, std::span<const double> u) {
+    const auto joint = joint_value(factors.size(), j, u, [&](std::size_t k) {
+        return column_of(std::get_if<stats::Distribution>(&factors[k].range));
+    });
+    return joint ? Value{*joint} : value_at(factors[j], u[j]);
 }
 
 Value coerced(const Value& value, const Value& like) {
@@ -53,7 +65,7 @@ Inputs ParameterSpace::at(std::span<const double> u) const {
     assert(u.size() == factors.size());
     std::vector<Value> row;
     row.reserve(factors.size());
-    for (std::size_t j = 0; j < factors.size(); ++j) row.push_back(value_at(factors[j], u[j]));
+    for (std::size_t j = 0; j < factors.size(); ++j) row.push_back(value_at(factors, j, u));
     return at(row);
 }
 

@@ -33,8 +33,8 @@ bool can_satisfy(const Relevance& condition, const Factor& factor) {
     if (const auto* levels = std::get_if<Levels>(&factor.range)) {
         return std::ranges::any_of(levels->values, [&](const Value& value) { return satisfies(condition, value); });
     }
-    const auto& range = std::get<Between>(factor.range);
-    if (condition.condition == Relevance::Condition::zero) return range.low <= 0 && range.high >= 0;
+    const auto value = [&](double u) { return std::get<double>(value_at(factor, u)); };
+    if (condition.condition == Relevance::Condition::zero) return value(0) <= 0 && value(1) >= 0;
     return condition.condition == Relevance::Condition::nonzero;
 }
 

@@ -121,6 +121,23 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
     return schema;
 }
 
+/// The figures of distributions; `value`: what a value of the parameter may be.
+void add_distributions(OrderedJson& properties, const OrderedJson& value) {
+    const std::pair<const char*, std::span<const Key>> forms[] = {{"uniform", uniform_keys()},
+                                                                  {"normal", normal_keys()},
+                                                                  {"lognormal", lognormal_keys()},
+                                                                  {"triangular", triangular_keys()},
+                                                                  {"beta", beta_keys()}};
+    for (const auto& [name, keys] : forms) {
+        auto& form = properties[name];
+        form.update(section(keys));
+        for (const auto& key : keys)
+            if (key.kind == Key::Kind::value) form["properties"][std::string(key.name)]["type"] = value["type"];
+    }
+    properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
+    properties["sample"]["oneOf"] = {{{"type", "string"}, {"minLength", 1}}, section(sample_keys())};
+}
+
 /// A factor that is this parameter.
 OrderedJson factor_schema(const ParameterSpec& parameter) {
     OrderedJson value = value_schema(parameter);
@@ -134,9 +151,12 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
         {{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}});
     if (std::holds_alternative<double>(parameter.default_value)) {
         schema["properties"]["between"].update({{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
-        schema["oneOf"] = {{{"required", {"between"}}}, {{"required", {"levels"}}}};
+        add_distributions(schema["properties"], value);
+        schema["oneOf"] = OrderedJson::array();
+        for (const auto key : range_keys()) schema["oneOf"].push_back({{"required", {std::string(key)}}});
     } else {
-        schema["properties"].erase("between");
+        for (const auto key : range_keys())
+            if (key != "levels") schema["properties"].erase(std::string(key));
         schema["properties"].erase("scale");
         schema["required"] = {"name", "levels"};
     }

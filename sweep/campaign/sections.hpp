@@ -5,7 +5,10 @@
 #include "sweep/campaign/cursor.hpp"
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -23,6 +26,22 @@ namespace grainsweep::campaign {
 
 [[nodiscard]] std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene,
                                                const std::filesystem::path& folder);
+/// The distribution under `key` of a factor. Throws WrongQuestion where the bounds of the parameter cut off more than
+/// 5 % of it.
+[[nodiscard]] std::variant<Between, stats::Distribution> read_distribution(const Section& factor, std::string_view key,
+                                                                           const ParameterSpec& parameter,
+                                                                           const std::filesystem::path& folder);
+/// A column of a CSV file that a factor samples.
+struct NamedColumn {
+    std::size_t factor = 0;
+    Cursor place;
+    std::string file, column;
+};
+/// What the factor's "sample" names, without reading the file.
+[[nodiscard]] NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter);
+/// Reads the files and gives the factors their columns; those of one file share its rows.
+void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
+                  const std::filesystem::path& folder);
 /// Values, quantities and expressions over the numbers of other parameters.
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
 

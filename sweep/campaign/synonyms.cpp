@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::string_view range = R"("between": [low, high])";
 constexpr std::string_view values = R"("levels": [...])";
+constexpr std::string_view distributions = R"("normal": {"mean": ..., "sd": ...})";
 
 struct Synonym {
     std::string_view word;        ///< what is written elsewhere
@@ -63,7 +64,19 @@ constexpr auto synonyms = std::to_array<Synonym>({
     {"value", "levels", values},
     {"choices", "levels", values},
     {"options", "levels", values},
-    {"distribution", "scale"},
+    {"distribution", "normal", distributions},
+    {"dist", "normal", distributions},
+    {"gaussian", "normal"},
+    {"gauss", "normal"},
+    {"log_normal", "lognormal"},
+    {"triangle", "triangular"},
+    {"posterior", "sample"},
+    {"draws", "sample"},
+    {"std", "sd"},
+    {"stddev", "sd"},
+    {"sigma", "sd"},
+    {"mu", "mean"},
+    {"gsd", "ratio"},
     {"parameter", "name"},
     {"factor", "name"},
     {"parameters", "factors"},

@@ -14,6 +14,21 @@ namespace grainsweep::campaign {
 
 namespace {
 
+/// A distribution without ends has no value at the end of its cube.
+void check_ends(const Campaign& campaign, const designs::PointSet& points) {
+    const auto& factors = campaign.request.factors;
+    if (!points.rows.empty() || std::ranges::none_of(factors, &designs::FactorRange::endless)) return;
+    for (std::size_t p = 0; p < points.size(); ++p)
+        for (std::size_t j = 0; j < factors.size(); ++j)
+            if (const double u = points.point(p)[j]; factors[j].endless && (u <= 0 || u >= 1))
+                throw wrong_question(
+                    "$.design", campaign.design,
+                    fmt::format("its point {} stands at an end of factor '{}', whose distribution has none: give "
+                                "\"placement\": \"centred\" to a lattice, \"scramble\": \"random\" to a sequence, or "
+                                "\"between\" to the factor",
+                                p, factors[j].name));
+}
+
 designs::PointSet sample(const Campaign& campaign) {
     const auto* design = designs::find_design(campaign.design);
     if (design == nullptr) throw wrong_question("$.design.kind", campaign.design, "there is no such design");
@@ -24,6 +39,7 @@ designs::PointSet sample(const Campaign& campaign) {
         throw wrong_question("$.design", "", error.what());
     }
     if (points.size() == 0) throw wrong_question("$.design", "", "the design has no point");
+    check_ends(campaign, points);
     if (points.size() > static_cast<std::size_t>(most_cases / campaign.replicates))
         throw wrong_question("$.design", fmt::format("{} points x {} replicates", points.size(), campaign.replicates),
                              fmt::format("a campaign has at most {} cases", most_cases));
@@ -161,9 +177,8 @@ private:
         return inputs;
     }
     [[nodiscard]] Value value(std::size_t point, const Varying& one) const {
-        return points_.rows.empty()
-                   ? coerced(value_at(space_.factors[*one.factor], points_.point(point)[*one.factor]), one.standard)
-                   : coerced(points_.rows[point][*one.factor], one.standard);
+        return points_.rows.empty() ? coerced(value_at(space_.factors, *one.factor, points_.point(point)), one.standard)
+                                    : coerced(points_.rows[point][*one.factor], one.standard);
     }
 
     ParameterSpace space_;

@@ -4,6 +4,7 @@
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
@@ -18,9 +19,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <string_view>
 
 namespace grainsweep::cli {
 
@@ -51,6 +55,27 @@ std::string option_text(const designs::OptionValue& value) {
     return option_json(value).text();
 }
 
+/// Bars of the probability in equal parts of the range, the highest full.
+std::string density_text(const stats::Distribution& distribution) {
+    constexpr std::array<std::string_view, 9> bars = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+    constexpr std::size_t parts = 24;
+    const auto [low, high] = distribution.range();
+    std::array<double, parts> shares{};
+    double before = distribution.cumulative(low), highest = 0;
+    for (std::size_t k = 0; k < parts; ++k) {
+        const double upto = k + 1 == parts
+                                ? distribution.cumulative(high)
+                                : distribution.cumulative(std::lerp(low, high, static_cast<double>(k + 1) / parts));
+        shares[k] = upto - before;
+        before = upto;
+        highest = std::max(highest, shares[k]);
+    }
+    std::string text;
+    for (const double share : shares)
+        text += bars[share > 0 ? static_cast<std::size_t>(std::ceil(8 * share / highest)) : 0];
+    return "|" + text + "|";
+}
+
 store::Table factors_of(const Campaign& campaign) {
     store::Table table{{"factor", "unit", "low", "high", "scale", "levels"}, {}};
     for (const auto& factor : campaign.space.factors) {
@@ -58,6 +83,9 @@ store::Table factors_of(const Campaign& campaign) {
         if (const auto* range = std::get_if<campaign::Between>(&factor.range)) {
             const std::string scale = range->scale == campaign::Scale::log ? "log" : "linear";
             table.rows.push_back({factor.name, unit, range->low, range->high, scale, Cell{}});
+        } else if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range)) {
+            const auto [low, high] = distribution->range();
+            table.rows.push_back({factor.name, unit, low, high, campaign::described(*distribution), Cell{}});
         } else {
             std::string levels;
             for (const auto& level : std::get<campaign::Levels>(factor.range).values) {
@@ -65,6 +93,21 @@ store::Table factors_of(const Campaign& campaign) {
             }
             table.rows.push_back({factor.name, unit, Cell{}, Cell{}, Cell{}, levels});
         }
+    }
+    return table;
+}
+
+/// Quantiles of the factors that follow a distribution, its density as a row of signs over the range, and what the
+/// bounds of the parameter cut off; no rows where none does.
+store::Table distributions_of(const Campaign& campaign) {
+    store::Table table{{"factor", "cut %", "5 %", "25 %", "50 %", "75 %", "95 %", "density from low to high"}, {}};
+    for (const auto& factor : campaign.space.factors) {
+        const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
+        if (distribution == nullptr) continue;
+        std::vector<Cell> row = {factor.name, 100 * distribution->cut()};
+        for (const double u : {0.05, 0.25, 0.5, 0.75, 0.95}) row.emplace_back(distribution->quantile(u));
+        row.emplace_back(density_text(*distribution));
+        table.rows.push_back(std::move(row));
     }
     return table;
 }
@@ -142,32 +185,35 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
     const auto threads = campaign.execution.threads;
     const auto points = points_kept(cases);
     const auto course = campaign::longest_course(campaign, cost);
-    return {{"campaign", campaign.name},
-            {"scene", campaign.scene().name},
-            {"revision", campaign.scene().revision},
-            {"design", design},
-            {"seed", report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)})},
-            {"replicates", campaign.replicates},
-            {"candidates", candidates},
-            {"dropped", candidates - points},
-            {"points", points},
-            {"cases", cost.places},
-            {"finished", finished},
-            {"stored", already},
-            {"warnings", warnings},
-            {"questions", cost.questions},
-            {"proven", cost.proven},
-            {"impossible", cost.impossible},
-            {"predicted_seconds", cost.total_seconds},
-            {"longest_seconds", cost.longest_seconds},
-            {"all_waves_seconds", course ? Json(course->seconds) : Json()},
-            {"largest_bytes", cost.largest_bytes},
-            {"threads", campaign::is_program(campaign.scene().name) ? Json()
-                        : threads                                   ? Json(*threads)
-                                                                    : Json("auto")},
-            {"powder", campaign.powder.empty() ? Json() : Json(campaign.powder)},
-            {"factors", report::to_json(factors_of(campaign))},
-            {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
+    Json plan = {{"campaign", campaign.name},
+                 {"scene", campaign.scene().name},
+                 {"revision", campaign.scene().revision},
+                 {"design", design},
+                 {"seed", report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)})},
+                 {"replicates", campaign.replicates},
+                 {"candidates", candidates},
+                 {"dropped", candidates - points},
+                 {"points", points},
+                 {"cases", cost.places},
+                 {"finished", finished},
+                 {"stored", already},
+                 {"warnings", warnings},
+                 {"questions", cost.questions},
+                 {"proven", cost.proven},
+                 {"impossible", cost.impossible},
+                 {"predicted_seconds", cost.total_seconds},
+                 {"longest_seconds", cost.longest_seconds},
+                 {"all_waves_seconds", course ? Json(course->seconds) : Json()},
+                 {"largest_bytes", cost.largest_bytes},
+                 {"threads", campaign::is_program(campaign.scene().name) ? Json()
+                             : threads                                   ? Json(*threads)
+                                                                         : Json("auto")},
+                 {"powder", campaign.powder.empty() ? Json() : Json(campaign.powder)},
+                 {"factors", report::to_json(factors_of(campaign))},
+                 {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
+    if (const auto distributions = distributions_of(campaign); !distributions.rows.empty())
+        plan.add("distributions", report::to_json(distributions));
+    return plan;
 }
 
 /// The object, with all rows of the design at its end.
@@ -254,6 +300,10 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     std::cout << '\n';
     report::write(std::cout, factors_of(campaign), Format::text);
     std::cout << '\n';
+    if (const auto distributions = distributions_of(campaign); !distributions.rows.empty()) {
+        report::write(std::cout, distributions, Format::text);
+        std::cout << '\n';
+    }
     store::Table shown{case_columns(campaign), {}};
     for_each_row(campaign, cases, points_shown, [&](const auto& row) { shown.rows.push_back(row); });
     report::write(std::cout, shown, Format::text);

@@ -80,7 +80,7 @@ void apply(const std::vector<std::string>& settings, Campaign& campaign, const s
 Inputs middle_of(const campaign::ParameterSpace& space) {
     std::vector<double> u;
     for (const auto& factor : space.factors) {
-        u.push_back(std::holds_alternative<campaign::Between>(factor.range) ? 0.5 : 0.0);
+        u.push_back(std::holds_alternative<campaign::Levels>(factor.range) ? 0.0 : 0.5);
     }
     return space.at(std::span<const double>(u));
 }

@@ -2,6 +2,7 @@
 #include "sweep/designs/kinds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -48,6 +49,12 @@ const T& option_of(const DesignRequest& request, std::string_view option) {
 }
 
 }  // namespace
+
+FactorRange::Shown FactorRange::shown() const {
+    const double outside = endless ? 0.001 : 0;  // as stats::Distribution::range
+    const double low = value_at(outside), high = value_at(1 - outside);
+    return {low, high, low > 0 && std::abs(value_at(0.5) - std::sqrt(low * high)) < 1e-6 * (high - low)};
+}
 
 std::int64_t DesignRequest::count(std::string_view option) const {
     return option_of<std::int64_t>(*this, option);

@@ -48,8 +48,18 @@ struct OptionSpec {
 /// What a design may know of a factor.
 struct FactorRange {
     std::string name;
-    /// The value at u in [0, 1] of a factor that varies between two; empty where it has levels.
+    /// The value at u in [0, 1] of a continuous factor; empty where it has levels.
     std::function<double(double u)> value_at;
+    /// It follows a distribution without ends: no point may have the coordinate 0 or 1.
+    bool endless = false;
+
+    /// What figures of the factor go over: all of it, or the central 99.8 % of what has no ends; logarithmically where
+    /// its middle is the geometric mean of the ends.
+    struct Shown {
+        double low = 0, high = 0;
+        bool log = false;
+    };
+    [[nodiscard]] Shown shown() const;
 };
 
 struct PointSet;

@@ -4,6 +4,8 @@
 // Trajectory t is points t (d+1) ... t (d+1) + d. The set counts d + 1 sequences: a point's sequence is its
 // place in its trajectory. L is even, so that every place is as likely as every other.
 //
+// A factor whose distribution has no ends has its grid at the middles of cells, (i + 1/2)/L: its steps are 1/2.
+//
 // A factor with k levels has them for its grid, unless L is a multiple of k: then each level is L/k places of the grid.
 // Steps are floor(k/2) levels; where k is odd, the middle level moves to either end, and it is met twice as often as
 // the others. Trajectories begin at a random permutation of the levels, then at another: k of them meet all levels.
@@ -36,7 +38,8 @@ public:
         : seed_(request.seed),
           factor_(j),
           levels_(request.levels[j]),
-          places_(static_cast<std::uint64_t>(request.count("grid"))) {
+          places_(static_cast<std::uint64_t>(request.count("grid"))),
+          endless_(j < request.factors.size() && request.factors[j].endless) {
         if (levels_ == 1)
             throw std::invalid_argument(name_of(request, j) +
                                         " has one level, so no trajectory moves it: give it under \"fixed\"");
@@ -58,6 +61,7 @@ public:
         return place < step ? place + step : place - step;
     }
     [[nodiscard]] double coordinate(std::uint64_t place) const {
+        if (endless_) return (static_cast<double>(place) + 0.5) / static_cast<double>(places_);
         return static_cast<double>(place) / static_cast<double>(places_ - 1);
     }
     /// The level at a place, or the place of a continuous factor.
@@ -70,6 +74,7 @@ private:
     std::uint64_t seed_, factor_;
     std::size_t levels_;
     std::uint64_t places_;
+    bool endless_;
     bool own_ = false;  ///< its grid is its levels
 };
 

@@ -213,8 +213,7 @@ Json page_of(const CalibrationReport& report) {
     Json factors = Json::array(), draws = Json::array(), settings = Json::array();
     for (std::size_t j = 0; j < found.factors.size(); ++j) {
         const auto& range = found.ranges[j];
-        const double low = range.value_at(0), high = range.value_at(1);
-        const bool logarithmic = std::abs(range.value_at(0.5) - (low + high) / 2) > 1e-6 * (high - low);
+        const auto [low, high, logarithmic] = range.shown();
         const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
         factors.push_back({{"name", found.factors[j]},
                            {"unit", unit},

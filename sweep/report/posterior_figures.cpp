@@ -22,8 +22,7 @@ struct Calibrated {
 Calibrated calibrated_factor(const CalibrationReport& report, std::size_t j) {
     const auto& found = report.found;
     const auto& range = found.ranges[j];
-    const double low = range.value_at(0), high = range.value_at(1);
-    const bool log = std::abs(range.value_at(0.5) - (low + high) / 2) > 1e-6 * (high - low);
+    const auto [low, high, log] = range.shown();
     const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
     Calibrated one{{found.factors[j], unit, {}, low, high, log, {}}, {}, {}};
     const auto all = found.posterior->rows();

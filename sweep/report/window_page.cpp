@@ -143,6 +143,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
             {"risk", request.risk},
             {"share", window.share_of_box},
             {"share_error", window.share_error},
+            {"share_of", share_of(cases.factors)},
             {"factors", axes_json(cases.factors)},
             {"meets", window.best.has_value()},
             {"best", window_page_json(cases, window, centre)},

@@ -113,9 +113,9 @@ Document window_document(const ModelCases& cases, const WindowRequest& request, 
     Document shown{.rows = window_rows(cases, window), .value = window_json(cases, request, window)};
     shown.say(fmt::format("{}: {}", cases.campaign.name, request.where.empty() ? "no condition" : request.where));
     shown.say(fmt::format(
-        "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of the box ({} settings looked at)\n\n",
+        "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of {} ({} settings looked at)\n\n",
         1 - request.risk, request.judged == stats::Judged::mean ? "for the mean" : "for a single run",
-        100 * window.share_of_box, 100 * window.share_error, window.searched.size()));
+        100 * window.share_of_box, 100 * window.share_error, share_of(cases.factors), window.searched.size()));
     const auto goal = request.objective.empty()
                           ? std::string("where the condition is surest")
                           : fmt::format("{} {} there", request.maximise ? "largest" : "smallest", request.objective);

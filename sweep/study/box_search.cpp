@@ -1,5 +1,7 @@
 #include "sweep/study/box_search.hpp"
 
+#include "sweep/campaign/joint_column.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,37 +34,54 @@ double rounded(double x, int exponent) {
     return std::strtod(fmt::format("{:.{}f}", x, -exponent).c_str(), nullptr);
 }
 
-double exact_number_at(const ModelFactor& factor, double u) {
-    using enum campaign::Scale;
-    const campaign::Between range{factor.low, factor.high, factor.log ? log : linear};
-    return std::get<double>(campaign::value_at({factor.name, range}, u));
+double exact_number(const ModelFactor&, double exact) {
+    return exact;
 }
 
-double rounded_number_at(const ModelFactor& factor, double u) {
+double rounded_number(const ModelFactor& factor, double exact) {
     if (!(factor.high > factor.low)) return factor.low;
     constexpr int digits = 3;
-    const double exact = exact_number_at(factor, u);
     const double size = factor.log ? exact : factor.high - factor.low;
     const int exponent = static_cast<int>(std::floor(std::log10(size))) - digits;
     return std::clamp(rounded(exact, exponent), factor.low, factor.high);
 }
 
-template <class NumberAt>
-Setting setting_at(std::span<const ModelFactor> factors, std::span<const double> u, NumberAt number_at) {
+const stats::Distribution* distribution_of(const ModelFactor& factor) {
+    return factor.distribution ? &*factor.distribution : nullptr;
+}
+
+/// The number of factor j at a point of all factors, as a design takes it.
+double number_at(std::span<const ModelFactor> factors, std::size_t j, std::span<const double> u) {
+    const auto& factor = factors[j];
+    if (!factor.distribution) return number_along(factor, u[j]);
+    const auto joint = campaign::joint_value(
+        factors.size(), j, u, [&](std::size_t k) { return campaign::column_of(distribution_of(factors[k])); });
+    return joint ? *joint : factor.distribution->quantile(u[j]);
+}
+
+template <class Finish>
+Setting setting_at(std::span<const ModelFactor> factors, std::span<const double> u, Finish finish) {
     Setting setting;
-    for (std::size_t j = 0; j < factors.size(); ++j) {
-        const auto& factor = factors[j];
-        if (factor.is_word())
-            setting.push_back(static_cast<double>(level_at(u[j], factor.words.size())));
-        else if (!factor.numbers.empty())
-            setting.push_back(factor.numbers[level_at(u[j], factor.numbers.size())]);
-        else
-            setting.push_back(number_at(factor, u[j]));
-    }
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        setting.push_back(has_levels(factors[j]) ? number_along(factors[j], u[j])
+                                                 : finish(factors[j], number_at(factors, j, u)));
     return setting;
 }
 
 }  // namespace
+
+std::string_view share_of(std::span<const ModelFactor> factors) {
+    const bool drawn = std::ranges::any_of(factors, [](const auto& factor) { return factor.distribution.has_value(); });
+    return drawn ? "the distribution of the factors" : "the box";
+}
+
+double number_along(const ModelFactor& factor, double u) {
+    using enum campaign::Scale;
+    if (factor.is_word()) return static_cast<double>(level_at(u, factor.words.size()));
+    if (!factor.numbers.empty()) return factor.numbers[level_at(u, factor.numbers.size())];
+    const campaign::Between range{factor.low, factor.high, factor.log ? log : linear};
+    return std::get<double>(campaign::value_at({factor.name, range}, u));
+}
 
 designs::PointSet sobol_points(designs::DesignRequest request) {
     const auto& design = designs::design_named("sobol");
@@ -72,11 +91,11 @@ designs::PointSet sobol_points(designs::DesignRequest request) {
 }
 
 Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
-    return setting_at(factors, u, rounded_number_at);
+    return setting_at(factors, u, rounded_number);
 }
 
 Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
-    return setting_at(factors, u, exact_number_at);
+    return setting_at(factors, u, exact_number);
 }
 
 std::vector<BoxPoint> spread_points(std::span<const ModelFactor> factors, const Admits& admits, std::size_t count) {

@@ -1,4 +1,5 @@
-// Settings of a campaign's box: spread over all of it, or about one of them.
+// Settings of a campaign's box: spread over all of it, or about one of them. Of a factor with a distribution the box is
+// the range of ModelFactor, and settings are spread as the distribution is: a share of them is a probability.
 #pragma once
 
 #include "sweep/designs/design.hpp"
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::study {
@@ -31,8 +33,12 @@ using Admits = std::function<bool(const Setting&)>;
                                                  std::span<const ModelFactor> factors, const Admits& admits,
                                                  std::size_t count);
 
-/// The setting at a point of the unit cube, rounded to a thousandth of the range's order of magnitude (of the value's,
-/// where the range is logarithmic), within the range.
+/// What a share of the settings is a share of: "the box", or the distribution of the factors.
+[[nodiscard]] std::string_view share_of(std::span<const ModelFactor> factors);
+/// The number of a factor at share u of its range; of levels one by its place among them.
+[[nodiscard]] double number_along(const ModelFactor& factor, double u);
+/// The setting at a point of the unit cube, by the distributions of the factors where they have some; rounded to a
+/// thousandth of the range's order of magnitude (of the value's, where the range is logarithmic), within the range.
 [[nodiscard]] Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u);
 /// The same without rounding, as a design asks it.
 [[nodiscard]] Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u);

@@ -25,12 +25,12 @@ std::optional<Brackets> brackets_of(const store::Store& store, const store::Camp
     brackets.found = designs::brackets(request);
     const auto factors = campaign::factors_of(record);
     for (const auto& factor : factors)
-        if (!factor.between) brackets.others.push_back(factor.name);
+        if (!factor.continuous()) brackets.others.push_back(factor.name);
     for (const auto& bracket : brackets.found) {
         auto& levels = brackets.levels.emplace_back();
         std::size_t other = 0;
         for (const auto& factor : factors)
-            if (!factor.between) levels.push_back(factor.levels[bracket.levels[other++]]);
+            if (!factor.continuous()) levels.push_back(factor.levels[bracket.levels[other++]]);
     }
     return brackets;
 }

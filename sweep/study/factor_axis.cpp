@@ -14,11 +14,6 @@ std::size_t places_of(const ModelFactor& factor, std::size_t count) {
     return levels > 0 ? levels : factor.high > factor.low ? count : 1;
 }
 
-/// The number of a factor at share u of its range.
-double at_share(const ModelFactor& factor, double u) {
-    return exact_setting(std::span(&factor, 1), std::span(&u, 1)).front();
-}
-
 }  // namespace
 
 std::vector<double> points_along(const ModelFactor& factor, std::size_t count) {
@@ -26,7 +21,7 @@ std::vector<double> points_along(const ModelFactor& factor, std::size_t count) {
     if (levels_of(factor) > 0 || places == 1) return cells_along(factor, count);
     std::vector<double> numbers;
     for (std::size_t k = 0; k < places; ++k)
-        numbers.push_back(at_share(factor, static_cast<double>(k) / static_cast<double>(places - 1)));
+        numbers.push_back(number_along(factor, static_cast<double>(k) / static_cast<double>(places - 1)));
     return numbers;
 }
 
@@ -34,7 +29,7 @@ std::vector<double> cells_along(const ModelFactor& factor, std::size_t count) {
     const auto places = places_of(factor, count);
     std::vector<double> numbers;
     for (std::size_t k = 0; k < places; ++k)
-        numbers.push_back(at_share(factor, (static_cast<double>(k) + 0.5) / static_cast<double>(places)));
+        numbers.push_back(number_along(factor, (static_cast<double>(k) + 0.5) / static_cast<double>(places)));
     return numbers;
 }
 
@@ -43,7 +38,7 @@ std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count) {
     if (levels_of(factor) > 0) return edges;
     const auto places = places_of(factor, count);
     for (std::size_t k = 0; k <= places; ++k)
-        edges.push_back(at_share(factor, static_cast<double>(k) / static_cast<double>(places)));
+        edges.push_back(number_along(factor, static_cast<double>(k) / static_cast<double>(places)));
     return edges;
 }
 

@@ -33,7 +33,7 @@ std::optional<std::vector<double>> ordered_numbers(const FactorColumn& column, c
 }
 
 bool as_logarithm(const ModelFactor& factor) {
-    return !factor.is_word() && factor.low > 0 && factor.high >= logarithm_from * factor.low;
+    return !factor.is_word() && factor.smallest() > 0 && factor.high >= logarithm_from * factor.low;
 }
 
 }  // namespace
@@ -62,6 +62,7 @@ std::vector<ModelFactor> model_factors(const Responses& responses) {
             factor.low = column.low;
             factor.high = column.high;
             factor.log = column.log;
+            factor.distribution = column.distribution;
         } else if (auto numbers = ordered_numbers(column, stated[j])) {
             std::ranges::sort(*numbers);
             factor.numbers = std::move(*numbers);
@@ -165,7 +166,8 @@ std::vector<Ratio> candidate_ratios(std::span<const ModelFactor> factors) {
         for (std::size_t under = 0; under < factors.size(); ++under) {
             const auto &a = factors[over], &b = factors[under];
             const bool lengths = over != under && a.unit == b.unit && !a.unit.empty() && a.unit != "1";
-            if (lengths && !a.is_word() && !b.is_word() && a.low > 0 && b.low > 0 && a.varies() && b.varies())
+            if (lengths && !a.is_word() && !b.is_word() && a.smallest() > 0 && b.smallest() > 0 && a.varies() &&
+                b.varies())
                 ratios.push_back({over, under});
         }
     return ratios;

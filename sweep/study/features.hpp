@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,13 +22,16 @@ namespace grainsweep::study {
 /// of the word.
 struct ModelFactor {
     std::string name, unit;
-    double low = 0, high = 0;        ///< of numbers: the range, or the smallest and largest level
-    bool log = false;                ///< the range is divided logarithmically
+    double low = 0, high = 0;  ///< of numbers: the range as FactorColumn has it, or the smallest and largest level
+    bool log = false;          ///< the range is divided logarithmically
+    std::optional<stats::Distribution> distribution = {};  ///< which settings are drawn from; none: evenly
     bool noise = false;              ///< it varies, and nobody can set it: "role" of the campaign file
     std::vector<double> numbers;     ///< levels that are numbers, growing; empty: a range, or words
     std::vector<std::string> words;  ///< levels that are words; empty: numbers
 
     [[nodiscard]] bool is_word() const { return !words.empty(); }
+    /// The smallest number that a design may ask.
+    [[nodiscard]] double smallest() const { return distribution ? distribution->quantile(0) : low; }
     [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high > low; }
     /// The value as the campaign file has it.
     [[nodiscard]] Value value(double number) const;

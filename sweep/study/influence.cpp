@@ -213,7 +213,9 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         const auto& factor = responses.factors[j];
         auto& found = influence.factors[j];
         found.bins = bins_for(factor, lattice, responses.settled, points);
-        const auto coordinates = std::span(factor.values).first(responses.settled);
+        // Of columns that are drawn together the coordinate: an index is with respect to what the design varies.
+        const auto coordinates =
+            std::span(factor.shares.empty() ? factor.values : factor.shares).first(responses.settled);
         const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
         found.first = indices.first[0];
         // Lines of a lattice are no sample of it: leaving some out says nothing about the error.

@@ -47,7 +47,8 @@ stats::FactorRoles roles_of(const std::vector<ModelFactor>& factors, const std::
 /// "between 0.005 and 0.006", "at fine".
 std::string part_of_range(const ModelFactor& factor, double from, double to) {
     const auto at = [&](double u) {
-        return fmt::format("{:.4g}", exact_setting(std::span(&factor, 1), {&u, 1}).front());
+        const double x = exact_setting(std::span(&factor, 1), {&u, 1}).front();
+        return fmt::format("{:.4g}", std::clamp(x, factor.low, factor.high));
     };
     const double middle = (from + to) / 2;
     if (factor.is_word()) return "at " + factor.text(exact_setting(std::span(&factor, 1), {&middle, 1}).front());

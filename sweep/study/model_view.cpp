@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 namespace grainsweep::study {
@@ -49,7 +50,7 @@ public:
     [[nodiscard]] std::vector<double> operator()(std::span<const double> u) const {
         Setting setting(factors_.size());
         for (std::size_t j = 0; j < factors_.size(); ++j) {
-            const Value value = campaign::value_at(factors_[j], u[j]);
+            const Value value = campaign::value_at(factors_, j, u);
             const auto& words = described_[j].words;
             setting[j] =
                 words.empty()
@@ -112,6 +113,10 @@ std::vector<ModelFactor> model_factors(const campaign::Campaign& campaign) {
             factor.low = range->low;
             factor.high = range->high;
             factor.log = range->scale == campaign::Scale::log;
+        } else if (const auto* distribution = std::get_if<stats::Distribution>(&given.range)) {
+            std::tie(factor.low, factor.high) = distribution->range();
+            factor.log = std::holds_alternative<stats::Lognormal>(distribution->form());
+            factor.distribution = *distribution;
         } else {
             factor = of_levels(std::move(factor), std::get<campaign::Levels>(given.range).values);
         }

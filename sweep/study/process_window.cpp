@@ -137,10 +137,10 @@ std::vector<Judgement> next_of(const WindowQuestion& question, const WindowReque
 /// What the failed cases mean for the window and the chosen setting.
 void say_what_failed(Window& window, const ModelCases& cases) {
     if (cases.failed.empty()) return;
-    window.notes.push_back(fmt::format(
-        "{}; in {:.1f} % of the box a case has an answer with a probability below {:.6g}, where no setting is "
-        "counted or recommended",
-        failed_text(cases), 100 * window.share_failed, 1 - window.risk));
+    window.notes.push_back(
+        fmt::format("{}; in {:.1f} % of {} a case has an answer with a probability below {:.6g}, where no setting is "
+                    "counted or recommended",
+                    failed_text(cases), 100 * window.share_failed, share_of(cases.factors), 1 - window.risk));
     if (const auto& chosen = window.best ? window.best : window.surest)
         window.notes.push_back(fmt::format("{} a case has an answer with probability {:.3f}; {}",
                                            window.best ? "at the best setting" : "where the condition is likeliest",

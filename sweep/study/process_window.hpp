@@ -9,8 +9,9 @@
 // 4,096 Sobol points (levels as they are), less those that the campaign's `where` leaves out; the best is then improved
 // by Sobol points in boxes about it that shrink to a thousandth of the range. Best is the largest mean less one
 // standard error, the effective best of Huang et al. 2006 (stats/process_window.hpp), with which next cases are
-// compared, too. Settings are rounded to what an engineer can set: a two-thousandth of the range or finer. Nothing is
-// drawn: same cases in, same window out.
+// compared, too. Settings are rounded to what an engineer can set: a two-thousandth of the range or finer. Of factors
+// that follow a distribution the box is its range (stats::Distribution::range), the points are its quantiles, and a
+// share of them is a probability. Nothing is drawn: same cases in, same window out.
 #pragma once
 
 #include "sweep/study/window_question.hpp"

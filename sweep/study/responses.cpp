@@ -7,14 +7,13 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
+#include "sweep/study/factor_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <set>
 #include <unordered_map>
@@ -34,86 +33,6 @@ std::int64_t integer(const Cell& cell) {
     const auto* value = std::get_if<std::int64_t>(&cell);
     return value == nullptr ? 0 : *value;
 }
-
-/// Returns a level's text; of a file, its name.
-std::string column_level(const Cell& cell) {
-    if (const auto* word = std::get_if<std::string>(&cell)) {
-        const auto file = file_word(*word);
-        return file ? std::filesystem::path(file->path).filename().string() : *word;
-    }
-    return fmt::format("{:.6g}", number_of(cell));
-}
-
-/// Equal for equal levels of any type in a view or an identity: numbers by value, files by contents.
-std::string key_of_level(std::string_view word) {
-    const auto number = any_number_in(word);
-    return number ? campaign::shortest(*number) : std::string(word);
-}
-
-std::string key_of_cell(const Cell& cell) {
-    const auto* word = std::get_if<std::string>(&cell);
-    return word == nullptr ? campaign::shortest(number_of(cell)) : key_of_level(campaign::identity_text(*word));
-}
-
-/// Levels that occur, in the order of the campaign file, and their places among all.
-void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std::vector<std::string>& listed) {
-    std::map<std::string, std::string> texts;
-    std::vector<std::string> keys;
-    keys.reserve(cells.size());
-    for (const auto& cell : cells) {
-        keys.push_back(key_of_cell(cell));
-        texts.try_emplace(keys.back(), column_level(cell));
-    }
-    std::map<std::string, std::size_t> index, place_of;
-    for (const auto& level : listed) {
-        const auto key = key_of_level(level);
-        place_of.try_emplace(key, place_of.size());
-        if (texts.contains(key)) index.try_emplace(key, index.size());
-    }
-    for (const auto& key : keys) {
-        index.try_emplace(key, index.size());
-        place_of.try_emplace(key, place_of.size());
-    }
-    factor.levels.resize(index.size());
-    factor.places.resize(index.size());
-    const auto last = static_cast<double>(std::max<std::size_t>(place_of.size(), 2) - 1);
-    for (const auto& [key, place] : index) {
-        factor.levels[place] = texts.at(key);
-        factor.places[place] = static_cast<double>(place_of.at(key)) / last;
-    }
-    for (const auto& key : keys) factor.values.push_back(static_cast<double>(index.at(key)));
-}
-
-/// A factor as its rows come by: numbers where it has a range, else cells until all are known.
-class FactorReader {
-public:
-    FactorReader(campaign::StatedFactor stated, const SceneInfo* scene) : stated_(std::move(stated)) {
-        factor_.name = stated_.name;
-        if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor_.name)) {
-            factor_.unit = parameter->unit;
-            factor_.meaning = parameter->meaning;
-        }
-        if (!stated_.between) return;
-        factor_.log = stated_.between->scale == campaign::Scale::log;
-        factor_.low = stated_.between->low;
-        factor_.high = stated_.between->high;
-    }
-    void add(const Cell& cell) {
-        if (stated_.between)
-            factor_.values.push_back(number_of(cell));
-        else
-            cells_.push_back(cell);
-    }
-    [[nodiscard]] FactorColumn take() {
-        if (!stated_.between) read_levels(factor_, cells_, stated_.levels);
-        return std::move(factor_);
-    }
-
-private:
-    campaign::StatedFactor stated_;
-    FactorColumn factor_;
-    std::vector<Cell> cells_;
-};
 
 /// A view calls an observable that bears the name of a factor "NAME_observed".
 std::string observable_name(const std::string& column, const SceneInfo* scene) {
@@ -197,12 +116,6 @@ double number_of(const Cell& cell) {
 
 bool has_final_outcome(const std::optional<campaign::Outcome>& outcome) {
     return outcome && *outcome != campaign::Outcome::abandoned;
-}
-
-double FactorColumn::coordinate(std::size_t row) const {
-    const double value = values[row];
-    if (!continuous()) return places[static_cast<std::size_t>(value)];
-    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
 
 std::size_t Responses::without_value(const ResponseColumn& response) const {
@@ -323,6 +236,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
 
     responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
     find_settled(responses);
+    add_joint_shares(responses);
     return responses;
 }
 
@@ -389,12 +303,6 @@ std::vector<std::size_t> random_rows(std::vector<std::size_t> rows, std::size_t 
     rows.resize(most);
     std::ranges::sort(rows);
     return rows;
-}
-
-std::string factor_text(const FactorColumn& factor, std::size_t row) {
-    const double value = factor.values[row];
-    if (factor.continuous()) return std::isnan(value) ? "" : fmt::format("{:.6g}", value);
-    return factor.levels[static_cast<std::size_t>(value)];
 }
 
 }  // namespace grainsweep::study

@@ -18,13 +18,16 @@ namespace grainsweep::study {
 struct FactorColumn {
     std::string name, unit, meaning;
     std::vector<std::string> levels;  ///< as text, in the order of the campaign file; empty: continuous
-    double low = 0, high = 0;         ///< continuous: the range
+    double low = 0, high = 0;         ///< continuous: the range (stats::Distribution::range)
     bool log = false;                 ///< the range is divided logarithmically
-    std::vector<double> values;       ///< one per row
-    std::vector<double> places;       ///< of the levels among those of the campaign: 0 the first, 1 the last
+    std::optional<stats::Distribution> distribution = {};  ///< none: levels, or a range
+    std::vector<double> values;                            ///< one per row
+    std::vector<double> shares = {};                       ///< its coordinate per row, where values alone have none
+    std::vector<double> places;  ///< of the levels among those of the campaign: 0 the first, 1 the last
 
     [[nodiscard]] bool continuous() const { return levels.empty(); }
-    /// Where the row stands in the range: 0 to 1; a level by its place among those of the campaign, run or not.
+    /// Where the row stands in the range: 0 to 1, of a distribution the probability of less; a level by its place among
+    /// those of the campaign, run or not.
     [[nodiscard]] double coordinate(std::size_t row) const;
 };
 

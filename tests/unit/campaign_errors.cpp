@@ -89,9 +89,11 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/factors/1/name", "value": "x1"}])",
               "$.factors[1].name: got \"x1\"; this factor is there twice."},
         Wrong{R"([{"op": "add", "path": "/factors/0/levels", "value": [1]}])",
-              "$.factors[0]: got both; a factor has either \"between\": [low, high] or \"levels\": [...]."},
+              "$.factors[0]: got between and levels; a factor has one of 'between', 'levels', 'uniform', 'normal', "
+              "'lognormal', 'triangular', 'beta' or 'sample'."},
         Wrong{R"([{"op": "remove", "path": "/factors/0/between"}])",
-              "$.factors[0]: got neither; a factor has either \"between\": [low, high] or \"levels\": [...]."},
+              "$.factors[0]: got none; a factor has one of 'between', 'levels', 'uniform', 'normal', "
+              "'lognormal', 'triangular', 'beta' or 'sample'."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0.3, 0.1]}])",
               "$.factors[0].between: got [0.3,0.1]; low must be below high."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0.1, 0.1]}])",
@@ -127,8 +129,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/factors/1", "value": {"name": "behave_attempts", "levels": [1, 1.5]}}])",
               "$.factors[1].levels[1]: got 1.5; 'behave_attempts' must be a whole number from 0 to 1000."},
         Wrong{R"([{"op": "add", "path": "/factors/0/level", "value": [1]}])",
-              "$.factors[0].level: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale' or 'notes'. Did "
-              "you mean 'levels'?"}));
+              "$.factors[0].level: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale', 'uniform', "
+              "'normal', 'lognormal', 'triangular', 'beta', 'sample', 'role' or 'notes'. Did you mean 'levels'?"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Fixed, WrongCampaign,

@@ -25,7 +25,7 @@ function settingSection() {
     responses.map((r, k) => { const one = best.responses[k]; return [r.name, withWidth(k, one.mean, one.mean_half_width), "± " + withError(responseScale(k).of(one.run_half_width), NaN)]; }));
   const share = `${show(100 * data.share, 3)} ± ${show(100 * data.share_error, 1)} %`;
   return section("setting", "Setting", says + near,
-    el("div", { class: "tiles" }, tile(share, "of the ranges is in the window"), tile(show(best.probability, 3), "probability of the condition", !data.meets)),
+    el("div", { class: "tiles" }, tile(share, `of ${data.share_of} is in the window`), tile(show(best.probability, 3), "probability of the condition", !data.meets)),
     el("div", { class: "grid wide" }, el("div", { class: "card" }, el("h3", {}, "Setting"), set), responses.length > 0 ? el("div", { class: "card" }, el("h3", {}, "Prediction"), gives) : null));
 }
 

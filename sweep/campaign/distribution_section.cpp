@@ -1,0 +1,108 @@
+// A distribution of a factor: its figures, and what the bounds of the parameter leave of it.
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+using Ranges = std::variant<Between, stats::Distribution>;
+
+constexpr double most_cut = 0.05;
+
+/// Where the figures of a distribution are read, and of what.
+struct Reading {
+    const Section& section;
+    const ParameterSpec& parameter;
+    const std::filesystem::path& folder;
+
+    /// A value that the parameter may have.
+    [[nodiscard]] double value(std::string_view key) const {
+        return std::get<double>(read_value(section.at(key), parameter, folder));
+    }
+    /// A number in the unit of the parameter, which need not be one of its values.
+    [[nodiscard]] double amount(std::string_view key, const Interval& bounds = {}) const {
+        ParameterSpec figure = parameter;
+        figure.name = key;
+        figure.bounds = bounds;
+        return std::get<double>(read_value(section.at(key), figure, folder));
+    }
+};
+
+constexpr Interval above_zero{0, std::numeric_limits<double>::infinity(), true};
+
+Ranges read_uniform(const Reading& read) {
+    const Between range{read.value("low"), read.value("high"), Scale::linear};
+    if (!(range.low < range.high)) read.section.place().refuse("low must be below high");
+    if (!std::isfinite(range.high - range.low))
+        read.section.place().refuse("the range must be finite in double precision");
+    return range;
+}
+
+stats::Distribution::Form read_lognormal(const Reading& read) {
+    const auto sigma = read.section.find("sigma"), ratio = read.section.find("ratio");
+    if (sigma.has_value() == ratio.has_value())
+        throw wrong_question(read.section.place().path(), sigma ? "both" : "neither",
+                             "a lognormal distribution has either \"sigma\", the standard deviation of the natural "
+                             "logarithm, or \"ratio\", exp(sigma)");
+    const double width = sigma ? read.section.number("sigma", 1) : std::log(read.section.number("ratio", 1));
+    return stats::Lognormal{read.amount("median", above_zero), width};
+}
+
+stats::Distribution::Form read_triangular(const Reading& read) {
+    const stats::Triangular form{read.value("low"), read.value("mode"), read.value("high")};
+    if (!(form.low < form.high)) read.section.place().refuse("low must be below high");
+    if (!(form.low <= form.mode && form.mode <= form.high))
+        read.section.place().refuse("the mode must lie from low to high");
+    return form;
+}
+
+stats::Distribution::Form read_beta(const Reading& read) {
+    const stats::Beta form{read.value("low"), read.value("high"), read.section.number("a", 1),
+                           read.section.number("b", 1)};
+    if (!(form.low < form.high)) read.section.place().refuse("low must be below high");
+    return form;
+}
+
+/// Truncates to the bounds and checks that something varies.
+stats::Distribution within_bounds(stats::Distribution::Form form, const Reading& read) {
+    const auto& bounds = std::get<Interval>(read.parameter.bounds);
+    const stats::Distribution distribution(std::move(form), bounds.low, bounds.high);
+    if (!(distribution.cut() <= most_cut))
+        read.section.place().refuse(fmt::format(
+            "{:.3g} % of the distribution lie where '{}' has no value, which is a number{}; at most {:.0f} % may",
+            100 * distribution.cut(), read.parameter.name, in_words(bounds), 100 * most_cut));
+    const double low = distribution.quantile(0), high = distribution.quantile(1);
+    if (!std::isfinite(high - low)) read.section.place().refuse("the range must be finite in double precision");
+    if (!(distribution.quantile(0.25) < distribution.quantile(0.75)))
+        read.section.place().refuse("the width is lost in double precision");
+    return distribution;
+}
+
+}  // namespace
+
+std::variant<Between, stats::Distribution> read_distribution(const Section& factor, std::string_view key,
+                                                             const ParameterSpec& parameter,
+                                                             const std::filesystem::path& folder) {
+    const Cursor place = factor.at(key);
+    const auto with = [&](std::span<const Key> keys, auto read) {
+        const Section section(place, keys);
+        return read(Reading{section, parameter, folder});
+    };
+    const auto shaped = [&](std::span<const Key> keys, auto read) -> Ranges {
+        return with(keys, [&](const Reading& reading) { return within_bounds(read(reading), reading); });
+    };
+    if (key == "uniform") return with(uniform_keys(), read_uniform);
+    if (key == "lognormal") return shaped(lognormal_keys(), read_lognormal);
+    if (key == "triangular") return shaped(triangular_keys(), read_triangular);
+    if (key == "beta") return shaped(beta_keys(), read_beta);
+    return shaped(normal_keys(), [](const Reading& read) -> stats::Distribution::Form {
+        return stats::Normal{read.amount("mean"), read.amount("sd", above_zero)};
+    });
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,37 @@
+// A distribution as it stands in the identity of a campaign.
+//
+//   normal MEAN SD within LOW HIGH             lognormal MEDIAN SIGMA within LOW HIGH
+//   triangular LOW MODE HIGH                   beta LOW HIGH A B
+//   sample K of N in HASH: V V ...             column K of the N that are used of one file, all its values; HASH is
+//                                              that of all N columns
+#pragma once
+
+#include "stats/distribution.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+[[nodiscard]] std::string stated_text(const stats::Distribution& distribution);
+
+/// A column that a text states; the other columns of its sample are stated elsewhere.
+struct StatedColumn {
+    std::size_t column = 0;  ///< from 0
+    std::string sample;      ///< hash
+    std::vector<double> values;
+};
+/// What stated_text() wrote; none: the text states no distribution.
+[[nodiscard]] std::variant<std::monostate, stats::Distribution, StatedColumn> distribution_in(std::string_view text);
+
+/// Returns the text without the values of a sample, for a sentence.
+[[nodiscard]] std::string_view without_values(std::string_view text);
+
+/// "normal, mean 3.4e-05, sd 3e-06"; "column 1 of 2 of a sample of 4000 rows".
+[[nodiscard]] std::string described(const stats::Distribution& distribution);
+
+}  // namespace grainsweep::campaign
