@@ -18,12 +18,12 @@ namespace grainsweep::campaign {
 
 /// What the user states about an export; absent: as the file says.
 struct ExportChoices {
-    std::optional<std::string> sizes, shares;      ///< columns, by number from 1 or by header
-    std::optional<std::string> unit;               ///< of the sizes: "um"
-    std::optional<std::string> as;                 ///< passing, retained (cumulative) or each
-    std::optional<std::string> by;                 ///< volume or number
-    std::optional<std::string> edge;               ///< of a class that its size gives: lower, upper or middle
-    std::optional<std::string> smallest, largest;  ///< sizes that end the table, with their unit
+    std::optional<std::string> sizes = {}, shares = {};      ///< columns, by number from 1 or by header
+    std::optional<std::string> unit = {};                    ///< of the sizes: "um"
+    std::optional<std::string> as = {};                      ///< passing, retained (cumulative) or each
+    std::optional<std::string> by = {};                      ///< volume or number
+    std::optional<std::string> edge = {};                    ///< of a class that its size gives: lower, upper or middle
+    std::optional<std::string> smallest = {}, largest = {};  ///< sizes that end the table, with their unit
 };
 
 /// A table of sizes and what was recognised on the way to it.

@@ -223,7 +223,9 @@ TEST_P(Exports, AreRecognised) {
     EXPECT_EQ(table.begin()->second, 0);
     EXPECT_EQ(table.rbegin()->second, 1);
     EXPECT_EQ(imported.notes.empty(), given.note.empty());
-    if (!given.note.empty()) EXPECT_THAT(imported.notes.front(), HasSubstr(given.note));
+    if (!given.note.empty()) {
+        EXPECT_THAT(imported.notes.front(), HasSubstr(given.note));
+    }
     EXPECT_NO_THROW((void)particles::SizeTable::read(imported.csv));
 }
 INSTANTIATE_TEST_SUITE_P(PowderExport, Exports, testing::ValuesIn(exports()),
