@@ -100,7 +100,7 @@ NamedColumn read_named_column(const Section& section, std::size_t factor, const 
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
                   const fs::path& folder) {
     for (auto& file : files_of(columns, folder)) {
-        const Cursor& named = file.columns.front().place;
+        const Cursor named = file.columns.front().place;  // the columns are sorted below
         const std::string text = read_csv_text(named, folder / file.name);
         CsvTable table(text, [&](const std::string& rule) { named.refuse(rule); });
         find_columns(file, table.header());

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <regex>
 
 namespace grainsweep::study {
@@ -56,16 +58,40 @@ std::vector<Setting> centred_points(const std::vector<ModelFactor>& factors, con
     return points;
 }
 
+constexpr std::size_t longest_list = 1000;  // characters; a regular expression recurses over them
+
+struct Stretch {
+    std::size_t begin = 0, end = 0;
+};
+
+/// The first "for all" that stands as two words, whatever their case.
+std::optional<Stretch> for_all_in(std::string_view where) {
+    const auto part_of_word = [&](std::size_t k) {
+        return k < where.size() && (std::isalnum(static_cast<unsigned char>(where[k])) != 0 || where[k] == '_');
+    };
+    const auto is_word = [&](std::size_t at, std::string_view word) {
+        if (at + word.size() > where.size() || (at > 0 && part_of_word(at - 1)) || part_of_word(at + word.size()))
+            return false;
+        return std::ranges::equal(where.substr(at, word.size()), word, {},
+                                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    };
+    for (std::size_t at = 0; at < where.size(); ++at) {
+        if (!is_word(at, "for")) continue;
+        const auto next = where.find_first_not_of(" \t\n", at + 3);
+        if (next != std::string_view::npos && is_word(next, "all")) return Stretch{at, next + 3};
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 StatedCondition split_condition(std::string_view where) {
-    static const std::regex ending(R"(^(.*?)\bfor\s+all\b(.*)$)", std::regex::icase);
-    const std::string text(where);
-    std::smatch parts;
-    if (!std::regex_match(text, parts, ending)) return {text, {}};
-    StatedCondition stated{parts[1], {}};
+    const auto split = for_all_in(where);
+    if (!split) return {std::string(where), {}};
+    StatedCondition stated{std::string(where.substr(0, split->begin)), {}};
     static const std::regex name(R"(^\s*([A-Za-z_]\w*)\s*(,|$))");
-    std::string rest = parts[2];
+    const bool too_long = where.size() - split->end > longest_list;
+    std::string rest(too_long ? std::string_view() : where.substr(split->end));
     for (std::smatch found; std::regex_search(rest, found, name); rest = found.suffix())
         stated.for_all.push_back(found[1]);
     if (stated.for_all.empty() || !rest.empty())

@@ -67,7 +67,7 @@ TEST_F(Shells, BashCompletesCommandsOptionsAndWords) {
     EXPECT_THAT(offered({"st"}), ElementsAre("status"));
     EXPECT_THAT(offered({"run", "--ma"}), ElementsAre("--max-cases"));
     EXPECT_THAT(offered({"run", "-"}), IsSupersetOf({"-j", "-k", "--db", "--quiet", "--format", "--wide"}));
-    EXPECT_THAT(offered({"query", "a.db", "--format", ""}), ElementsAre("csv", "json", "text"));
+    EXPECT_THAT(offered({"query", "a.db", "--format", ""}), ElementsAre("csv", "json", "text", "xlsx"));
     EXPECT_THAT(offered({"run", "c.json", "--again", "c"}), ElementsAre("completed", "crashed"));
     EXPECT_THAT(offered({"solve", "c.json", "--set", "frict"}),
                 ElementsAre("friction=", "friction_a=", "friction_b=", "friction_hard=", "friction_limit="));
