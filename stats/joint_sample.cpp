@@ -9,7 +9,7 @@ namespace grainsweep::stats {
 namespace {
 
 /// The largest m with m^columns <= rows.
-std::size_t parts_of(std::size_t rows, std::size_t columns) {
+std::size_t pieces_of(std::size_t rows, std::size_t columns) {
     const auto fits = [&](std::size_t m) {
         std::size_t power = 1;
         for (std::size_t k = 0; k < columns; ++k) {
@@ -69,7 +69,7 @@ void JointSample::divide(std::size_t begin, std::size_t end, std::size_t column)
                   return a < b;
               });
     if (column + 1 == columns()) return;
-    const std::size_t count = end - begin, parts = parts_of(count, columns() - column);
+    const std::size_t count = end - begin, parts = pieces_of(count, columns() - column);
     for (std::size_t p = 0; p < parts; ++p)
         divide(begin + begin_of_part(count, parts, p), begin + begin_of_part(count, parts, p + 1), column + 1);
 }
@@ -78,7 +78,7 @@ std::size_t JointSample::row_at(std::span<const double> u) const {
     assert(u.size() == columns());
     std::size_t begin = 0, count = rows();
     for (std::size_t k = 0; k < columns(); ++k) {
-        const std::size_t parts = parts_of(count, columns() - k), p = part_at(count, parts, u[k]);
+        const std::size_t parts = pieces_of(count, columns() - k), p = part_at(count, parts, u[k]);
         const std::size_t first = begin_of_part(count, parts, p);
         count = begin_of_part(count, parts, p + 1) - first;
         begin += first;
@@ -100,7 +100,7 @@ std::optional<std::vector<double>> JointSample::place_of(std::span<const double>
     std::vector<double> middle;
     std::size_t begin = 0, count = rows();
     for (std::size_t k = 0; k < columns(); ++k) {
-        const std::size_t parts = parts_of(count, columns() - k);
+        const std::size_t parts = pieces_of(count, columns() - k);
         std::size_t p = 0;
         while (p + 1 < parts && begin + begin_of_part(count, parts, p + 1) <= place) ++p;
         const std::size_t from = begin_of_part(count, parts, p), to = begin_of_part(count, parts, p + 1);

@@ -112,7 +112,7 @@ std::span<const Key> factor_keys() {
         {"sample", Kind::value, "CSV file with values in SI units under the name of the parameter; or file, column"},
         {"role",
          Kind::word,
-         "control: it can be set; noise: it varies and nobody can set it, window averages over it; changes no result",
+         "control: it can be set; noise: it varies and cannot be set, window averages over it; changes no result",
          "\"control\"",
          {},
          role_words},

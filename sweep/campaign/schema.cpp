@@ -122,7 +122,7 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
 }
 
 /// The figures of distributions; `value`: what a value of the parameter may be.
-void add_distributions(OrderedJson& properties, const OrderedJson& value) {
+void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
     const std::pair<const char*, std::span<const Key>> forms[] = {{"uniform", uniform_keys()},
                                                                   {"normal", normal_keys()},
                                                                   {"lognormal", lognormal_keys()},
@@ -151,7 +151,7 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
         {{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}});
     if (std::holds_alternative<double>(parameter.default_value)) {
         schema["properties"]["between"].update({{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
-        add_distributions(schema["properties"], value);
+        add_distribution_keys(schema["properties"], value);
         schema["oneOf"] = OrderedJson::array();
         for (const auto key : range_keys()) schema["oneOf"].push_back({{"required", {std::string(key)}}});
     } else {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view table_of_files = "campaign_file";
 
-std::uint64_t sum_of_file(std::int64_t campaign, std::string_view place, std::string_view name, std::string_view hash) {
+std::uint64_t sum_of_stored_file(std::int64_t campaign, std::string_view place, std::string_view name,
+                                 std::string_view hash) {
     return Digest().add(campaign).add(place).add(name).add(hash).value();
 }
 
@@ -39,7 +40,7 @@ void store_files(Connection& db, std::int64_t campaign_key, const campaign::Camp
             "DO "
             "UPDATE SET name = excluded.name, checksum = excluded.checksum",
             campaign_key, file.place, file.name, file.hash,
-            as_sql(sum_of_file(campaign_key, file.place, file.name, file.hash)));
+            as_sql(sum_of_stored_file(campaign_key, file.place, file.name, file.hash)));
     }
 }
 
@@ -80,7 +81,7 @@ std::vector<std::string> damaged_files(const Connection& db) {
     while (rows.next()) {
         const auto campaign = rows.get<std::int64_t>(0);
         const auto place = rows.get<std::string>(1), name = rows.get<std::string>(2), hash = rows.get<std::string>(3);
-        if (as_sql(sum_of_file(campaign, place, name, hash)) != rows.get<std::int64_t>(4))
+        if (as_sql(sum_of_stored_file(campaign, place, name, hash)) != rows.get<std::int64_t>(4))
             damaged.push_back(fmt::format("table campaign_file: {} of campaign {} is not as written", place, campaign));
         if (rows.get<std::int64_t>(5) != 0)
             damaged.push_back(fmt::format("table program_content: {}, file '{}', is missing", hash, name));

@@ -67,7 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "move", "from": "/design", "path": "/desing"}])",
               "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'where', 'design', 'calibration', "
               "'replicates', "
-              "'seed', 'convergence', 'accuracy', 'model', 'program', 'machine', 'limits', 'execution' or 'notes'. Did "
+              "'seed', 'common_random_numbers', 'convergence', 'accuracy', 'model', 'program', 'machine', 'powder', "
+              "'limits', 'execution' or 'notes'. Did "
               "you mean "
               "'design'?"},
         Wrong{R"([{"op": "add", "path": "/notes", "value": 3}])",

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <string>
 
-namespace grainsweep::tests::powder_export_test {
+namespace grainsweep::tests::campaign_powder_export_test {
 
 using campaign::ExportChoices;
 using testing::HasSubstr;
@@ -267,4 +267,4 @@ TEST(PowderExport, RefusesWhatIsNoDistribution) {
     EXPECT_THAT(refusal("Size (um),Volume Under %\n1,0\n2,100\n", {.shares = "7"}), HasSubstr("must be a column"));
 }
 
-}  // namespace grainsweep::tests::powder_export_test
+}  // namespace grainsweep::tests::campaign_powder_export_test

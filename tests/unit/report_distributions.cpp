@@ -61,7 +61,9 @@ TEST_P(OverDistributions, MomentsAndIndicesAreThoseOfTheClosedForm) {
 INSTANTIATE_TEST_SUITE_P(Designs, OverDistributions,
                          testing::Values(Sampled{R"({"kind": "halton", "points": 512, "sequences": 8})", 0.02},
                                          Sampled{R"({"kind": "sobol", "points": 512, "scramble": "random"})", 0.02},
-                                         Sampled{R"({"kind": "latin_hypercube", "points": 512})", 0.02},
+                                         // Its strata fix the margins, not the covariance of the factors, whose
+                                         // standard error is 1.7 % of the sd here: three of them.
+                                         Sampled{R"({"kind": "latin_hypercube", "points": 512})", 0.05},
                                          Sampled{R"({"kind": "random", "points": 2048})", 0.06},
                                          Sampled{R"({"kind": "saltelli", "base_points": 128})", 0.06},
                                          Sampled{R"({"kind": "lattice", "levels": 24, "placement": "centred"})",
