@@ -110,7 +110,7 @@ void check_grainsweep(const Clone& clone, std::span<const std::string> arguments
                 << where << ": " << command << " has no " << word;
         }
         if (word.ends_with(".json") && word.find('$') == std::string::npos && !written.contains(word))
-            expect_success(clone.bash("grainsweep plan '" + word + "' --format csv"), where + " " + word);
+            expect_success(clone.bash("grainsweep plan '" + word + "' --format json"), where + " " + word);
     }
 }
 
@@ -210,7 +210,7 @@ TEST_P(Commands, OfThePageRun) {
             ASSERT_FALSE(value.is_discarded()) << where << " is no JSON";
             if (block.what == "part") {
                 clone.write("part.json", replaced(base, value).dump(1));
-                expect_success(clone.grainsweep({"plan", "part.json", "--format", "csv"}), where);
+                expect_success(clone.grainsweep({"plan", "part.json", "--format", "json"}), where);
             } else if (block.what.ends_with('+')) {
                 const auto name = block.what.substr(0, block.what.size() - 1);
                 ASSERT_TRUE(written.contains(name)) << where << ": no block wrote " << name << " before";
