@@ -58,7 +58,7 @@ std::string option_text(const designs::OptionValue& value) {
 /// Bars of the probability in equal parts of the range, the highest full.
 std::string density_text(const stats::Distribution& distribution) {
     constexpr std::array<std::string_view, 9> bars = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-    constexpr std::size_t parts = 24;
+    constexpr std::size_t parts = 16;
     const auto [low, high] = distribution.range();
     std::array<double, parts> shares{};
     double before = distribution.cumulative(low), highest = 0;
@@ -100,12 +100,12 @@ store::Table factors_of(const Campaign& campaign) {
 /// Quantiles of the factors that follow a distribution, its density as a row of signs over the range, and what the
 /// bounds of the parameter cut off; no rows where none does.
 store::Table distributions_of(const Campaign& campaign) {
-    store::Table table{{"factor", "cut %", "5 %", "25 %", "50 %", "75 %", "95 %", "density from low to high"}, {}};
+    store::Table table{{"factor", "cut %", "5 %", "50 %", "95 %", "low to high"}, {}};
     for (const auto& factor : campaign.space.factors) {
         const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
         if (distribution == nullptr) continue;
         std::vector<Cell> row = {factor.name, 100 * distribution->cut()};
-        for (const double u : {0.05, 0.25, 0.5, 0.75, 0.95}) row.emplace_back(distribution->quantile(u));
+        for (const double u : {0.05, 0.5, 0.95}) row.emplace_back(distribution->quantile(u));
         row.emplace_back(density_text(*distribution));
         table.rows.push_back(std::move(row));
     }
