@@ -1,4 +1,4 @@
-// What the page of running campaigns asks of its server, and what it is told without asking.
+// Questions of the page of running campaigns to its server, and events that the server sends.
 //
 //   GET  /?token=T                    the page: that of `report`, whose figures grow
 //   GET  /data?token=T                {"version", "event", "databases", "campaigns"}: page_data of now
@@ -40,7 +40,7 @@ struct Control {
     std::filesystem::path config;  ///< the campaign file that is run again
 };
 
-/// A word that nobody can guess.
+/// Draws a random word of 128 bits.
 [[nodiscard]] std::string new_token();
 
 class Served {

@@ -13,8 +13,9 @@ namespace grainsweep::report {
 void fill(std::ostream& out, std::string_view skeleton,
           const std::vector<std::pair<std::string_view, std::string_view>>& parts);
 
-/// Writes a page of figures: its script, its data (safe_in_script), and the elements of films with their script. `asks`:
-/// whom the script may ask, "'self'" its server; empty: nobody. Returns the content security policy of the page.
+/// Writes a page of figures: its script, its data (safe_in_script), and the elements of films with their script.
+/// `asks`: sources that the script may connect to, "'self'" its server; empty: none. Returns the content security
+/// policy of the page.
 std::string write_figures(std::ostream& out, std::string_view script, std::string_view data,
                           std::string_view films = "", std::string_view film_script = "", std::string_view asks = "");
 

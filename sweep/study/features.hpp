@@ -25,7 +25,7 @@ struct ModelFactor {
     double low = 0, high = 0;  ///< of numbers: the range as FactorColumn has it, or the smallest and largest level
     bool log = false;          ///< the range is divided logarithmically
     std::optional<stats::Distribution> distribution = {};  ///< which settings are drawn from; none: evenly
-    bool noise = false;              ///< it varies, and nobody can set it: "role" of the campaign file
+    bool noise = false;                                    ///< it varies and cannot be set: "role" of the campaign file
     std::vector<double> numbers;     ///< levels that are numbers, growing; empty: a range, or words
     std::vector<std::string> words;  ///< levels that are words; empty: numbers
 

@@ -1,6 +1,6 @@
 // What a window searches, and what stands behind a setting of it.
 //
-// Control factors are searched. Noise factors ("role": "noise") vary and nobody can set them: probabilities and
+// Control factors are searched. Noise factors ("role": "noise") vary and cannot be set: probabilities and
 // responses are averages over them. A factor of `for all` must meet the condition at each of its levels. A held factor
 // has one value. In a setting of a window the entry of a factor that is averaged or varied so is NaN; where it has a
 // number, this is its value.

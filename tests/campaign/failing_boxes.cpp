@@ -69,7 +69,7 @@ TEST(NoiseFactors, AreAveragedOverHeldOrMetAtEveryLevel) {
     EXPECT_NEAR(noisy.least_x("y >= 0.5", {"--risk", "0.3", "--hold", "powder=coarse"}), 0, 0.03);
     EXPECT_NEAR(noisy.least_x("y >= 0.5", {"--hold", "powder=fine", "--hold", "moisture=0.5"}), 0.4, 0.02);
     const auto found = noisy.answer({"window", "c.db", "--where", "y >= 0.5", "--maximize", "y", "--next", "2"});
-    EXPECT_TRUE(found["best"]["inputs"]["powder"].is_null()) << "nobody can set it";
+    EXPECT_TRUE(found["best"]["inputs"]["powder"].is_null()) << "it cannot be set";
     EXPECT_TRUE(found["next"][0]["inputs"]["powder"].is_string()) << "a case needs one";
     EXPECT_GT(found["best"]["scatter"].get<double>(), 0.05) << "that of the moisture is in it";
     const auto page = noisy.ask({"window", "c.db", "--where", "y >= 0.5", "-o", "w.html"});

@@ -1,4 +1,4 @@
-// Results of a database are told once each, in whatever way the database grows.
+// The follower reports each result of a database once, however the database grows.
 #include "sweep/live/follower.hpp"
 #include "tests/support/archive.hpp"
 #include "tests/support/written.hpp"

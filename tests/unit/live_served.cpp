@@ -1,4 +1,4 @@
-// Who may ask the server of running campaigns what, and what its readers are told.
+// Access rules of the server of running campaigns, and the events that readers get.
 #include "sweep/live/served.hpp"
 #include "tests/support/archive.hpp"
 #include "tests/support/written.hpp"
