@@ -32,14 +32,14 @@ TEST(Answers, WindowsKeepTheirPromiseBesideFailingCorners) {
                     with);
         std::fflush(stdout);
         EXPECT_EQ(kept.runs, runs);
-        EXPECT_GE(with, 0.5) << "box " << box << ": a setting where cases fail";
+        EXPECT_GE(with, 0.85) << "box " << box << ": a setting where cases fail";
         promised += kept.promised / boxes;
         held += share / boxes;
         answers += kept.answers / boxes;
         answered += with / boxes;
     }
     std::printf("all          %8.3f  %5.3f  %7.3f  %8.3f\n", promised, held, answers, answered);
-    EXPECT_GE(held, 0.95) << "1 - risk";
+    EXPECT_GE(held, promised - 0.01);
     EXPECT_GE(answered, 0.95);
 }
 
@@ -111,7 +111,7 @@ TEST(Answers, ProbabilitiesAreWhatTheyPromise) {
             std::printf("  %6.0f settings: promised %.3f, true %.3f\n", found.count[k], promised, truth);
             EXPECT_NEAR(promised, truth, 0.1);
         }
-        EXPECT_GE(found.covered / found.all, 0.85);
+        EXPECT_GE(found.covered / found.all, 0.90);
     }
 }
 

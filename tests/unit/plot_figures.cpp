@@ -38,7 +38,7 @@ TEST(PlotTicks, OfALogarithmicAxisArePowersOfTenWhereThereAreSome) {
     EXPECT_THAT(labels(log_ticks(20, 60, 5)), ElementsAre("20", "30", "40", "50", "60"));
 }
 
-/// A canvas that nobody looks at.
+/// A canvas of one pixel, for measuring texts.
 struct Nowhere {
     cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1);
     cairo_t* context = cairo_create(surface);
