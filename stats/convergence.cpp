@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -125,10 +126,15 @@ Convergence::Convergence(ConvergenceSettings settings) : settings_(std::move(set
     if (settings_.sequences >= fewest_sequences) sequences_.resize(static_cast<std::size_t>(settings_.sequences));
 }
 
-void Convergence::add(std::int64_t point, double value) {
+void Convergence::add(std::int64_t point, double value, std::int64_t earlier) {
     settle(point);
     pooled_.moments.add(value);
     const bool finite = std::isfinite(value);
+    if (finite) {
+        ++places_;
+        if (earlier == 0) ++runs_;
+        excess_ += 2 * static_cast<double>(earlier);
+    }
     if (finite) pooled_.sample.add(value);
     if (sequences_.empty()) {
         if (finite) stretches_.add(value);
@@ -154,11 +160,13 @@ void Convergence::check() {
     const Summary summary = pooled_.moments.summary(pooled_.sample.middle());
     now.count = summary.count;
     now.excluded = summary.excluded;
-    now.fresh = now.count - (checkpoints_.empty() ? 0 : checkpoints_.back().count);
+    now.runs = runs_;
+    now.fresh = now.runs - (checkpoints_.empty() ? 0 : checkpoints_.back().runs);
     now.all_equal = now.count > 0 && summary.minimum == summary.maximum;
     now.zero_share = summary.zero_share;
     for (std::size_t s = 0; s < statistics.size(); ++s) now.estimates[s].value = summary.of(statistics[s]);
     find_errors(now);
+    widen_errors(now);
     find_measures(now);
     judge(now);
     checkpoints_.push_back(now);
@@ -182,6 +190,33 @@ void Convergence::find_errors(Checkpoint& now) {
         if (!differ(repetitions)) continue;
         now.estimates[s].error =
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
+    }
+}
+
+void Convergence::widen_errors(Checkpoint& now) const {
+    if (!(excess_ > 0)) return;
+    const double kurtosis = now.of(Statistic::kurtosis).value;
+    const double sd = now.of(Statistic::sd).value;
+    const auto of_one_run = [&](Statistic statistic) {
+        switch (statistic) {
+            case Statistic::mean:
+                return sd;
+            case Statistic::sd:
+                return sd * std::sqrt((kurtosis - 1) / 4);
+            case Statistic::skewness:
+                return 3 * std::sqrt(std::numbers::pi / 2 - 1);
+            case Statistic::g1:
+                return std::sqrt(6.0);
+            case Statistic::kurtosis:
+                return std::sqrt(24.0);
+        }
+        return nan;
+    };
+    constexpr double normal_95 = 1.96;
+    const double share = std::sqrt(excess_) / static_cast<double>(places_);
+    for (const Statistic statistic : statistics) {
+        double& error = now.estimates[static_cast<std::size_t>(statistic)].error;
+        error = std::hypot(error, normal_95 * share * of_one_run(statistic));
     }
 }
 
@@ -217,10 +252,12 @@ std::optional<std::int64_t> Convergence::predict(const Checkpoint& now) const {
 }
 
 std::vector<Checkpoint> judge_convergence(const ConvergenceSettings& settings, std::span<const std::int64_t> points,
-                                          std::span<const double> values, std::int64_t settled) {
-    assert(points.size() == values.size());
+                                          std::span<const double> values, std::int64_t settled,
+                                          std::span<const std::int64_t> earlier) {
+    assert(points.size() == values.size() && (earlier.empty() || earlier.size() == values.size()));
     Convergence convergence(settings);
-    for (std::size_t i = 0; i < values.size() && points[i] < settled; ++i) convergence.add(points[i], values[i]);
+    for (std::size_t i = 0; i < values.size() && points[i] < settled; ++i)
+        convergence.add(points[i], values[i], earlier.empty() ? 0 : earlier[i]);
     convergence.settle(settled);
     return {convergence.checkpoints().begin(), convergence.checkpoints().end()};
 }

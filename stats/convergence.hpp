@@ -55,7 +55,8 @@ struct Checkpoint {
     std::int64_t points = 0;    ///< design points in the prefix
     std::int64_t count = 0;     ///< finite values among them
     std::int64_t excluded = 0;  ///< values that are not finite
-    std::int64_t fresh = 0;     ///< finite values since the check before
+    std::int64_t runs = 0;      ///< different runs among those with a finite value
+    std::int64_t fresh = 0;     ///< of those, since the check before
     bool all_equal = false;     ///< one value, once or several times: nothing is known of the scatter
     double zero_share = std::numeric_limits<double>::quiet_NaN();
     std::array<Estimate, statistics.size()> estimates;
@@ -106,7 +107,16 @@ public:
 
     /// The next value (NaN: the case failed), by growing point number; numbers may be missing (filtered out)
     /// or repeated. All points before `point` must have been added: checks they complete are made here.
-    void add(std::int64_t point, double value);
+    /// `earlier`: places before this one that hold the same run, which was added there. The run then weighs as many
+    /// places as hold it, and every error is widened for it:
+    ///
+    ///   error^2 = (error from sequences or stretches)^2 + (1.96 c)^2 sum over runs of (w^2 - w/N)
+    ///
+    /// w: share of the N places that hold the run; c: asymptotic standard deviation of the statistic of a normal
+    /// sample, times sqrt(n) (mean: sd; sd: sd sqrt((kurtosis - 1)/4); skewness: 3 sqrt(pi/2 - 1); g1: sqrt 6;
+    /// kurtosis: sqrt 24). The second term is 0 without repeated runs; it takes all of the variance for scatter of
+    /// single runs.
+    void add(std::int64_t point, double value, std::int64_t earlier = 0);
     /// Every point below `points` has been added or will never be.
     void settle(std::int64_t points);
 
@@ -122,6 +132,7 @@ private:
 
     void check();
     void find_errors(Checkpoint& now);
+    void widen_errors(Checkpoint& now) const;
     void find_measures(Checkpoint& now) const;
     void judge(Checkpoint& now) const;
     [[nodiscard]] std::optional<std::int64_t> predict(const Checkpoint& now) const;
@@ -129,13 +140,17 @@ private:
     ConvergenceSettings settings_;
     std::vector<Sequence> sequences_;
     Sequence pooled_;
-    StretchedSample stretches_;  ///< filled where errors come from the jackknife
+    std::int64_t places_ = 0, runs_ = 0;  ///< with a value; of those different
+    double excess_ = 0;                   ///< sum over runs of (places of the run)^2 - places
+    StretchedSample stretches_;           ///< filled where errors come from the jackknife
     std::vector<Checkpoint> checkpoints_;
 };
 
-/// One go: values[i] belongs to design point points[i] (growing); the first `settled` points are judged.
+/// One go: values[i] belongs to design point points[i] (growing); the first `settled` points are judged. `earlier`: as
+/// in Convergence::add, empty: every value is a run of its own.
 [[nodiscard]] std::vector<Checkpoint> judge_convergence(const ConvergenceSettings& settings,
                                                         std::span<const std::int64_t> points,
-                                                        std::span<const double> values, std::int64_t settled);
+                                                        std::span<const double> values, std::int64_t settled,
+                                                        std::span<const std::int64_t> earlier = {});
 
 }  // namespace grainsweep::stats

@@ -192,52 +192,84 @@ SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dim
 
 namespace {
 
-/// The factor in which two points differ.
-std::size_t moved_factor(std::span<const double> before, std::span<const double> after, std::size_t step) {
-    std::size_t moved = no_index;
+/// The group in which two points differ, and the mean size of the moves of its factors; signed where it has one factor.
+struct Move {
+    std::size_t group = no_index;
+    double size = 0;
+};
+
+/// Which factors are in which group.
+struct Groups {
+    std::vector<std::size_t> of, sizes;
+
+    Groups(std::size_t dimensions, std::span<const std::size_t> given) : of(given.begin(), given.end()) {
+        if (of.empty()) {
+            of.resize(dimensions);
+            std::iota(of.begin(), of.end(), std::size_t{0});
+        }
+        sizes.resize(*std::ranges::max_element(of) + 1);
+        for (const auto group : of) ++sizes[group];
+    }
+};
+
+Move move_between(std::span<const double> before, std::span<const double> after, const Groups& groups,
+                  std::size_t step) {
+    Move move;
+    bool several = false;
     for (std::size_t j = 0; j < before.size(); ++j) {
         if (before[j] == after[j]) continue;
-        if (moved != no_index) moved = before.size();
-        if (moved == no_index) moved = j;
+        several = several || (move.group != no_index && move.group != groups.of[j]);
+        move.group = groups.of[j];
+        const double moved = after[j] - before[j];
+        move.size += groups.sizes[move.group] == 1 ? moved : std::abs(moved);
     }
-    if (moved >= before.size())
+    if (several || move.group == no_index)
         throw std::invalid_argument("between points " + std::to_string(step - 1) + " and " + std::to_string(step) +
                                     " not exactly one factor moves: these are no Morris trajectories");
-    return moved;
+    move.size /= static_cast<double>(groups.sizes[move.group]);
+    return move;
+}
+
+ElementaryEffects summary_of(std::span<const double> effects, bool directed) {
+    ElementaryEffects summary;
+    const auto count = static_cast<double>(effects.size());
+    summary.count = static_cast<std::int64_t>(effects.size());
+    if (effects.empty()) return summary;
+    std::vector<double> magnitudes(effects.size());
+    std::ranges::transform(effects, magnitudes.begin(), [](double e) { return std::abs(e); });
+    summary.mu_star = std::accumulate(magnitudes.begin(), magnitudes.end(), 0.0) / count;
+    summary.mu_star_half_width = student_half_width(magnitudes);
+    if (!directed) return summary;
+    summary.mu = std::accumulate(effects.begin(), effects.end(), 0.0) / count;
+    double squares = 0;
+    for (const double effect : effects) squares += square(effect - summary.mu);
+    if (count > 1) summary.sigma = std::sqrt(squares / (count - 1));
+    return summary;
 }
 
 }  // namespace
 
 std::vector<ElementaryEffects> elementary_effects(std::span<const double> points, std::size_t dimensions,
-                                                  std::span<const double> values) {
+                                                  std::span<const double> values, std::span<const std::size_t> given) {
     assert(points.size() == values.size() * dimensions);
-    const std::size_t length = dimensions + 1;
-    std::vector<std::vector<double>> effects(dimensions);
-    std::vector<ElementaryEffects> summaries(dimensions);
+    const Groups groups(dimensions, given);
+    const std::size_t length = groups.sizes.size() + 1;
+    std::vector<std::vector<double>> effects(groups.sizes.size());
+    std::vector<std::int64_t> excluded(groups.sizes.size());
     for (std::size_t p = 0; p + 1 < values.size(); ++p) {
         if ((p + 1) % length == 0) continue;  // the next point begins a trajectory
-        const auto before = points.subspan(p * dimensions, dimensions);
-        const auto after = points.subspan((p + 1) * dimensions, dimensions);
-        const std::size_t j = moved_factor(before, after, p + 1);
-        const double effect = (values[p + 1] - values[p]) / (after[j] - before[j]);
+        const auto move = move_between(points.subspan(p * dimensions, dimensions),
+                                       points.subspan((p + 1) * dimensions, dimensions), groups, p + 1);
+        const double effect = (values[p + 1] - values[p]) / move.size;
         if (std::isfinite(effect))
-            effects[j].push_back(effect);
+            effects[move.group].push_back(effect);
         else
-            ++summaries[j].excluded;
+            ++excluded[move.group];
     }
-    for (std::size_t j = 0; j < dimensions; ++j) {
-        auto& summary = summaries[j];
-        const auto count = static_cast<double>(effects[j].size());
-        summary.count = static_cast<std::int64_t>(effects[j].size());
-        if (effects[j].empty()) continue;
-        std::vector<double> magnitudes(effects[j].size());
-        std::ranges::transform(effects[j], magnitudes.begin(), [](double e) { return std::abs(e); });
-        summary.mu = std::accumulate(effects[j].begin(), effects[j].end(), 0.0) / count;
-        summary.mu_star = std::accumulate(magnitudes.begin(), magnitudes.end(), 0.0) / count;
-        summary.mu_star_half_width = student_half_width(magnitudes);
-        double squares = 0;
-        for (const double effect : effects[j]) squares += square(effect - summary.mu);
-        if (count > 1) summary.sigma = std::sqrt(squares / (count - 1));
+    std::vector<ElementaryEffects> summaries;
+    for (std::size_t g = 0; g < effects.size(); ++g) {
+        summaries.push_back(summary_of(effects[g], groups.sizes[g] == 1));
+        summaries.back().excluded = excluded[g];
     }
     return summaries;
 }

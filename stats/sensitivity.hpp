@@ -54,7 +54,8 @@ struct SaltelliIndices {
     std::int64_t excluded = 0;            ///< base rows with a value missing
 };
 
-/// Indices from a "saltelli" design: values in the order of its points, blocks of d + 2: A, B, AB_1, ..., AB_d
+/// Indices from a "saltelli" design: values in the order of its points, blocks of d + 2: A, B, AB_1, ..., AB_d, with d
+/// factors or groups of factors that move together
 /// (a last, incomplete block is not looked at). V: population variance of all f_A and f_B. Half-widths from
 /// 8 consecutive stretches of base rows.
 [[nodiscard]] SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dimensions);
@@ -72,7 +73,13 @@ struct ElementaryEffects {
 /// From a "morris" design: trajectories of d + 1 consecutive points in each of which one factor moves.
 /// A linear response sum c_j x_j has mu* = |c_j| and sigma = 0. Throws std::invalid_argument where a step moves
 /// none or several factors.
+///
+/// `groups`: number of the group of each factor, from 0, where factors move together; then every trajectory has one
+/// point more than there are groups, and one entry a group is returned. The effect of a group of several factors is
+/// |y after - y before| divided by the mean size of the moves of its factors (Campolongo, Cariboni & Saltelli 2007,
+/// Environ. Model. Softw. 22, 1509): it has no sign, and mu and sigma are NaN.
 [[nodiscard]] std::vector<ElementaryEffects> elementary_effects(std::span<const double> points, std::size_t dimensions,
-                                                                std::span<const double> values);
+                                                                std::span<const double> values,
+                                                                std::span<const std::size_t> groups = {});
 
 }  // namespace grainsweep::stats

@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -39,13 +40,42 @@ struct Levels {
 struct Factor {
     std::string name;
     std::variant<Between, Levels, stats::Distribution> range;
+    std::optional<double> step = {};  ///< of a range: its values are multiples of this (step.hpp)
+    bool share = false;               ///< of a range: it and the other shares add to one (simplex.hpp)
+    std::string group = {};           ///< of factors that move together in saltelli and morris; empty: by itself
+    std::string when = {};            ///< SQL condition without which it takes its default; empty: it always counts
     bool operator==(const Factor&) const = default;
 };
+
+/// Decides whether a candidate point belongs to the campaign: the `where` clause; or whether a factor counts: `when`.
+using Filter = std::function<bool(const Inputs&)>;
+
+/// The compiled `when` of a factor.
+struct WhenClause {
+    std::string factor;
+    Filter holds;  ///< reads inputs in which the clauses before it have been applied
+};
+
+/// The group of shares that add to one.
+inline constexpr std::string_view group_of_shares = "simplex";
+/// Numbers of the groups that factors move in, from 0 in the order of their first factors: those with one name, all
+/// shares, every other factor by itself.
+[[nodiscard]] std::vector<std::size_t> groups_of(std::span<const Factor> factors);
+/// Names of these groups; of a factor by itself its own.
+[[nodiscard]] std::vector<std::string> group_names(std::span<const Factor> factors);
+
+/// Whether cases that several points ask have different probabilities, so that each weighs as many points as ask it in
+/// the moments: some have a `when`, a sample, or steps of a range that is not linear. Elsewhere all are equally likely,
+/// and each counts once.
+[[nodiscard]] bool repeats_weigh(std::span<const Factor> factors);
 
 /// Its value at the coordinate u in [0, 1], not yet in the type of its parameter.
 [[nodiscard]] Value value_at(const Factor& factor, double u);
 /// The value of factor j at a point of all factors: columns of one sample are drawn together (joint_column.hpp).
 [[nodiscard]] Value value_at(std::span<const Factor> factors, std::size_t j, std::span<const double> u);
+
+/// What a parameter is where its factor does not count.
+[[nodiscard]] const Value& default_of(const SceneInfo& scene, std::string_view parameter);
 
 /// A fixed parameter whose number follows from others.
 struct Expression {
@@ -61,8 +91,11 @@ struct ParameterSpace {
     Inputs fixed;                 ///< as given, with the accuracy setting resolved under it
     /// Held too, as expressions; each stands after those it needs. Their results are unchecked here: expressions.hpp.
     std::vector<Expression> expressions = {};
+    /// One for each factor with a `when`, each after those it depends on; compiled by store::compile_conditions.
+    std::vector<WhenClause> when = {};
 
-    /// Complete inputs of the point u in [0, 1]^d: defaults, then fixed, factors, expressions.
+    /// Complete inputs of the point u in [0, 1]^d: defaults, then fixed, factors, defaults again of those whose `when`
+    /// does not hold, expressions.
     [[nodiscard]] Inputs at(std::span<const double> u) const;
     /// Complete inputs of a listed row of factor values.
     [[nodiscard]] Inputs at(std::span<const Value> row) const;
@@ -149,9 +182,6 @@ bool reorder_factors(Campaign& campaign, std::span<const std::string> order);
 /// Why the campaign can never be found to have converged, however its answers turn out; empty: it can, or it gives no
 /// rule.
 [[nodiscard]] std::string never_converges(const Campaign& campaign);
-
-/// Decides whether a candidate point belongs to the campaign: the `where` clause.
-using Filter = std::function<bool(const Inputs&)>;
 
 /// The names a `where` clause may use: every parameter of the scene.
 [[nodiscard]] std::vector<std::string> filter_names(const Campaign& campaign);

@@ -1,5 +1,6 @@
 // "design": its options against the OptionSpecs that the design declares.
 #include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/step.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -120,8 +121,11 @@ void check_in_range(const Cursor& place, const Factor& factor, const Value& valu
     const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
     const double low = distribution != nullptr ? distribution->low() : std::get<Between>(factor.range).low;
     const double high = distribution != nullptr ? distribution->high() : std::get<Between>(factor.range).high;
-    if (!Interval{low, high}.contains(std::get<double>(value)))
+    const double number = std::get<double>(coerced(value, Value{0.0}));
+    if (!Interval{low, high}.contains(number))
         place.refuse(fmt::format("factor '{}' goes from {} to {}", factor.name, shortest(low), shortest(high)));
+    if (factor.step && !is_multiple(*factor.step, number))
+        place.refuse(fmt::format("factor '{}' takes multiples of {}", factor.name, shortest(*factor.step)));
 }
 
 void set_factors(Campaign& campaign) {
@@ -132,6 +136,7 @@ void set_factors(Campaign& campaign) {
         request.levels.push_back(levels == nullptr ? 0 : levels->values.size());
         request.factors.push_back(range_of(factor));
     }
+    request.groups = groups_of(campaign.space.factors);
 }
 
 void check_growing(const Cursor& place, const Campaign& campaign) {

@@ -38,6 +38,7 @@ bool reorder_factors(Campaign& campaign, std::span<const std::string> order) {
     }
     permute(factors, places);
     permute(campaign.request.levels, places);
+    if (!campaign.request.groups.empty()) campaign.request.groups = groups_of(factors);
     if (!campaign.request.factors.empty()) permute(campaign.request.factors, places);
     for (auto& [name, value] : campaign.request.options) permute(value, places);
     return true;

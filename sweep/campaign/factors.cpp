@@ -1,5 +1,6 @@
 // "factors" and "fixed": what varies and what is held.
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -23,8 +24,8 @@ Between read_between(const Section& factor, const ParameterSpec& parameter, cons
     const auto ends = place.elements();
     if (ends.size() != 2) place.refuse("must be [low, high]");
     Between range;
-    range.low = std::get<double>(read_value(ends[0], parameter, folder));
-    range.high = std::get<double>(read_value(ends[1], parameter, folder));
+    range.low = std::get<double>(coerced(read_value(ends[0], parameter, folder), Value{0.0}));
+    range.high = std::get<double>(coerced(read_value(ends[1], parameter, folder), Value{0.0}));
     if (!(range.low < range.high)) place.refuse("low must be below high");
     if (!std::isfinite(range.high - range.low)) place.refuse("the range must be finite in double precision");
     range.scale = factor.word("scale", "linear") == "log" ? Scale::log : Scale::linear;
@@ -65,8 +66,11 @@ void check_key(const Section& section, std::string_view key, const ParameterSpec
     if (key == "levels") return;
     if (std::holds_alternative<std::string>(parameter.default_value))
         place.refuse(fmt::format("the values of '{}' are words; vary it by \"levels\"", parameter.name));
-    if (std::holds_alternative<std::int64_t>(parameter.default_value))
-        place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", parameter.name));
+    if (!std::holds_alternative<std::int64_t>(parameter.default_value)) return;
+    if (key != "between") place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", parameter.name));
+    if (!section.find("whole") && !section.find("step"))
+        place.refuse(
+            fmt::format("'{}' is a whole number: add \"whole\": true, or vary it by \"levels\"", parameter.name));
 }
 
 /// Whether a text is meant as a number and its unit, although it is not one.
@@ -121,9 +125,18 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
             std::visit([&](auto&& range) { factor.range = std::move(range); },
                        read_distribution(section, key, parameter, folder));
         }
+        if (key == "between" || key == "uniform") {
+            factor.step = read_step(section, parameter, std::get<Between>(factor.range));
+        } else {
+            refuse_steps(section, key == "levels" ? "levels are taken as they are" : "a distribution has no steps");
+        }
+        read_ties(section, factor);
         factors.push_back(std::move(factor));
     }
     read_samples(sampled, factors, scene, folder);
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (!factors[j].when.empty() && column_of(std::get_if<stats::Distribution>(&factors[j].range)) != nullptr)
+            place[j]["when"].refuse("factors that take rows of one sample count at every point: leave out 'when'");
     if (factors.empty()) place.refuse("a campaign varies at least one factor");
     return factors;
 }

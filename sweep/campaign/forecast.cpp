@@ -182,6 +182,11 @@ std::string repeated_cases(const Campaign& campaign, const Forecast& forecast) {
     std::string advice = "'replicates' repeats every point with other seeds";
     if (design->beginning == designs::Beginning::sample && std::ranges::all_of(campaign.space.factors, has_levels))
         advice = "a lattice with 'replicates' runs every combination of the levels several times, with other seeds";
+    if (repeats_weigh(campaign.space.factors))
+        return fmt::format(
+            "the {} cases of the design are {} different ones: each is one run, and weighs as many points as ask it in "
+            "the moments",
+            forecast.places, forecast.questions);
     return fmt::format("the {} cases of the design are {} different ones, and each counts once in every statistic: {}",
                        forecast.places, forecast.questions, advice);
 }

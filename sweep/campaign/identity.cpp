@@ -29,12 +29,23 @@ std::string joined(const std::vector<Value>& values) {
 
 std::string line_of(const Factor& factor) {
     if (const auto* between = std::get_if<Between>(&factor.range)) {
-        return fmt::format("{} between {} {} {}", factor.name, shortest(between->low), shortest(between->high),
-                           between->scale == Scale::log ? "log" : "linear");
+        return fmt::format("{} between {} {} {}{}{}", factor.name, shortest(between->low), shortest(between->high),
+                           between->scale == Scale::log ? "log" : "linear",
+                           factor.step ? " step " + shortest(*factor.step) : "", factor.share ? " share" : "");
     }
     if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
         return fmt::format("{} {}", factor.name, stated_text(*distribution));
     return fmt::format("{} levels {}", factor.name, joined(std::get<Levels>(factor.range).values));
+}
+
+constexpr std::string_view group_mark = " group ", when_mark = " when ";
+
+/// How a factor stands to others, as lines behind those of all factors.
+std::string ties_of(const Factor& factor) {
+    std::string lines;
+    if (!factor.group.empty()) lines += fmt::format("{}{} {}\n", group_mark, factor.name, factor.group);
+    if (!factor.when.empty()) lines += fmt::format("{}{} {}\n", when_mark, factor.name, factor.when);
+    return lines;
 }
 
 std::string text_of(const designs::OptionValue& value) {
@@ -59,6 +70,12 @@ std::pair<std::string, std::string> name_and_value(const std::string& line) {
     const auto at = line.find(between);
     if (at == std::string::npos) return {line, {}};
     return {line.substr(0, at), line.substr(at + between.size())};
+}
+
+/// "gap shape" -> "gap", "shape".
+std::pair<std::string, std::string> name_and_rest(const std::string& line) {
+    const auto blank = line.find(' ');
+    return {line.substr(0, blank), blank == std::string::npos ? "" : line.substr(blank + 1)};
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -108,6 +125,10 @@ StatedFactor factor_in(const std::string& line) {
         std::string low, high, scale;
         words >> low >> high >> scale;
         factor.between = {identity_number(low), identity_number(high), scale == "log" ? Scale::log : Scale::linear};
+        for (std::string word, number; words >> word;) {
+            if (word == "share") factor.share = true;
+            if (word == "step" && words >> number) factor.step = identity_number(number);
+        }
     }
     return factor;
 }
@@ -191,6 +212,7 @@ Identity identity_of(const Campaign& campaign) {
     identity.design = campaign.design;
     const auto& design = designs::design_named(campaign.design);
     for (const auto& factor : campaign.space.factors) identity.factors += line_of(factor) + '\n';
+    for (const auto& factor : campaign.space.factors) identity.factors += ties_of(factor);
     for (const auto& [name, value] : fixed_as_stated(campaign.space))
         identity.fixed += fmt::format("{} = {}\n", name, identity_text(value));
     for (const auto& [name, value] : campaign.request.options) {
@@ -206,8 +228,18 @@ Identity identity_of(const Campaign& campaign) {
 
 std::vector<StatedFactor> factors_of(const Identity& identity) {
     std::vector<StatedFactor> factors;
-    const auto lines = lines_of(identity.factors);
-    for (const auto& line : lines) factors.push_back(factor_in(line));
+    std::vector<std::string> lines;
+    for (const auto& line : lines_of(identity.factors)) {
+        const bool grouped = line.starts_with(group_mark);
+        if (!grouped && !line.starts_with(when_mark)) {
+            factors.push_back(factor_in(line));
+            lines.push_back(line);
+            continue;
+        }
+        const auto [name, text] = name_and_rest(line.substr((grouped ? group_mark : when_mark).size()));
+        const auto factor = std::ranges::find(factors, name, &StatedFactor::name);
+        if (factor != factors.end()) (grouped ? factor->group : factor->when) = text;
+    }
     add_distributions(factors, lines);
     return factors;
 }
@@ -228,7 +260,8 @@ std::vector<StatedFactor> factors_in(std::string_view line) {
 
 std::vector<std::string> factor_names(const Identity& identity) {
     std::vector<std::string> names;
-    for (const auto& line : lines_of(identity.factors)) names.push_back(line.substr(0, line.find(' ')));
+    for (const auto& line : lines_of(identity.factors))
+        if (!line.starts_with(' ')) names.push_back(line.substr(0, line.find(' ')));
     return names;
 }
 

@@ -22,8 +22,9 @@ struct Identity {
     std::string name, scene;
     std::int64_t revision = 1;
     std::uint64_t seed = 1;
-    /// One line each, in order: "name between low high scale", "name levels a | b | ..." or name and distribution
-    /// (stated_distribution.hpp).
+    /// One line each, in order: "name between low high scale", behind it "step 0.5" or "share", "name levels a | b |
+    /// ..." or name and distribution (stated_distribution.hpp); then lines " group name its_group" and " when name
+    /// condition", which begin with a blank.
     std::string factors;
     std::string fixed;      ///< one line each: "name = value", the accuracy setting resolved
     std::string condition;  ///< the `where` clause; empty: every point
@@ -44,6 +45,9 @@ struct StatedFactor {
     std::optional<Between> between;
     std::vector<std::string> levels;  ///< in the order of the campaign file; empty where there is a range
     std::optional<stats::Distribution> distribution = {};
+    std::optional<double> step = {};
+    bool share = false;
+    std::string group = {}, when = {};
     bool operator==(const StatedFactor&) const = default;
     [[nodiscard]] bool continuous() const { return between || distribution; }
 };

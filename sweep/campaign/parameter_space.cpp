@@ -1,6 +1,8 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/joint_column.hpp"
+#include "sweep/campaign/simplex.hpp"
+#include "sweep/campaign/step.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <algorithm>
@@ -38,6 +40,7 @@ double value_at(const stats::Distribution& range, double u) {
 }  // namespace
 
 Value value_at(const Factor& factor, double u) {
+    if (factor.step) return stepped(std::get<Between>(factor.range), *factor.step, u);
     return std::visit([u](const auto& range) -> Value { return value_at(range, u); }, factor.range);
 }
 
@@ -46,6 +49,40 @@ Value value_at(std::span<const Factor> factors, std::size_t j, std::span<const d
         return column_of(std::get_if<stats::Distribution>(&factors[k].range));
     });
     return joint ? Value{*joint} : value_at(factors[j], u[j]);
+}
+
+namespace {
+
+std::string group_name(const Factor& factor) {
+    if (factor.share) return std::string(group_of_shares);
+    return factor.group.empty() ? factor.name : factor.group;
+}
+
+}  // namespace
+
+std::vector<std::string> group_names(std::span<const Factor> factors) {
+    std::vector<std::string> names;
+    for (const auto& factor : factors)
+        if (const auto name = group_name(factor); std::ranges::find(names, name) == names.end()) names.push_back(name);
+    return names;
+}
+
+std::vector<std::size_t> groups_of(std::span<const Factor> factors) {
+    const auto names = group_names(factors);
+    std::vector<std::size_t> groups;
+    for (const auto& factor : factors)
+        groups.push_back(static_cast<std::size_t>(std::ranges::find(names, group_name(factor)) - names.begin()));
+    return groups;
+}
+
+bool repeats_weigh(std::span<const Factor> factors) {
+    return std::ranges::any_of(factors, [](const Factor& factor) {
+        const auto* range = std::get_if<Between>(&factor.range);
+        const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
+        const bool sampled =
+            distribution != nullptr && std::holds_alternative<stats::SampleColumn>(distribution->form());
+        return sampled || !factor.when.empty() || (factor.step && !(range != nullptr && range->scale == Scale::linear));
+    });
 }
 
 Value coerced(const Value& value, const Value& like) {
@@ -61,11 +98,17 @@ Value coerced(const Value& value, const Value& like) {
     return value;
 }
 
+const Value& default_of(const SceneInfo& scene, std::string_view parameter) {
+    return scene.find_parameter(parameter)->default_value;
+}
+
 Inputs ParameterSpace::at(std::span<const double> u) const {
     assert(u.size() == factors.size());
+    std::vector<double> coordinates(u.begin(), u.end());
+    share_out(factors, coordinates);
     std::vector<Value> row;
     row.reserve(factors.size());
-    for (std::size_t j = 0; j < factors.size(); ++j) row.push_back(value_at(factors, j, u));
+    for (std::size_t j = 0; j < factors.size(); ++j) row.push_back(value_at(factors, j, coordinates));
     return at(row);
 }
 
@@ -78,6 +121,8 @@ Inputs ParameterSpace::at(std::span<const Value> row) const {
     };
     for (const auto& [name, value] : fixed) set(name, value);
     for (std::size_t j = 0; j < factors.size(); ++j) set(factors[j].name, row[j]);
+    for (const auto& clause : when)
+        if (!clause.holds(inputs)) set(clause.factor, default_of(*scene, clause.factor));
     evaluate_expressions(expressions, inputs);
     return inputs;
 }

@@ -72,7 +72,6 @@ public:
         const auto [first, last] = numbers_.equal_range(name);
         for (const auto& place : std::ranges::subrange(first, last) | std::views::values) {
             const auto& value = place.json();
-            if (value.is_array()) place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", name));
             if (value.is_number() && value.get<double>() != std::floor(value.get<double>()))
                 place.refuse(fmt::format("'{}' is a whole number", name));
         }

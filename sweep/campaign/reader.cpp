@@ -178,6 +178,8 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     campaign.common_random_numbers = read_common(top, campaign.scene());
     auto& space = campaign.space;
     space.factors = read_factors(top.at("factors"), *space.scene, folder);
+    const auto simplex = top.find("simplex");
+    if (simplex) read_simplex(*simplex, space);
     if (const auto fixed = top.find("fixed")) read_fixed(*fixed, space, folder);
     const std::size_t declared = space.factors.size();
     const auto calibration = top.find("calibration");
@@ -199,6 +201,9 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     if (const auto convergence = top.find("convergence")) {
         campaign.convergence = read_convergence(*convergence, campaign);
     }
+    check_groups(top.at("factors"), campaign);
+    if (simplex) check_simplex(*simplex, campaign);
+    check_unfit(campaign);
     if (const auto model = top.find("model")) campaign.features = read_features(*model);
     if (const auto limits = top.find("limits")) campaign.limits = read_limits(*limits);
     if (const auto execution = top.find("execution")) campaign.execution = read_execution(*execution);

@@ -102,6 +102,7 @@ void resolve_accuracy(ParameterSpace& space, std::string_view accuracy) {
 void hold(ParameterSpace& space, std::string_view parameter, const Value& value, std::string_view accuracy) {
     std::erase_if(space.factors, [&](const Factor& factor) { return factor.name == parameter; });
     std::erase_if(space.expressions, [&](const Expression& expression) { return expression.name == parameter; });
+    std::erase_if(space.when, [&](const WhenClause& clause) { return clause.factor == parameter; });
     space.fixed[std::string(parameter)] = value;
     const auto setting = space.scene->accuracy.find(accuracy);
     if (setting == space.scene->accuracy.end()) return;

@@ -149,17 +149,27 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
     schema["properties"]["name"] = {{"const", parameter.name}, {"description", meaning}};
     schema["properties"]["levels"].update(
         {{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}});
-    if (std::holds_alternative<double>(parameter.default_value)) {
-        schema["properties"]["between"].update({{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
-        add_distribution_keys(schema["properties"], value);
-        schema["oneOf"] = OrderedJson::array();
-        for (const auto key : range_keys()) schema["oneOf"].push_back({{"required", {std::string(key)}}});
-    } else {
+    auto& properties = schema["properties"];
+    const bool whole = std::holds_alternative<std::int64_t>(parameter.default_value);
+    if (!std::holds_alternative<double>(parameter.default_value))
         for (const auto key : range_keys())
-            if (key != "levels") schema["properties"].erase(std::string(key));
-        schema["properties"].erase("scale");
+            if (key != "levels" && !(whole && key == "between")) properties.erase(std::string(key));
+    if (std::holds_alternative<std::string>(parameter.default_value)) {
+        for (const char* key : {"scale", "step", "whole"}) properties.erase(key);
         schema["required"] = {"name", "levels"};
+        return schema;
     }
+    properties["between"].update({{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
+    properties["step"].update({{"type", value["type"]}, {"pattern", pattern_of_quantities}, {"exclusiveMinimum", 0}});
+    if (whole) {
+        OrderedJson between = {{"required", {"between"}}};
+        between["anyOf"] = {{{"required", {"whole"}}}, {{"required", {"step"}}}};
+        schema["oneOf"] = {between, {{"required", {"levels"}}}};
+        return schema;
+    }
+    add_distribution_keys(properties, value);
+    schema["oneOf"] = OrderedJson::array();
+    for (const auto key : range_keys()) schema["oneOf"].push_back({{"required", {std::string(key)}}});
     return schema;
 }
 
@@ -283,6 +293,7 @@ std::string campaign_schema(int indentation) {
     properties["campaign"]["maxLength"] = longest_campaign_name;
     properties["campaign"]["not"]["pattern"] = pattern_of_reserved_names();
     properties["factors"]["minItems"] = 1;
+    properties["simplex"].update({{"minItems", 2}, {"uniqueItems", true}});
     properties["convergence"].update(section(convergence_keys()));
     properties["model"].update(section(model_keys()));
     properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});

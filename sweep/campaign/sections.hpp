@@ -5,6 +5,7 @@
 #include "sweep/campaign/cursor.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +43,20 @@ struct NamedColumn {
 /// Reads the files and gives the factors their columns; those of one file share its rows.
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
                   const std::filesystem::path& folder);
+/// "step" or "whole" of a factor with a range.
+[[nodiscard]] std::optional<double> read_step(const Section& factor, const ParameterSpec& parameter,
+                                              const Between& range);
+/// Refuses both of a factor without a range, for the reason `why`.
+void refuse_steps(const Section& factor, std::string_view why);
+/// "group" and "when" of a factor, the condition unread: store::compile_conditions reads it.
+void read_ties(const Section& section, Factor& factor);
+/// "simplex": marks the factors that it names as shares.
+void read_simplex(const Cursor& place, ParameterSpace& space);
+/// Refuses what the design cannot do: groups, shares, rows whose shares do not add to one.
+void check_groups(const Cursor& factors, const Campaign& campaign);
+void check_simplex(const Cursor& place, const Campaign& campaign);
+/// Refuses steps, shares and conditions where the design or the rule of convergence needs independent real numbers.
+void check_unfit(const Campaign& campaign);
 /// Values, quantities and expressions over the numbers of other parameters.
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
 

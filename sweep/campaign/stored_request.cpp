@@ -1,8 +1,11 @@
 #include "sweep/campaign/stored_request.hpp"
 
+#include "solver/plain_text.hpp"
+
 #include <charconv>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace grainsweep::campaign {
 namespace {
@@ -41,7 +44,7 @@ designs::OptionValue value_of(const designs::OptionSpec& option, const std::stri
 designs::FactorRange stated_range(const StatedFactor& stated) {
     designs::FactorRange range{stated.name, {}};
     if (stated.between)
-        range.value_at = [factor = Factor{stated.name, *stated.between}](double u) {
+        range.value_at = [factor = Factor{stated.name, *stated.between, stated.step}](double u) {
             return std::get<double>(value_at(factor, u));
         };
     if (stated.distribution)
@@ -52,10 +55,42 @@ designs::FactorRange stated_range(const StatedFactor& stated) {
 
 }  // namespace
 
+Inputs fixed_values(const Identity& identity, const SceneInfo& scene) {
+    Inputs values;
+    std::istringstream lines(identity.fixed);
+    for (std::string line; std::getline(lines, line);) {
+        const auto sign = line.find(" = ");
+        if (sign == std::string::npos) continue;
+        const auto name = line.substr(0, sign), text = line.substr(sign + 3);
+        const auto* parameter = scene.find_parameter(name);
+        if (parameter == nullptr) continue;
+        if (std::holds_alternative<std::string>(parameter->default_value)) {
+            values[name] = text;
+        } else if (const auto number = any_number_in(text)) {
+            values[name] = coerced(Value{*number}, parameter->default_value);
+        }
+    }
+    return values;
+}
+
+std::vector<Factor> factors_asked(const Identity& identity) {
+    std::vector<Factor> factors;
+    for (auto& stated : factors_of(identity)) {
+        Factor factor{stated.name,  Levels{{stated.levels.begin(), stated.levels.end()}},
+                      stated.step,  stated.share,
+                      stated.group, stated.when};
+        if (stated.between) factor.range = *stated.between;
+        if (stated.distribution) factor.range = *stated.distribution;
+        factors.push_back(std::move(factor));
+    }
+    return factors;
+}
+
 designs::DesignRequest request_of(const Identity& identity) {
     const auto& design = designs::design_named(identity.design);
     designs::DesignRequest request;
     request.seed = identity.seed;
+    request.groups = groups_of(factors_asked(identity));
     for (const auto& stated : factors_of(identity)) {
         request.levels.push_back(stated.levels.size());
         request.factors.push_back(stated_range(stated));

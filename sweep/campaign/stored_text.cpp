@@ -100,7 +100,7 @@ nlohmann::ordered_json begun(const Json& document, std::string_view name, std::s
     nlohmann::ordered_json text;
     text["notes"] = notes;
     text["campaign"] = name;
-    for (const char* key : {"scene", "program", "machine", "factors", "fixed", "where", "accuracy",
+    for (const char* key : {"scene", "program", "machine", "factors", "simplex", "fixed", "where", "accuracy",
                             "common_random_numbers", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
     return text;

@@ -1,5 +1,7 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -35,6 +37,9 @@ designs::PointSet sample(const Campaign& campaign) {
     designs::PointSet points;
     try {
         points = design->sample(campaign.request);
+        for (std::size_t p = 0; points.rows.empty() && p < points.size(); ++p)
+            share_out(campaign.space.factors,
+                      std::span(points.coordinates).subspan(p * points.dimensions, points.dimensions));
     } catch (const std::invalid_argument& error) {
         throw wrong_question("$.design", "", error.what());
     }
@@ -86,6 +91,7 @@ public:
           common_(common_inputs()),
           asked_(skeleton({})) {
         if (!campaign.common_random_numbers.empty()) seeding_ = skeleton(campaign.common_random_numbers);
+        find_unused();
     }
 
     [[nodiscard]] const designs::PointSet& points() const { return points_; }
@@ -176,7 +182,43 @@ private:
         }
         return inputs;
     }
+    /// Decides once which factors have no `when` that holds: the questions are read by several threads.
+    void find_unused() {
+        const auto conditional = std::ranges::count_if(space_.factors, [](const Factor& f) { return !f.when.empty(); });
+        if (std::ssize(space_.when) != conditional)
+            throw std::logic_error("the conditions of the factors are not compiled");
+        if (conditional == 0) return;
+        std::vector<bool> unused(points_.size() * space_.factors.size());
+        std::vector<std::size_t> counts(space_.when.size());  // points at which a clause holds
+        Inputs inputs = common_;
+        for (std::size_t p = 0; p < points_.size(); ++p) {
+            for (const auto& one : asked_.varying)
+                if (one.factor) inputs.find(one.name)->second = value(p, one);
+            for (std::size_t k = 0; k < counts.size(); ++k) {
+                const auto& [name, holds] = space_.when[k];
+                if (holds(inputs)) {
+                    ++counts[k];
+                    continue;
+                }
+                inputs.find(name)->second = default_of(*space_.scene, name);
+                unused[p * space_.factors.size() + number_of(name)] = true;
+            }
+        }
+        for (std::size_t k = 0; k < counts.size(); ++k)
+            if (counts[k] == 0) refuse_unused(space_.when[k].factor);
+        unused_ = std::move(unused);
+    }
+    [[nodiscard]] std::size_t number_of(const std::string& factor) const {
+        return static_cast<std::size_t>(std::ranges::find(space_.factors, factor, &Factor::name) -
+                                        space_.factors.begin());
+    }
+    [[noreturn]] void refuse_unused(const std::string& factor) const {
+        throw wrong_question(path_of("$.factors", number_of(factor)) + ".when", space_.factors[number_of(factor)].when,
+                             fmt::format("it is true at none of the {} points of the design: '{}' never counts",
+                                         points_.size(), factor));
+    }
     [[nodiscard]] Value value(std::size_t point, const Varying& one) const {
+        if (!unused_.empty() && unused_[point * space_.factors.size() + *one.factor]) return one.standard;
         return points_.rows.empty() ? coerced(value_at(space_.factors, *one.factor, points_.point(point)), one.standard)
                                     : coerced(points_.rows[point][*one.factor], one.standard);
     }
@@ -187,6 +229,7 @@ private:
     Inputs common_;
     Skeleton asked_;                   ///< of the whole text
     std::optional<Skeleton> seeding_;  ///< of what the seed follows from, where that is less
+    std::vector<bool> unused_;         ///< by point and factor: its `when` does not hold; empty: all count
 };
 
 }  // namespace

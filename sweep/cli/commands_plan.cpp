@@ -17,6 +17,7 @@
 #include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -76,6 +77,23 @@ std::string density_text(const stats::Distribution& distribution) {
     return "|" + text + "|";
 }
 
+/// "multiples of 0.5, when tool = 'roller'".
+std::string factor_rules(const campaign::Factor& factor) {
+    std::vector<std::string> rules;
+    if (factor.step) rules.push_back(fmt::format("multiples of {}", campaign::shortest(*factor.step)));
+    if (factor.share) rules.emplace_back("share");
+    if (!factor.group.empty()) rules.push_back("group " + factor.group);
+    if (!factor.when.empty()) rules.push_back("when " + factor.when);
+    return fmt::format("{}", fmt::join(rules, ", "));
+}
+
+/// A column for what factors say beside their values, where one does.
+void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors) {
+    if (std::ranges::all_of(factors, [](const auto& factor) { return factor_rules(factor).empty(); })) return;
+    table.columns.emplace_back("rules");
+    for (std::size_t j = 0; j < factors.size(); ++j) table.rows[j].emplace_back(factor_rules(factors[j]));
+}
+
 store::Table factors_of(const Campaign& campaign) {
     store::Table table{{"factor", "unit", "low", "high", "scale", "levels"}, {}};
     for (const auto& factor : campaign.space.factors) {
@@ -94,6 +112,7 @@ store::Table factors_of(const Campaign& campaign) {
             table.rows.push_back({factor.name, unit, Cell{}, Cell{}, Cell{}, levels});
         }
     }
+    add_rules(table, campaign.space.factors);
     return table;
 }
 

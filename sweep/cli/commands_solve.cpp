@@ -7,6 +7,7 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
+#include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
@@ -22,6 +23,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -76,13 +78,35 @@ void apply(const std::vector<std::string>& settings, Campaign& campaign, const s
     }
 }
 
-/// Factors that are not set: the middle of their range, the first of their levels.
+/// Factors that are not set: the middle of their range, the first of their levels; shares are equal above their lows.
 Inputs middle_of(const campaign::ParameterSpace& space) {
+    auto left = static_cast<double>(std::ranges::count_if(space.factors, &campaign::Factor::share));
     std::vector<double> u;
     for (const auto& factor : space.factors) {
         u.push_back(std::holds_alternative<campaign::Levels>(factor.range) ? 0.0 : 0.5);
+        if (!factor.share) continue;
+        left -= 1;
+        u.back() = 1 - std::pow(left / (left + 1), left);  // where the stick breaks into a part and `left` equal ones
     }
     return space.at(std::span<const double>(u));
+}
+
+/// Some shares without the others would not add to one.
+void check_shares(const campaign::ParameterSpace& declared, const campaign::ParameterSpace& held) {
+    std::vector<std::string> names;
+    std::vector<double> set;
+    for (const auto& factor : declared.factors) {
+        if (!factor.share) continue;
+        names.push_back(factor.name);
+        if (const auto value = held.fixed.find(factor.name); value != held.fixed.end())
+            set.push_back(std::get<double>(value->second));
+    }
+    if (set.empty()) return;
+    if (set.size() < names.size())
+        throw campaign::wrong_question("--set", "",
+                                       fmt::format("{} add to one: set all of them or none", campaign::listed(names)));
+    if (!campaign::add_to_one(set))
+        throw campaign::wrong_question("--set", "", fmt::format("{} do not add to one", campaign::listed(names)));
 }
 
 /// Percents on a terminal, nothing elsewhere.
@@ -113,7 +137,9 @@ Campaign campaign_of(const std::string& config) {
 
 Asked question_of(const SolveRequest& request) {
     Campaign campaign = campaign_of(request.config);
+    const auto declared = campaign.space;
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
+    check_shares(declared, campaign.space);
     const Inputs inputs = middle_of(campaign.space);
     campaign::asked_in(request.config, [&] { campaign::check_expressions(campaign.space, inputs); });
     const auto filter = campaign::asked_in(

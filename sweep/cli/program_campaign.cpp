@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/when_clauses.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/program_guard.hpp"
 
@@ -13,6 +14,7 @@ namespace grainsweep::cli {
 namespace fs = std::filesystem;
 
 campaign::Campaign with_program(campaign::Campaign campaign, const fs::path& config) {
+    campaign.space.when = campaign::asked_in(config, [&] { return store::when_clauses(campaign.space); });
     const auto program = campaign::known_program(campaign.scene().name);
     if (program == nullptr) return campaign;
     const std::string place = config.string() + ": $.program.";

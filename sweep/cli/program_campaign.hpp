@@ -11,8 +11,9 @@
 
 namespace grainsweep::cli {
 
-/// Where a program answers the cases: refuses one that is not here (unless workers start elsewhere) and asks for its
-/// version, which is part of every case's identity; nothing else is started. `config` is named in refusals.
+/// Compiles the conditions of the factors. Where a program answers the cases: refuses one that is not here (unless
+/// workers start elsewhere) and asks for its version, which is part of every case's identity; nothing else is started.
+/// `config` is named in refusals.
 [[nodiscard]] campaign::Campaign with_program(campaign::Campaign campaign, const std::filesystem::path& config);
 /// Reads a campaign file so; `experiment` chooses one of a calibration over several.
 [[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config,

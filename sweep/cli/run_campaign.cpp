@@ -10,6 +10,7 @@
 #include "sweep/cli/now_writer.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/cli/run_campaign_judge.hpp"
 #include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/files/artefacts.hpp"
@@ -23,7 +24,6 @@
 #include "sweep/store/store.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/study/history.hpp"
-#include "sweep/study/model_view.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
 #include "sweep/workers/staged_campaign.hpp"
@@ -147,28 +147,6 @@ schedule::Questions questions_of(const campaign::Campaign& campaign, const Place
     return questions;
 }
 
-std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, const store::Store& store,
-                                            const Placement& placement) {
-    if (!campaign.convergence) return nullptr;
-    const auto& placed = placement.placed;
-    const auto stored = store.values(campaign.name, campaign.convergence->observable);
-    std::vector<double> known(placed.size(), std::numeric_limits<double>::quiet_NaN());
-    auto next = stored.begin();  // both are ordered by point, then replicate
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        const auto here = std::pair(std::int64_t{placed.place(i).point}, std::int64_t{placed.place(i).replicate});
-        while (next != stored.end() && std::pair(next->point, next->replicate) < here) ++next;
-        if (next == stored.end() || std::pair(next->point, next->replicate) != here) continue;
-        if (next->outcome) known[i] = next->value;
-    }
-    const auto sequences = designs::independent_sequences(campaign.design, campaign.request);
-    std::optional<schedule::ModelView> view;
-    if (campaign.convergence->traits().of_model)
-        view = study::model_view(campaign, placement.candidates,
-                                 store::make_filter(campaign.where, campaign::filter_names(campaign)));
-    return std::make_unique<schedule::Judge>(*campaign.convergence, placed, static_cast<std::size_t>(sequences),
-                                             std::move(known), placement.candidates, std::move(view));
-}
-
 schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& request, std::size_t workers) {
     return {.attempts = campaign.limits.attempts,
             .stop_after_failures = request.stop_after_failures,
@@ -262,14 +240,13 @@ public:
     }
 
 private:
-    /// The design's points, those that follow from what is known included.
+    /// The design's points, those that follow from what is known included. Refuses impossible cases at first.
     void unfold() {
         placed_ = campaign::asked_in(request_.config, [&] {
             store::check_campaign_name(campaign_.name);
             study::check_features(campaign_);
             const auto filter = store::make_filter(campaign_.where, campaign::filter_names(campaign_));
             auto cases = campaign::unfold(campaign_, filter);
-            // Refuses impossible cases before anything is made.
             forecast_ = campaign::forecast(campaign_.scene(), cases, workers::memory_room(campaign_));
             return cases;
         });
@@ -293,7 +270,8 @@ private:
         stopped_before_ = record.stopped_at;
         if (first && !request_.goes_on) say_first(*line_, campaign_, forecast_, record);
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
-        judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
+        judge_ = campaign::asked_in(
+            request_.config, [&] { return make_judge(campaign_, *store_, placement.placed, placement.candidates); });
         questions_ = questions_of(campaign_, placement);
     }
     /// Answers of the earlier program, then where the cases stand with them.

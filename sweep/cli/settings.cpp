@@ -62,6 +62,18 @@ void require_all(std::span<const ModelFactor> factors, const std::vector<std::op
                                                missing.size() == 1 ? "is" : "are"));
 }
 
+/// Puts defaults in the place of factors that do not count, given or not.
+Setting complete(std::span<const ModelFactor> factors, std::vector<std::optional<double>> values,
+                 std::string_view where) {
+    Setting setting;
+    for (std::size_t j = 0; j < factors.size(); ++j) setting.push_back(values[j].value_or(factors[j].standard));
+    study::fold(factors, setting);
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors[j].counts && !factors[j].counts(setting)) values[j] = setting[j];
+    require_all(factors, values, where);
+    return setting;
+}
+
 constexpr std::uintmax_t largest_file = 256ULL << 20U;
 
 std::string text_of(const std::filesystem::path& file) {
@@ -99,11 +111,7 @@ std::vector<std::optional<double>> assigned(std::span<const ModelFactor> factors
 }  // namespace
 
 Setting read_setting(std::span<const ModelFactor> factors, std::span<const std::string> assignments) {
-    const auto values = assigned(factors, assignments, "--at");
-    require_all(factors, values, "--at");
-    Setting setting;
-    for (const auto& value : values) setting.push_back(*value);
-    return setting;
+    return complete(factors, assigned(factors, assignments, "--at"), "--at");
 }
 
 study::Held read_held(std::span<const ModelFactor> factors, std::span<const std::string> assignments) {
@@ -139,6 +147,7 @@ std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::
             setting[columns[k]] = value_of(
                 factor, (*record)[k], fmt::format("{}, record {}, column '{}'", where, table.number(), factor.name));
         }
+        study::fold(factors, setting);
     }
     if (settings.empty()) throw campaign::wrong_question(where, "", "it has no row below its header");
     return settings;

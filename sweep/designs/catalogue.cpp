@@ -56,6 +56,10 @@ FactorRange::Shown FactorRange::shown() const {
     return {low, high, low > 0 && std::abs(value_at(0.5) - std::sqrt(low * high)) < 1e-6 * (high - low)};
 }
 
+std::size_t DesignRequest::group_count() const {
+    return groups.empty() ? dimensions() : *std::ranges::max_element(groups) + 1;
+}
+
 std::int64_t DesignRequest::count(std::string_view option) const {
     return option_of<std::int64_t>(*this, option);
 }

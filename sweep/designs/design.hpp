@@ -68,7 +68,8 @@ struct DesignRequest {
     std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< the campaign's
-    std::vector<FactorRange> factors = {};                    ///< names, and values for designs that grow
+    std::vector<std::size_t> groups = {};   ///< number of each factor's group, from 0; empty: each its own
+    std::vector<FactorRange> factors = {};  ///< names, and values for designs that grow
     /// Factors that several experiments calibrate together; empty: those that vary between two values.
     std::vector<FactorRange> shared = {};
     /// What is known of the points asked so far, by observable and number: none where a point is not settled, NaN where
@@ -78,6 +79,10 @@ struct DesignRequest {
     std::shared_ptr<const PointSet> grown = {};
 
     [[nodiscard]] std::size_t dimensions() const { return levels.size(); }
+    /// Groups of factors that move together.
+    [[nodiscard]] std::size_t group_count() const;
+    /// Group of factor j.
+    [[nodiscard]] std::size_t group(std::size_t j) const { return groups.empty() ? j : groups[j]; }
     [[nodiscard]] std::int64_t count(std::string_view option) const;
     [[nodiscard]] double number(std::string_view option) const;
     [[nodiscard]] const std::string& word(std::string_view option) const;
@@ -135,8 +140,9 @@ struct DesignInfo {
     Purpose purpose = Purpose::statistics;
     /// How many points the request numbers, without forming them: the size of sample(request). Throws as that does.
     std::function<std::int64_t(const DesignRequest&)> size;
-    /// Points that belong together, one after the other, with so many factors: 1 where each stands by itself.
-    std::function<std::size_t(std::size_t factors)> block = [](std::size_t) { return std::size_t{1}; };
+    /// Points that belong together, one after the other, with so many groups of factors that move together: 1 where
+    /// each stands by itself.
+    std::function<std::size_t(std::size_t groups)> block = [](std::size_t) { return std::size_t{1}; };
     /// Throws std::invalid_argument with one sentence where options are impossible together.
     std::function<PointSet(const DesignRequest&)> sample;
 };

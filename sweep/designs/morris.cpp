@@ -1,6 +1,9 @@
 // Morris' screening (Morris 1991, Technometrics 33, 161-174): trajectories of d + 1 points on a grid of L
 // levels per factor, i/(L-1); each step moves one factor, in random order, by Delta = L/(2(L-1)).
 //
+// Factors of a group make their steps at once (Campolongo, Cariboni & Saltelli 2007, Environ. Model. Softw. 22, 1509):
+// trajectories of g + 1 points for g groups.
+//
 // Trajectory t is points t (d+1) ... t (d+1) + d. The set counts d + 1 sequences: a point's sequence is its
 // place in its trajectory. L is even, so that every place is as likely as every other.
 //
@@ -19,12 +22,12 @@
 namespace grainsweep::designs {
 namespace {
 
-std::size_t trajectory_length(std::size_t factors) {
-    return factors + 1;
+std::size_t trajectory_length(std::size_t groups) {
+    return groups + 1;
 }
 
 std::int64_t morris_size(const DesignRequest& request) {
-    return request.count("trajectories") * static_cast<std::int64_t>(trajectory_length(request.dimensions()));
+    return request.count("trajectories") * static_cast<std::int64_t>(trajectory_length(request.group_count()));
 }
 
 std::string name_of(const DesignRequest& request, std::size_t j) {
@@ -79,14 +82,16 @@ private:
 };
 
 /// Places of every factor along trajectory t, one row per point.
-std::vector<std::vector<std::uint64_t>> trajectory(const std::vector<Axis>& axes, std::uint64_t seed, std::uint64_t t) {
-    stats::Generator generator(draw_key(seed, DrawPurpose::morris, t, 0));
+std::vector<std::vector<std::uint64_t>> trajectory(const std::vector<Axis>& axes, const DesignRequest& request,
+                                                   std::uint64_t t) {
+    stats::Generator generator(draw_key(request.seed, DrawPurpose::morris, t, 0));
     std::vector<std::uint64_t> places;
     for (const auto& axis : axes) places.push_back(axis.begin(t, generator));
-    const stats::Generator shuffler(draw_key(seed, DrawPurpose::morris, t, 1));
+    const stats::Generator shuffler(draw_key(request.seed, DrawPurpose::morris, t, 1));
     std::vector<std::vector<std::uint64_t>> points = {places};
-    for (const auto j : stats::permutation(static_cast<std::uint32_t>(axes.size()), shuffler)) {
-        places[j] = axes[j].moved(places[j], t);
+    for (const auto group : stats::permutation(static_cast<std::uint32_t>(request.group_count()), shuffler)) {
+        for (std::size_t j = 0; j < axes.size(); ++j)
+            if (request.group(j) == group) places[j] = axes[j].moved(places[j], t);
         points.push_back(places);
     }
     return points;
@@ -111,7 +116,7 @@ void check_levels(const DesignRequest& request, const std::vector<Axis>& axes) {
             throw std::invalid_argument("trajectories: " + std::to_string(trajectories) + " of them run only " +
                                         missed + "; " + std::to_string(t) + " or more run every level");
         }
-        for (const auto& point : trajectory(axes, request.seed, t))
+        for (const auto& point : trajectory(axes, request, t))
             for (std::size_t j = 0; j < axes.size(); ++j)
                 if (axes[j].levels() > 0) met[j].insert(axes[j].level(point[j]));
         if (t < trajectories && first_missed().empty()) return;
@@ -124,7 +129,7 @@ PointSet morris_points(const DesignRequest& request) {
     if (grid % 2 != 0)
         throw std::invalid_argument("a Morris grid has an even number of levels, not " + std::to_string(grid));
     const std::size_t d = request.dimensions();
-    const std::size_t length = trajectory_length(d);
+    const std::size_t length = trajectory_length(request.group_count());
     PointSet set{.dimensions = d,
                  .sequences = length,
                  .coordinates = room_for(trajectories * static_cast<std::int64_t>(length), d)};
@@ -133,7 +138,7 @@ PointSet morris_points(const DesignRequest& request) {
     check_levels(request, axes);
     auto coordinate = set.coordinates.begin();
     for (std::size_t t = 0; t < static_cast<std::size_t>(trajectories); ++t)
-        for (const auto& point : trajectory(axes, request.seed, t))
+        for (const auto& point : trajectory(axes, request, t))
             for (std::size_t j = 0; j < d; ++j) *coordinate++ = axes[j].coordinate(point[j]);
     return set;
 }
@@ -144,7 +149,8 @@ DesignInfo morris_design() {
     return {
         .name = "morris",
         .summary =
-            "Screening of many factors with few cases: trajectories x (factors + 1) cases tell which factors matter "
+            "Screening of many factors with few cases: trajectories x (factors + 1) cases, groups counted as factors, "
+            "tell which factors matter "
             "(mu*) and which act non-linearly or jointly (sigma). For shares of the variance use halton or saltelli.",
         .options = {{.name = "trajectories",
                      .meaning = "number of trajectories, 10 to 50 as a rule; each costs factors + 1 cases",

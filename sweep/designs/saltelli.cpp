@@ -6,24 +6,26 @@
 //   A_k, B_k, AB_k1, ..., AB_kd,   AB_kj = A_k with column j from B_k
 // The set counts d + 2 sequences, so that a point's sequence says its part: 0 A, 1 B, 1 + j AB_j.
 // (These are parts of one estimate, not independent repetitions.)
+// Factors in groups (Saltelli et al. 2008, Global Sensitivity Analysis: The Primer): a block of g + 2
+// points for g groups, AB_kj with all columns of group j from B_k.
 #include "sweep/designs/kinds.hpp"
 #include "sweep/designs/radical_inverse.hpp"
 
 namespace grainsweep::designs {
 namespace {
 
-std::size_t block_of(std::size_t factors) {
-    return factors + 2;
+std::size_t block_of(std::size_t groups) {
+    return groups + 2;
 }
 
 std::int64_t saltelli_size(const DesignRequest& request) {
-    return request.count("base_points") * static_cast<std::int64_t>(block_of(request.dimensions()));
+    return request.count("base_points") * static_cast<std::int64_t>(block_of(request.group_count()));
 }
 
 PointSet saltelli_points(const DesignRequest& request) {
     const std::int64_t base_rows = request.count("base_points");
     const std::size_t d = request.dimensions();
-    const std::size_t block = block_of(d);
+    const std::size_t block = block_of(request.group_count());
     PointSet set{
         .dimensions = d, .sequences = block, .coordinates = room_for(base_rows * static_cast<std::int64_t>(block), d)};
     const auto bases = primes(2 * d);
@@ -36,7 +38,7 @@ PointSet saltelli_points(const DesignRequest& request) {
             const auto at = [&](std::size_t part) -> double& { return set.coordinates[(k * block + part) * d + j]; };
             for (std::size_t part = 0; part < block; ++part) at(part) = a;
             at(1) = b;
-            at(2 + j) = b;
+            at(2 + request.group(j)) = b;
         }
     }
     return set;
@@ -47,7 +49,8 @@ PointSet saltelli_points(const DesignRequest& request) {
 DesignInfo saltelli_design() {
     return {.name = "saltelli",
             .summary =
-                "For total sensitivity indices (interactions included): base_points x (factors + 2) cases. First-order "
+                "For total sensitivity indices (interactions included): base_points x (factors + 2) cases, groups "
+                "counted as factors. First-order "
                 "indices alone need no such design: any halton campaign gives them about ten times more accurately at "
                 "equal cost.",
             .options = {{.name = "base_points",

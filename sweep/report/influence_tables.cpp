@@ -1,6 +1,6 @@
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/influence_tables.hpp"
 
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
@@ -57,7 +57,8 @@ void for_each_pair(const ModelInfluence& influence, With with) {
         for (std::size_t k = j + 1; k < influence.factors.size(); ++k) with(j, k, influence.indices->pairs[place++]);
 }
 
-/// For programs: one row per factor in the campaign's order; what the method does not give is absent.
+/// For programs: one row per factor, or group of factors, in the campaign's order; what the method does not give is
+/// absent.
 store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
     store::Table table{{"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli",
                         "first_saltelli_error", "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma",
@@ -151,6 +152,7 @@ store::Table influence_table(const Influence& influence) {
 Json to_json(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
     const auto json_of_factor = [&](const FactorInfluence& factor) {
         Json one = {{"name", factor.factor}};
+        if (!factor.members.empty()) one.add("members", factor.members);
         if (influence.method != Influence::Method::morris)
             one.add("bins", factor.bins).add("first", index_json(factor.first));
         if (influence.method == Influence::Method::saltelli)

@@ -42,7 +42,8 @@ struct Pictured {
             const auto before = settings.size();
             for (const auto& other : others) {
                 Setting setting = other.setting;
-                for (std::size_t k = 0; k < held.size(); ++k) setting[held[k]] = value[k];
+                for (std::size_t k = 0; k < held.size(); ++k)
+                    place(cases.factors, setting, held[k], value[k], held.first(k));
                 if (has(setting)) settings.push_back(std::move(setting));
             }
             counts.push_back(settings.size() - before);
@@ -67,7 +68,7 @@ ModelCurve curve_of(const Pictured& pictured, std::size_t factor) {
     for (const double x : curve.at) {
         values.push_back({x});
         slice.push_back(pictured.middle);
-        slice.back()[factor] = x;
+        place(pictured.cases.factors, slice.back(), factor, x);
     }
     curve.averaged = pictured.averaged(std::span(&factor, 1), values);
     const auto predictions = pictured.model.predict(slice);

@@ -28,7 +28,7 @@ FactorCurve curve_through(const ModelCases& cases, const WindowRequest& request,
                           const Admits& admits, const Setting& centre, std::size_t factor) {
     FactorCurve curve{points_along(cases.factors[factor], points_of_curve), {}};
     std::vector<Setting> settings(curve.at.size(), centre);
-    for (std::size_t i = 0; i < settings.size(); ++i) settings[i][factor] = curve.at[i];
+    for (std::size_t i = 0; i < settings.size(); ++i) place(cases.factors, settings[i], factor, curve.at[i]);
     curve.judged = judge_settings(cases, request, window, admits, settings);
     return curve;
 }

@@ -114,7 +114,8 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
 }
 
 Judge::Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences,
-             std::vector<double> known, std::optional<std::int64_t> candidates, std::optional<ModelView> view)
+             std::vector<double> known, std::optional<std::int64_t> candidates, std::optional<ModelView> view,
+             bool repeats_weigh)
     : wanted_(wanted),
       settings_(settings_of(wanted, sequences)),
       candidates_(placed.empty() ? 0 : std::int64_t{placed.place(placed.size() - 1).point} + 1),
@@ -122,6 +123,7 @@ Judge::Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::s
       values_(std::move(known)) {
     assert(values_.size() == placed_.size());
     if (candidates) candidates_ = std::max(candidates_, *candidates);
+    if (repeats_weigh) met_.resize(placed_.size());
     std::int64_t first = wanted.block;
     if (settings_.traits().of_model) {
         if (!view) throw std::invalid_argument("a rule with a model needs what the model sees of a case");
@@ -165,9 +167,9 @@ std::span<const stats::Checkpoint> Judge::checkpoints() const {
 
 void Judge::feed(std::size_t settled) {
     for (; fed_ < settled; ++fed_) {
-        if (!placed_.is_first(fed_)) continue;  // the same run again says nothing new
+        if (met_.empty() && !placed_.is_first(fed_)) continue;  // the same run again says nothing new
         if (plain_)
-            plain_->add(placed_.place(fed_).point, values_[fed_]);
+            plain_->add(placed_.place(fed_).point, values_[fed_], met_.empty() ? 0 : met_[placed_.first(fed_)]++);
         else
             assisted_->add(fed_, values_[fed_]);
     }

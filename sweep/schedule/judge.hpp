@@ -31,10 +31,11 @@ public:
     /// `candidates`: how many points the design numbers, before `where` filters them; where it is not given,
     /// a last block whose last points were filtered out is not judged.
     /// `view`: what the rule `assisted` needs, and no other.
+    /// `repeats_weigh`: a run weighs as many places as hold it (campaign::repeats_weigh); else it counts once.
     /// Throws std::invalid_argument for settings that cannot be judged (`replicates` with fewer than 4 sequences,
     /// `assisted` without a view).
     Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences, std::vector<double> known,
-          std::optional<std::int64_t> candidates = {}, std::optional<ModelView> view = {});
+          std::optional<std::int64_t> candidates = {}, std::optional<ModelView> view = {}, bool repeats_weigh = false);
 
     /// The answer to a question, at every place where it is asked. No such scalar: no answer.
     void learn(const campaign::CaseId& id, const Observations& observations);
@@ -48,8 +49,8 @@ public:
     /// Points of the prefix at which the statistics converged.
     [[nodiscard]] std::optional<std::int64_t> converged_at() const;
     [[nodiscard]] bool stops() const { return wanted_.stop; }
-    /// Share of the design's points after which convergence is expected to stop the campaign; none: it stops nothing, or
-    /// no check has said yet.
+    /// Share of the design's points after which convergence is expected to stop the campaign; none: it stops nothing,
+    /// or no check has said yet.
     [[nodiscard]] std::optional<double> expected_share() const;
     /// Whether checks have come past so many points without convergence: an earlier stop there was of another rule.
     [[nodiscard]] bool overturns(std::int64_t stop) const;
@@ -66,9 +67,10 @@ private:
     std::unique_ptr<AssistedJudge> assisted_;
     std::int64_t candidates_;
     campaign::Cases placed_;
-    std::vector<double> values_;  ///< of each place
-    std::size_t fed_ = 0;         ///< placed cases the statistics have seen
-    std::size_t judged_ = 0;      ///< blocks judged
+    std::vector<double> values_;     ///< of each place
+    std::vector<std::int64_t> met_;  ///< of each run, by its first place: places seen; empty: a run counts once
+    std::size_t fed_ = 0;            ///< placed cases the statistics have seen
+    std::size_t judged_ = 0;         ///< blocks judged
     std::string verdict_;
 };
 

@@ -37,8 +37,8 @@ struct Written {
     std::string_view path, text, about;  ///< about: "a condition is asked of one case"
 };
 
-Written condition_of(std::string_view text) {
-    return {"$.where", text, "a condition is asked of one case"};
+Written condition_of(std::string_view text, std::string_view path) {
+    return {path, text, "a condition is asked of one case"};
 }
 
 campaign::WrongQuestion refusal(const Written& written, std::string_view why, std::string_view suggestion = {}) {
@@ -139,19 +139,19 @@ void require_sane(const Written& written) {
 }
 
 /// The compiled expression and the columns it reads, bound anew for every case.
-class Condition {
+class CompiledCondition {
 public:
-    Condition(std::string_view expression, std::span<const std::string> names)
-        : text_(expression), db_(Connection::in_memory()) {
+    CompiledCondition(std::string_view expression, std::span<const std::string> names, std::string_view path)
+        : text_(expression), path_(path), db_(Connection::in_memory()) {
         db_.limit_lengths(longest_value);
-        const auto read = check_names(db_, condition_of(expression), names);
+        const auto read = check_names(db_, condition_of(expression, path), names);
         columns_.assign(read.begin(), read.end());
         const std::string sql = fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs",
                                             with_real_division(expression), row_of(columns_));
         try {
             statement_ = db_.prepare(sql);
         } catch (const RefusedSql& refused) {  // a collation is looked up where something compares by it
-            throw refusal(condition_of(expression), refused.words());
+            throw refusal(condition_of(expression, path), refused.words());
         }
     }
 
@@ -167,12 +167,13 @@ public:
         try {
             return statement_.step() && statement_.get<std::int64_t>(0) != 0;
         } catch (const RefusedSql& refused) {
-            throw refusal(condition_of(text_), refused.words());
+            throw refusal(condition_of(text_, path_), refused.words());
         }
     }
+    [[nodiscard]] const std::vector<std::string>& reads() const { return columns_; }
 
 private:
-    std::string text_;
+    std::string text_, path_;
     Connection db_;
     std::vector<std::string> columns_;
     Statement statement_;
@@ -228,15 +229,21 @@ private:
 
 }  // namespace
 
+Condition make_condition(std::string_view expression, std::span<const std::string> names, std::string_view path) {
+    require_sane(condition_of(expression, path));
+    if (names.empty())
+        throw refusal(condition_of(expression, path), "the campaign has no factor and no fixed value it could use");
+    auto condition = std::make_shared<CompiledCondition>(expression, names, path);
+    auto reads = condition->reads();
+    return {[condition = std::move(condition)](const Inputs& inputs) { return condition->holds(inputs); },
+            std::move(reads)};
+}
+
 campaign::Filter make_filter(std::string_view expression, std::span<const std::string> names) {
     if (expression.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         return [](const Inputs&) { return true; };
     }
-    require_sane(condition_of(expression));
-    if (names.empty())
-        throw refusal(condition_of(expression), "the campaign has no factor and no fixed value it could use");
-    auto condition = std::make_shared<Condition>(expression, names);
-    return [condition = std::move(condition)](const Inputs& inputs) { return condition->holds(inputs); };
+    return make_condition(expression, names, "$.where").holds;
 }
 
 Numbers make_numbers(std::span<const std::string> expressions, std::span<const std::string> names,

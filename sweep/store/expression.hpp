@@ -17,6 +17,15 @@ namespace grainsweep::store {
 /// nearest name for an unknown column. An empty expression accepts everything. NULL counts as false.
 [[nodiscard]] campaign::Filter make_filter(std::string_view expression, std::span<const std::string> names);
 
+/// A compiled condition and the names that it reads.
+struct Condition {
+    campaign::Filter holds;
+    std::vector<std::string> reads;
+};
+/// The same for a condition at `path` that is not empty.
+[[nodiscard]] Condition make_condition(std::string_view expression, std::span<const std::string> names,
+                                       std::string_view path);
+
 /// Values in the order of the names given -> one number per expression; NaN where an expression has none (NULL, text).
 using Numbers = std::function<std::vector<double>(std::span<const Value> values)>;
 

@@ -1,6 +1,7 @@
 #include "sweep/study/box_search.hpp"
 
 #include "sweep/campaign/joint_column.hpp"
+#include "sweep/campaign/simplex.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <numeric>
 
 namespace grainsweep::study {
 namespace {
@@ -16,6 +18,8 @@ designs::PointSet sobol(std::size_t dimensions, std::size_t count) {
     return sobol_points({.levels = std::vector<std::size_t>(dimensions, 0),
                          .options = {{"points", static_cast<std::int64_t>(count)}, {"scramble", std::string("none")}}});
 }
+
+constexpr int digits_of_range = 3, digits_of_share = 3, digits_of_last_share = 12;
 
 bool has_levels(const ModelFactor& factor) {
     return factor.is_word() || !factor.numbers.empty();
@@ -40,9 +44,9 @@ double exact_number(const ModelFactor&, double exact) {
 
 double rounded_number(const ModelFactor& factor, double exact) {
     if (!(factor.high > factor.low)) return factor.low;
-    constexpr int digits = 3;
+    if (factor.step) return exact;
     const double size = factor.log ? exact : factor.high - factor.low;
-    const int exponent = static_cast<int>(std::floor(std::log10(size))) - digits;
+    const int exponent = static_cast<int>(std::floor(std::log10(size))) - digits_of_range;
     return std::clamp(rounded(exact, exponent), factor.low, factor.high);
 }
 
@@ -59,12 +63,39 @@ double number_at(std::span<const ModelFactor> factors, std::size_t j, std::span<
     return joint ? *joint : factor.distribution->quantile(u[j]);
 }
 
+/// Puts shares in the place of the coordinates of shares; rounded, they still add to one.
+void share_out(std::span<const ModelFactor> factors, std::span<const double> u, bool round, Setting& setting) {
+    std::vector<std::size_t> places;
+    std::vector<double> low, coordinates;
+    for (std::size_t j = 0; j < factors.size(); ++j) {
+        if (!factors[j].share) continue;
+        places.push_back(j);
+        low.push_back(factors[j].low);
+        coordinates.push_back(u[j]);
+    }
+    if (places.size() < 2) return;  // one by itself, along its axis
+    auto shares = campaign::shares_at(coordinates, low);
+    if (round) {
+        double others = 0;
+        for (std::size_t k = 0; k + 1 < shares.size(); ++k) {
+            const double most =
+                1 - others - std::accumulate(low.begin() + static_cast<std::ptrdiff_t>(k) + 1, low.end(), 0.0);
+            shares[k] = std::clamp(rounded(shares[k], -digits_of_share), low[k], std::max(low[k], most));
+            others += shares[k];
+        }
+        shares.back() = std::max(low.back(), rounded(1 - others, -digits_of_last_share));
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) setting[places[k]] = shares[k];
+}
+
 template <class Finish>
-Setting setting_at(std::span<const ModelFactor> factors, std::span<const double> u, Finish finish) {
+Setting setting_at(std::span<const ModelFactor> factors, std::span<const double> u, Finish finish, bool round) {
     Setting setting;
     for (std::size_t j = 0; j < factors.size(); ++j)
         setting.push_back(has_levels(factors[j]) ? number_along(factors[j], u[j])
                                                  : finish(factors[j], number_at(factors, j, u)));
+    share_out(factors, u, round, setting);
+    if (setting.size() > 1) fold(factors, setting);  // a factor by itself stands on its axis
     return setting;
 }
 
@@ -77,10 +108,10 @@ std::string_view share_of(std::span<const ModelFactor> factors) {
 
 double number_along(const ModelFactor& factor, double u) {
     using enum campaign::Scale;
-    if (factor.is_word()) return static_cast<double>(level_at(u, factor.words.size()));
+    if (factor.is_word()) return static_cast<double>(level_at(u, factor.choices()));
     if (!factor.numbers.empty()) return factor.numbers[level_at(u, factor.numbers.size())];
     const campaign::Between range{factor.low, factor.high, factor.log ? log : linear};
-    return std::get<double>(campaign::value_at({factor.name, range}, u));
+    return std::get<double>(campaign::value_at({factor.name, range, factor.step}, u));
 }
 
 designs::PointSet sobol_points(designs::DesignRequest request) {
@@ -91,11 +122,11 @@ designs::PointSet sobol_points(designs::DesignRequest request) {
 }
 
 Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
-    return setting_at(factors, u, rounded_number);
+    return setting_at(factors, u, rounded_number, true);
 }
 
 Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
-    return setting_at(factors, u, exact_number);
+    return setting_at(factors, u, exact_number, false);
 }
 
 std::vector<BoxPoint> spread_points(std::span<const ModelFactor> factors, const Admits& admits, std::size_t count) {

@@ -1,17 +1,25 @@
 #include "sweep/study/factor_axis.hpp"
 
+#include "sweep/campaign/step.hpp"
 #include "sweep/study/box_search.hpp"
+
+#include <algorithm>
 
 namespace grainsweep::study {
 namespace {
 
 std::size_t levels_of(const ModelFactor& factor) {
-    return factor.is_word() ? factor.words.size() : factor.numbers.size();
+    return factor.is_word() ? factor.choices() : factor.numbers.size();
 }
 
 std::size_t places_of(const ModelFactor& factor, std::size_t count) {
     const auto levels = levels_of(factor);
-    return levels > 0 ? levels : factor.high > factor.low ? count : 1;
+    if (levels > 0) return levels;
+    if (factor.step && !factor.log) {
+        const auto multiples = campaign::multiples_in(*factor.step, factor.low, factor.high).count();
+        count = std::min(count, static_cast<std::size_t>(multiples));
+    }
+    return factor.high > factor.low ? count : 1;
 }
 
 }  // namespace
@@ -49,8 +57,8 @@ std::vector<Setting> settings_of_map(std::span<const ModelFactor> factors, const
     for (const double y : up)
         for (const double x : across) {
             settings.push_back(centre);
-            settings.back()[a] = x;
-            settings.back()[b] = y;
+            place(factors, settings.back(), a, x);
+            place(factors, settings.back(), b, y, std::span(&a, 1));
         }
     return settings;
 }

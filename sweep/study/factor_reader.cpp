@@ -95,6 +95,8 @@ double share_of_row(const Responses& responses, const stats::SampleColumn& own, 
 
 FactorReader::FactorReader(campaign::StatedFactor stated, const SceneInfo* scene) : stated_(std::move(stated)) {
     factor_.name = stated_.name;
+    factor_.conditional = !stated_.when.empty();
+    factor_.stepped = stated_.step.has_value();
     if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor_.name)) {
         factor_.unit = parameter->unit;
         factor_.meaning = parameter->meaning;
@@ -143,7 +145,8 @@ double FactorColumn::coordinate(std::size_t row) const {
     if (!shares.empty()) return shares[row];
     if (!continuous()) return places[static_cast<std::size_t>(value)];
     if (distribution) return distribution->cumulative(value);
-    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+    const double place = log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+    return conditional ? std::clamp(place, 0.0, 1.0) : place;
 }
 
 std::string factor_text(const FactorColumn& factor, std::size_t row) {

@@ -1,8 +1,14 @@
 #include "sweep/study/features.hpp"
 
 #include "solver/plain_text.hpp"
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/stored_request.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/store/when_clauses.hpp"
+#include "sweep/study/box_search.hpp"
 
 #include <fmt/format.h>
 
@@ -32,11 +38,128 @@ std::optional<std::vector<double>> ordered_numbers(const FactorColumn& column, c
     return numbers;
 }
 
+bool is_listed(const campaign::StatedFactor& stated, double x) {
+    return std::ranges::any_of(stated.levels, [&](const auto& level) { return number_in(level) == x; });
+}
+
+/// Words of a column that the campaign lists; the default of a factor that does not count may come behind them.
+std::size_t listed_words(const FactorColumn& column, const campaign::StatedFactor& stated) {
+    if (stated.when.empty()) return column.levels.size();
+    return static_cast<std::size_t>(std::ranges::count_if(column.levels, [&](const auto& word) {
+        return std::ranges::find(stated.levels, word) != stated.levels.end();
+    }));
+}
+
+/// The place of the default among the numbers or words of a factor.
+double number_of_default(ModelFactor& factor, const Value& value) {
+    if (!factor.is_word()) return std::get<double>(campaign::coerced(value, Value{0.0}));
+    const auto& word = std::get<std::string>(value);
+    auto found = std::ranges::find(factor.words, word);
+    if (found == factor.words.end()) {
+        found = factor.words.insert(found, word);
+        ++factor.unlisted;
+    }
+    return static_cast<double>(found - factor.words.begin());
+}
+
+/// Compiles the `when` of stored factors.
+void add_conditions(std::vector<ModelFactor>& factors, const campaign::Identity& identity) {
+    const auto* scene = find_scene(identity.scene);
+    campaign::ParameterSpace space{scene, campaign::factors_asked(identity), {}};
+    const auto conditional = [](const auto& factor) { return !factor.when.empty(); };
+    if (scene == nullptr || std::ranges::none_of(space.factors, conditional)) return;
+    space.expressions = campaign::expressions_of(identity, *scene);
+    Inputs inputs = scene->defaults();
+    for (const auto& [name, value] : campaign::fixed_values(identity, *scene)) inputs[name] = value;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (conditional(space.factors[j]))
+            factors[j].standard = number_of_default(factors[j], campaign::default_of(*scene, factors[j].name));
+    const auto known = factors;
+    std::size_t order = 0;
+    for (auto& clause : store::when_clauses(space)) {
+        const auto factor = std::ranges::find(factors, clause.factor, &ModelFactor::name);
+        factor->order = order++;
+        factor->counts = [known, inputs, holds = std::move(clause.holds)](std::span<const double> setting) mutable {
+            for (std::size_t j = 0; j < known.size(); ++j) {
+                Value& slot = inputs.find(known[j].name)->second;
+                slot = campaign::coerced(known[j].value(setting[j]), slot);
+            }
+            return holds(inputs);
+        };
+    }
+}
+
+/// Middle of the range, first of the levels: one of the values that a campaign may list.
+double neutral(const ModelFactor& factor) {
+    if (factor.is_word()) return 0;
+    if (!factor.numbers.empty()) return factor.numbers.front();
+    const double middle = 0.5;
+    return exact_setting(std::span(&factor, 1), std::span(&middle, 1)).front();
+}
+
+/// Features of settings in which factors that do not count stand in the middle.
+Features of_seen_settings(Features features, std::span<const ModelFactor> factors) {
+    if (std::ranges::none_of(factors, [](const auto& factor) { return static_cast<bool>(factor.counts); }))
+        return features;
+    features.of = [of = std::move(features.of), known = std::vector(factors.begin(), factors.end())](auto setting) {
+        return of(as_seen(known, {setting.begin(), setting.end()}));
+    };
+    return features;
+}
+
 bool as_logarithm(const ModelFactor& factor) {
     return !factor.is_word() && factor.smallest() > 0 && factor.high >= logarithm_from * factor.low;
 }
 
 }  // namespace
+
+void fold(std::span<const ModelFactor> factors, Setting& setting) {
+    std::vector<std::size_t> conditional;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors[j].counts) conditional.push_back(j);
+    std::ranges::sort(conditional, {}, [&](std::size_t j) { return factors[j].order; });
+    for (const auto j : conditional)
+        if (!factors[j].counts(setting)) setting[j] = factors[j].standard;
+}
+
+Setting as_seen(std::span<const ModelFactor> factors, Setting setting) {
+    if (std::ranges::none_of(factors, [](const auto& factor) { return static_cast<bool>(factor.counts); }))
+        return setting;
+    fold(factors, setting);
+    const Setting folded = setting;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors[j].counts && !factors[j].counts(folded)) setting[j] = neutral(factors[j]);
+    return setting;
+}
+
+void place(std::span<const ModelFactor> factors, Setting& setting, std::size_t j, double x,
+           std::span<const std::size_t> kept) {
+    setting[j] = x;
+    if (!factors[j].share) return;
+    std::vector<std::size_t> others;
+    double rest = 1 - x, room = 0;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+        if (!factors[k].share || k == j) continue;
+        if (std::ranges::find(kept, k) != kept.end()) {
+            rest -= setting[k];
+            continue;
+        }
+        others.push_back(k);
+        rest -= factors[k].low;
+        room += setting[k] - factors[k].low;
+    }
+    for (const auto k : others) {
+        const double part = room > 0 ? (setting[k] - factors[k].low) / room : 1 / static_cast<double>(others.size());
+        setting[k] = factors[k].low + part * std::max(0.0, rest);
+    }
+}
+
+std::optional<double> sum_of_shares(std::span<const ModelFactor> factors, const Setting& setting) {
+    std::optional<double> sum;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors[j].share) sum = sum.value_or(0) + setting[j];
+    return sum;
+}
 
 Value ModelFactor::value(double number) const {
     if (is_word()) return words.at(static_cast<std::size_t>(number));
@@ -58,20 +181,25 @@ std::vector<ModelFactor> model_factors(const Responses& responses) {
         factor.name = column.name;
         factor.unit = column.unit;
         factor.noise = std::ranges::find(noise, column.name) != noise.end();
+        factor.step = stated[j].step;
+        factor.share = stated[j].share;
         if (column.continuous()) {
             factor.low = column.low;
             factor.high = column.high;
             factor.log = column.log;
             factor.distribution = column.distribution;
         } else if (auto numbers = ordered_numbers(column, stated[j])) {
+            if (!stated[j].when.empty()) std::erase_if(*numbers, [&](double x) { return !is_listed(stated[j], x); });
             std::ranges::sort(*numbers);
             factor.numbers = std::move(*numbers);
             if (!factor.numbers.empty()) factor.low = factor.numbers.front(), factor.high = factor.numbers.back();
         } else {
             factor.words = column.levels;
+            factor.unlisted = column.levels.size() - listed_words(column, stated[j]);
         }
         factors.push_back(std::move(factor));
     }
+    add_conditions(factors, responses.campaign);
     return factors;
 }
 
@@ -94,9 +222,12 @@ Features default_features(std::span<const ModelFactor> factors, std::span<const 
     using Part = std::function<double(std::span<const double>)>;
     Features features;
     std::vector<Part> parts;
+    std::size_t last_share = factors.size();
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors[j].share) last_share = j;
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& factor = factors[j];
-        if (!factor.varies()) continue;
+        if (!factor.varies() || j == last_share) continue;  // the last share follows from the others
         const auto ratio = std::ranges::find(ratios, j, &Ratio::over);
         if (ratio != ratios.end()) {
             features.names.push_back(fmt::format("log({}/{})", factor.name, factors[ratio->under].name));
@@ -120,7 +251,7 @@ Features default_features(std::span<const ModelFactor> factors, std::span<const 
         for (const auto& part : parts) numbers.push_back(part(setting));
         return numbers;
     };
-    return features;
+    return of_seen_settings(std::move(features), factors);
 }
 
 Features written_features(std::span<const ModelFactor> factors, std::span<const std::string> expressions) {
@@ -135,7 +266,7 @@ Features written_features(std::span<const ModelFactor> factors, std::span<const 
         for (std::size_t j = 0; j < known.size(); ++j) values.push_back(known[j].value(setting[j]));
         return numbers(values);
     };
-    return features;
+    return of_seen_settings(std::move(features), factors);
 }
 
 std::vector<double> rows_of(const Features& features, std::span<const Setting> settings) {

@@ -28,7 +28,16 @@ struct ModelFactor {
     bool noise = false;                                    ///< it varies and cannot be set: "role" of the campaign file
     std::vector<double> numbers;     ///< levels that are numbers, growing; empty: a range, or words
     std::vector<std::string> words;  ///< levels that are words; empty: numbers
+    std::size_t unlisted = 0;        ///< of the words those at the end that the campaign does not list
+    std::optional<double> step;      ///< of a range: its values are multiples of this
+    bool share = false;              ///< it and the other shares add to one
+    /// Whether it counts beside the values of the other factors, by its `when`; empty: it always does.
+    std::function<bool(std::span<const double> setting)> counts;
+    std::size_t order = 0;  ///< among the factors with a `when`, in which they are decided
+    double standard = 0;    ///< what it is where it does not count
 
+    /// Words that may be chosen.
+    [[nodiscard]] std::size_t choices() const { return words.size() - unlisted; }
     [[nodiscard]] bool is_word() const { return !words.empty(); }
     /// The smallest number that a design may ask.
     [[nodiscard]] double smallest() const { return distribution ? distribution->quantile(0) : low; }
@@ -50,6 +59,18 @@ struct Features {
     std::vector<std::string> names;  ///< as a reader would write them: "log(diameter)"
     std::function<std::vector<double>(std::span<const double> setting)> of;  ///< one number per name; NaN: undefined
 };
+
+/// Puts its default in the place of every factor that does not count.
+void fold(std::span<const ModelFactor> factors, Setting& setting);
+/// A setting as models see it: a factor that does not count stands in the middle of its range, or at its first level,
+/// wherever its default lies.
+[[nodiscard]] Setting as_seen(std::span<const ModelFactor> factors, Setting setting);
+/// Puts x in the place of factor j. Of a share the others are stretched so that all add to one (Cox 1971, Biometrika
+/// 58, 155); those of `kept` stay.
+void place(std::span<const ModelFactor> factors, Setting& setting, std::size_t j, double x,
+           std::span<const std::size_t> kept = {});
+/// Sum of the shares; none where no factor is a share.
+[[nodiscard]] std::optional<double> sum_of_shares(std::span<const ModelFactor> factors, const Setting& setting);
 
 /// Features of every setting, one row after the other.
 [[nodiscard]] std::vector<double> rows_of(const Features& features, std::span<const Setting> settings);

@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 namespace grainsweep::study {
 namespace {
@@ -66,8 +68,40 @@ std::vector<stats::Checkpoint> judged_in_the_run(const Responses& responses,
     return checks;
 }
 
-std::span<const std::int64_t> judged_points(const Responses& responses) {
-    return std::span(responses.points).first(responses.settled);
+/// Values by growing point, and how many places before each hold the same run.
+struct Judged {
+    std::vector<std::int64_t> points, earlier;
+    std::vector<double> values;
+
+    [[nodiscard]] std::vector<stats::Checkpoint> by(const stats::ConvergenceSettings& settings,
+                                                    std::int64_t settled) const {
+        return stats::judge_convergence(settings, points, values, settled, earlier);
+    }
+};
+
+/// Every row of `rows`; where repeats weigh, every place of `repeats` too.
+Judged judged_of(const Responses& responses, const ResponseColumn& response, std::span<const std::size_t> rows,
+                 std::span<const RepeatedPlace> repeats) {
+    std::vector<RepeatedPlace> places;
+    for (const auto row : rows) places.push_back({responses.points[row], row});
+    if (responses.repeats_weigh) {
+        places.insert(places.end(), repeats.begin(), repeats.end());
+        std::ranges::stable_sort(places, {}, &RepeatedPlace::point);
+    }
+    Judged judged;
+    std::vector<std::int64_t> met(responses.rows());
+    for (const auto& place : places) {
+        judged.points.push_back(place.point);
+        judged.values.push_back(response.values[place.row]);
+        judged.earlier.push_back(met[place.row]++);
+    }
+    return judged;
+}
+
+Judged settled_of(const Responses& responses, const ResponseColumn& response) {
+    std::vector<std::size_t> rows(responses.settled);
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    return judged_of(responses, response, rows, responses.settled_repeats());
 }
 
 /// Moments of all settled values, with errors where the design is a sample.
@@ -75,8 +109,7 @@ stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn&
                                stats::ConvergenceSettings settings) {
     settings = plain(std::move(settings));
     settings.block = std::max<std::int64_t>(1, responses.settled_points);
-    const auto checks = stats::judge_convergence(settings, judged_points(responses), responses.judged(response),
-                                                 responses.settled_points);
+    const auto checks = settled_of(responses, response).by(settings, responses.settled_points);
     if (checks.empty()) return {};
     stats::Checkpoint all = checks.front();
     all.points = responses.counted_points();
@@ -91,16 +124,17 @@ stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn&
 std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, const ResponseColumn& response,
                                                    stats::ConvergenceSettings settings) {
     if (responses.campaign.stopped_at || responses.finished() <= responses.settled) return std::nullopt;
-    std::vector<std::int64_t> points;
-    std::vector<double> values;
-    for (std::size_t row = 0; row < responses.rows(); ++row) {
-        if (!has_final_outcome(responses.outcomes[row])) continue;
-        points.push_back(responses.points[row]);
-        values.push_back(response.values[row]);
-    }
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < responses.rows(); ++row)
+        if (has_final_outcome(responses.outcomes[row])) rows.push_back(row);
+    std::vector<RepeatedPlace> repeats;
+    std::ranges::copy_if(responses.repeated, std::back_inserter(repeats),
+                         [&](const auto& place) { return has_final_outcome(responses.outcomes[place.row]); });
+    const auto judged = judged_of(responses, response, rows, repeats);
+    auto points = judged.points;
     settings = plain(std::move(settings));
     settings.block = points.back() + 1;
-    auto found = stats::judge_convergence(settings, points, values, settings.block);
+    auto found = judged.by(settings, settings.block);
     if (found.empty()) return std::nullopt;
     points.erase(std::unique(points.begin(), points.end()), points.end());
     found.front().points = static_cast<std::int64_t>(points.size());
@@ -137,7 +171,7 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     if (design.beginning == designs::Beginning::listed)
         history.warnings.emplace_back("listed points are no sample: their moments have no errors");
-    if (design.block(responses.factors.size()) > 1) {
+    if (design.block(responses.group_names.size()) > 1) {
         history.warnings.push_back(
             fmt::format("points of a {} design depend on each other: errors of moments are rough", record.design));
     }
@@ -148,8 +182,10 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     if (!responses.repeated.empty()) {
         history.warnings.push_back(
-            fmt::format("{} of {} places repeat an earlier case: each of the {} cases counts once",
-                        responses.repeated.size(), responses.repeated.size() + responses.rows(), responses.rows()));
+            fmt::format("{} of {} places repeat an earlier case: each of the {} cases {}", responses.repeated.size(),
+                        responses.repeated.size() + responses.rows(), responses.rows(),
+                        responses.repeats_weigh ? "weighs as many places as hold it, and errors are widened for that"
+                                                : "counts once"));
     }
     if (history.all.excluded > 0) {
         const std::string why = campaign::why_absent(record.scene, response.name);
@@ -232,8 +268,7 @@ History history_of(const Responses& responses, const ResponseColumn& response) {
     if (history.settings.traits().of_model) {
         history.checks = judged_in_the_run(responses, history.settings);
     } else if (responses.ordered_sample()) {
-        history.checks = stats::judge_convergence(history.settings, judged_points(responses),
-                                                  responses.judged(response), responses.settled_points);
+        history.checks = settled_of(responses, response).by(history.settings, responses.settled_points);
     }
     history.verdict = verdict_of(history, responses);
     if (history.has_rule) history.converged = std::ranges::any_of(history.checks, &stats::Checkpoint::converged);

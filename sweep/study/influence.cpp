@@ -5,6 +5,7 @@
 #include "stats/trend.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
+#include "sweep/study/influence_of_blocks.hpp"
 #include "sweep/study/sample_parts.hpp"
 
 #include <fmt/format.h>
@@ -22,48 +23,16 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double monotone_share = 0.9;
 constexpr std::size_t most_pieces = 15, most_coefficients = 160;
 
-/// One row per design point from 0 on: coordinates and the mean over its repeats; NaN where the point was filtered
-/// out, failed or is not there. What designs made of blocks need.
-struct Grid {
-    std::vector<double> coordinates, values;
-};
-
-/// Places in the settled beginning that repeat an earlier case.
-std::vector<RepeatedPlace> repeated_places(const Responses& responses) {
-    std::vector<RepeatedPlace> places;
-    for (const auto& place : responses.repeated)
-        if (place.row < responses.settled && place.point < responses.settled_points) places.push_back(place);
-    return places;
-}
-
-Grid grid_of(const Responses& responses, const ResponseColumn& response) {
-    const std::size_t d = responses.factors.size();
-    const auto repeated = repeated_places(responses);
-    auto points = responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
-    for (const auto& place : repeated) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
-    Grid grid{std::vector<double>(points * d, not_a_number), std::vector<double>(points, not_a_number)};
-    std::vector<double> sums(points), counts(points);
-    const auto place_row = [&](std::size_t point, std::size_t row) {
-        for (std::size_t j = 0; j < d; ++j) grid.coordinates[point * d + j] = responses.factors[j].coordinate(row);
-        if (!std::isfinite(response.values[row])) return;
-        sums[point] += response.values[row];
-        counts[point] += 1;
-    };
-    for (std::size_t row = 0; row < responses.settled; ++row)
-        place_row(static_cast<std::size_t>(responses.points[row]), row);
-    for (const auto& place : repeated) place_row(static_cast<std::size_t>(place.point), place.row);
-    for (std::size_t p = 0; p < points; ++p)
-        if (counts[p] > 0) grid.values[p] = sums[p] / counts[p];
-    return grid;
-}
-
 /// A level is a bin of its own, and so is a coordinate of a lattice; else so many bins that each has 16 points.
 std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settled, std::int64_t points) {
-    if (lattice || !factor.continuous()) {
-        const auto judged = std::span(factor.values).first(settled);
+    const auto judged = std::span(factor.values).first(settled);
+    const auto different = [&] {
         return std::max<std::size_t>(2, std::set<double>(judged.begin(), judged.end()).size());
-    }
-    return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, 16);
+    };
+    if (lattice || !factor.continuous()) return different();
+    constexpr std::size_t most_bins = 16;
+    if (factor.stepped && different() <= most_bins) return different();
+    return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, most_bins);
 }
 
 /// The binned index of a lattice with replicates without the part that scatter gives to the means, and the half-width
@@ -241,68 +210,6 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
     }
 }
 
-void add_saltelli(Influence& influence, const Responses& responses, const ResponseColumn& response) {
-    const auto grid = grid_of(responses, response);
-    const auto indices = stats::saltelli_indices(grid.values, responses.factors.size());
-    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
-        influence.factors[j].first_saltelli = indices.first[j];
-        influence.factors[j].total = indices.total[j];
-    }
-    influence.used = indices.count;
-    influence.excluded = indices.excluded;
-    influence.notes.push_back(fmt::format("total indices from {} base rows; {} left out for want of a value",
-                                          indices.count, indices.excluded));
-    const auto least = std::ranges::min_element(indices.total, {}, &stats::SensitivityIndex::value);
-    if (influence.split.pure.freedom == 0 && least != indices.total.end() && std::isfinite(least->value))
-        influence.notes.push_back(
-            fmt::format("every total index holds the scatter of single runs: its share is at most the smallest, {}",
-                        index_text(*least)));
-}
-
-void add_morris(Influence& influence, const Responses& responses, const ResponseColumn& response) {
-    const std::size_t d = responses.factors.size();
-    const std::size_t length = d + 1;
-    const auto grid = grid_of(responses, response);
-    Grid whole;  // trajectories all of whose points exist: `where` may have filtered some out
-    std::int64_t broken = 0;
-    for (std::size_t t = 0; (t + 1) * length <= grid.values.size(); ++t) {
-        const auto first = grid.coordinates.begin() + static_cast<std::ptrdiff_t>(t * length * d);
-        const auto last = first + static_cast<std::ptrdiff_t>(length * d);
-        if (std::any_of(first, last, [](double x) { return std::isnan(x); })) {
-            ++broken;
-            continue;
-        }
-        whole.coordinates.insert(whole.coordinates.end(), first, last);
-        const auto y = grid.values.begin() + static_cast<std::ptrdiff_t>(t * length);
-        whole.values.insert(whole.values.end(), y, y + static_cast<std::ptrdiff_t>(length));
-    }
-    if (broken > 0) influence.notes.push_back(fmt::format("{} trajectories are incomplete and left out", broken));
-    try {
-        const auto effects = stats::elementary_effects(whole.coordinates, d, whole.values);
-        for (std::size_t j = 0; j < d; ++j) influence.factors[j].effects = effects[j];
-        const auto fewest = std::ranges::min_element(effects, {}, &stats::ElementaryEffects::count);
-        if (fewest != effects.end()) {
-            influence.used = fewest->count;
-            influence.excluded = fewest->excluded;
-        }
-    } catch (const std::invalid_argument& error) {  // two grid levels of a factor with levels may be the same level
-        influence.notes.push_back(fmt::format("no elementary effects: {}", error.what()));
-    }
-}
-
-/// Withdraws the errors of figures from blocks of points where most places repeat an earlier case: the blocks share
-/// their runs, and say of the scatter between them less than their number promises.
-void withdraw_errors_of_repeated_cases(Influence& influence, const Responses& responses) {
-    const auto repeated = repeated_places(responses).size();
-    if (repeated <= responses.settled) return;
-    for (auto& factor : influence.factors) {
-        factor.first_saltelli.half_width = factor.total.half_width = not_a_number;
-        if (factor.effects) factor.effects->mu_star_half_width = not_a_number;
-    }
-    influence.notes.push_back(fmt::format("the {} places of the design are {} different cases: errors are unknown",
-                                          repeated + responses.settled, responses.settled));
-}
-
 }  // namespace
 
 std::string_view to_string(Trend trend) {
@@ -365,9 +272,10 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
         influence.method = Influence::Method::morris;
         influence.split.pure =
             stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
-        add_morris(influence, responses, response);
-        withdraw_errors_of_repeated_cases(influence, responses);
+        const auto groups = add_morris(influence, responses, response);
         add_trends(influence, responses, response);
+        join_groups(influence, responses, groups);
+        withdraw_errors_of_repeated_cases(influence, responses);
         return influence;
     }
     influence.split = split_of(responses, response);
@@ -375,7 +283,7 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
     add_trends(influence, responses, response);
     if (design.purpose == designs::Purpose::saltelli) {
         influence.method = Influence::Method::saltelli;
-        add_saltelli(influence, responses, response);
+        join_groups(influence, responses, add_saltelli(influence, responses, response));
         withdraw_errors_of_repeated_cases(influence, responses);
     }
     if (influence.excluded > 0 && design.purpose != designs::Purpose::saltelli)

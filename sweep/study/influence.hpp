@@ -31,7 +31,8 @@ enum class Trend {
 [[nodiscard]] std::string_view to_string(Trend trend);  ///< unknown: empty
 
 struct FactorInfluence {
-    std::string factor;
+    std::string factor;                               ///< its name, or that of a group
+    std::vector<std::string> members;                 ///< of a group of several factors that move together: their names
     std::size_t bins = 0;                             ///< behind `first`
     stats::SensitivityIndex first;                    ///< share of the variance the factor explains alone
     stats::SensitivityIndex first_saltelli;           ///< saltelli: the same by Saltelli et al. 2010
@@ -44,7 +45,7 @@ struct FactorInfluence {
 struct Influence {
     enum class Method { given_data, saltelli, morris };
     Method method = Method::given_data;
-    std::vector<FactorInfluence> factors;  ///< in the campaign's order
+    std::vector<FactorInfluence> factors;  ///< in the campaign's order; saltelli, morris: one a group
     std::int64_t used = 0;                 ///< cases (saltelli: base rows; morris: effects of the factor with fewest)
     std::int64_t excluded = 0;             ///< of the same, for want of a value
     stats::VarianceSplit split;            ///< of the variance of single runs; morris: pure error only

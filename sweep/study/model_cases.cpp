@@ -10,12 +10,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
 
 namespace grainsweep::study {
 namespace {
+
+constexpr double rounding_of_shares = 1e-9;
 
 bool asks_the_same(const campaign::Identity& a, const campaign::Identity& b) {
     return a.scene == b.scene && a.revision == b.revision && a.factors == b.factors && a.fixed == b.fixed;
@@ -97,7 +100,9 @@ std::function<Inputs(const Setting&)> completion(const store::Store& store, cons
     Inputs inputs = example->inputs;
     for (const auto& [name, value] : scene->defaults()) inputs.try_emplace(name, value);
     return [inputs, factors = cases.factors,
-            expressions = campaign::expressions_of(cases.campaign, *scene)](const Setting& setting) mutable {
+            expressions = campaign::expressions_of(cases.campaign, *scene)](const Setting& asked) mutable {
+        Setting setting = asked;
+        fold(factors, setting);
         for (std::size_t j = 0; j < factors.size(); ++j)
             inputs[factors[j].name] = campaign::coerced(factors[j].value(setting[j]), inputs.at(factors[j].name));
         campaign::evaluate_expressions(expressions, inputs);
@@ -173,17 +178,24 @@ ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* r
 }
 
 std::function<bool(const Setting&)> admission(const store::Store& store, const ModelCases& cases) {
+    const auto shares_fit = [factors = cases.factors](const Setting& setting) {
+        return std::abs(sum_of_shares(factors, setting).value_or(1) - 1) <= rounding_of_shares;
+    };
+    const bool shares = std::ranges::any_of(cases.factors, &ModelFactor::share);
+    const auto by_shares = shares ? std::function<bool(const Setting&)>(shares_fit) : nullptr;
     const auto complete = completion(store, cases);
-    if (cases.campaign.condition.empty() || !complete || cases.settings.empty()) return {};
+    if (cases.campaign.condition.empty() || !complete || cases.settings.empty()) return by_shares;
     std::vector<std::string> names;
     for (const auto& [name, value] : complete(cases.settings.front())) names.push_back(name);
     campaign::Filter filter;
     try {
         filter = store::make_filter(cases.campaign.condition, names);
     } catch (const campaign::WrongQuestion&) {  // an older program took what is refused today
-        return {};
+        return by_shares;
     }
-    return [complete, filter](const Setting& setting) { return filter(complete(setting)); };
+    return [complete, filter, shares_fit](const Setting& setting) {
+        return shares_fit(setting) && filter(complete(setting));
+    };
 }
 
 std::string setting_text(std::span<const ModelFactor> factors, const Setting& setting) {
@@ -197,10 +209,15 @@ std::string outside_text(std::span<const ModelFactor> factors, const Setting& se
     std::string text;
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& factor = factors[j];
-        if (factor.is_word() || (setting[j] >= factor.low && setting[j] <= factor.high)) continue;
+        if (factor.is_word() || (factor.counts && !factor.counts(setting)) ||
+            (setting[j] >= factor.low && setting[j] <= factor.high))
+            continue;
         text += fmt::format("{}{} = {} is outside of {} to {}", text.empty() ? "" : ", ", factor.name, setting[j],
                             factor.low, factor.high);
     }
+    const auto sum = sum_of_shares(factors, setting);
+    if (sum && std::abs(*sum - 1) > rounding_of_shares)
+        text += fmt::format("{}the shares add to {:.6g}, not to 1", text.empty() ? "" : ", ", *sum);
     return text;
 }
 

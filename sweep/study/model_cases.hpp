@@ -48,7 +48,8 @@ struct ModelCases {
 /// stands in `responses`.
 [[nodiscard]] ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* rows = nullptr);
 
-/// Whether the campaign's `where` clause lets a setting pass; empty where it has none or no case is answered.
+/// Whether the campaign's `where` clause lets a setting pass, and its shares add to one; empty where it has neither, or
+/// no case is answered.
 [[nodiscard]] std::function<bool(const Setting&)> admission(const store::Store& store, const ModelCases& cases);
 
 /// "friction = 0.1, gap = 0.003"

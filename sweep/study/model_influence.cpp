@@ -72,6 +72,10 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
         found.refused = "the campaign's `where` leaves a part of the box out, and a model has no cases there";
         return found;
     }
+    if (std::ranges::find(responses.group_names, campaign::group_of_shares) != responses.group_names.end()) {
+        found.refused = "shares that add to one do not vary by themselves, as the indices of a model suppose";
+        return found;
+    }
     std::vector<std::size_t> rows;
     const auto cases = settled_cases(responses, &rows);
     std::vector<std::size_t> varied;

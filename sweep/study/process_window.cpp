@@ -222,7 +222,8 @@ std::string next_campaign(const ModelCases& cases, const Window& window, std::st
     std::vector<std::vector<Value>> rows;
     for (const auto& one : window.next) {
         auto& row = rows.emplace_back();
-        for (std::size_t j = 0; j < cases.factors.size(); ++j) row.push_back(cases.factors[j].value(one.setting[j]));
+        const auto listed = as_seen(cases.factors, one.setting);  // a list has values of the ranges
+        for (std::size_t j = 0; j < cases.factors.size(); ++j) row.push_back(cases.factors[j].value(listed[j]));
     }
     return campaign::further_points(
         campaign::text_of_experiment(cases.campaign.text, cases.campaign), name,

@@ -2,9 +2,9 @@
 
 #include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
-#include "stats/random.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/stored_request.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/study/factor_reader.hpp"
@@ -123,6 +123,13 @@ std::size_t Responses::without_value(const ResponseColumn& response) const {
         std::ranges::count_if(judged(response), [](double x) { return !std::isfinite(x); }));
 }
 
+std::vector<RepeatedPlace> Responses::settled_repeats() const {
+    std::vector<RepeatedPlace> places;
+    for (const auto& place : repeated)
+        if (place.row < settled && place.point < settled_points) places.push_back(place);
+    return places;
+}
+
 std::int64_t Responses::counted_points() const {
     if (ordered_sample()) return settled_points;
     const auto judged = std::span(points).first(settled);
@@ -204,6 +211,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     Responses responses;
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
+    responses.repeats_weigh = campaign::repeats_weigh(campaign::factors_asked(record));
     const SceneInfo* scene = find_scene(record.scene);
     std::vector<FactorReader> factors;
     for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
@@ -233,6 +241,11 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     // The campaign's view is the archive's public face; its columns are promised to users, too.
     store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name), {}, declare, add);
     for (auto& factor : factors) responses.factors.push_back(factor.take());
+    const auto asked = campaign::factors_asked(record);
+    responses.groups = campaign::groups_of(asked);
+    responses.group_names = campaign::group_names(asked);
+    responses.folds = std::ranges::any_of(
+        asked, [](const auto& factor) { return factor.step || factor.share || !factor.when.empty(); });
 
     responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
     find_settled(responses);
@@ -244,6 +257,7 @@ Responses read_response(const store::Store& store, const store::CampaignRecord& 
     Responses responses;
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
+    responses.repeats_weigh = campaign::repeats_weigh(campaign::factors_asked(record));
     responses.candidates = record.stored.candidates;
     ResponseColumn response;
     response.name = observable;
@@ -280,29 +294,6 @@ std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses
                             std::ranges::count(responses.outcomes, std::optional(outcome)));
     counts.emplace_back("not yet", std::ranges::count(responses.outcomes, std::optional<campaign::Outcome>{}));
     return counts;
-}
-
-std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_t count, bool largest) {
-    std::vector<std::size_t> rows;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (std::isfinite(values[i])) rows.push_back(i);
-    const auto before = [&](std::size_t a, std::size_t b) {
-        if (values[a] != values[b]) return largest ? values[a] > values[b] : values[a] < values[b];
-        return a < b;
-    };
-    const auto kept = std::min(count, rows.size());
-    std::ranges::partial_sort(rows, rows.begin() + static_cast<std::ptrdiff_t>(kept), before);
-    rows.resize(kept);
-    return rows;
-}
-
-std::vector<std::size_t> random_rows(std::vector<std::size_t> rows, std::size_t most) {
-    if (rows.size() <= most) return rows;
-    const auto draw = [](std::size_t row) { return stats::bits_at(0, 0, row); };
-    std::ranges::nth_element(rows, rows.begin() + static_cast<std::ptrdiff_t>(most), {}, draw);
-    rows.resize(most);
-    std::ranges::sort(rows);
-    return rows;
 }
 
 }  // namespace grainsweep::study

@@ -21,12 +21,15 @@ struct FactorColumn {
     double low = 0, high = 0;         ///< continuous: the range (stats::Distribution::range)
     bool log = false;                 ///< the range is divided logarithmically
     std::optional<stats::Distribution> distribution = {};  ///< none: levels, or a range
-    std::vector<double> values;                            ///< one per row
-    std::vector<double> shares = {};                       ///< its coordinate per row, where values alone have none
-    std::vector<double> places;  ///< of the levels among those of the campaign: 0 the first, 1 the last
+    bool stepped = false;                                  ///< values of the range are multiples of a step
+    bool conditional = false;         ///< where it does not count it has its default, which may be out of the range
+    std::vector<double> values;       ///< one per row
+    std::vector<double> shares = {};  ///< its coordinate per row, where values alone have none
+    std::vector<double> places;       ///< of the levels among those of the campaign: 0 the first, 1 the last
 
     [[nodiscard]] bool continuous() const { return levels.empty(); }
-    /// Where the row stands in the range: 0 to 1, of a distribution the probability of less; a level by its place among
+    /// Where the row stands in the range: 0 to 1, of a distribution the probability of less; a default out of it at the
+    /// nearer end; a level by its place among
     /// those of the campaign, run or not.
     [[nodiscard]] double coordinate(std::size_t row) const;
 };
@@ -53,6 +56,10 @@ struct Responses {
     std::vector<std::string> case_ids;
     std::vector<std::optional<campaign::Outcome>> outcomes;
     std::vector<FactorColumn> factors;
+    std::vector<std::size_t> groups;       ///< number of each factor's group in saltelli and morris
+    std::vector<std::string> group_names;  ///< of a factor by itself its own
+    bool repeats_weigh = false;            ///< in moments, a case weighs as many places as hold it
+    bool folds = false;  ///< steps, shares or conditions: a point's values do not tell its place in the design
     std::vector<ResponseColumn> observables;
     /// Of a campaign under the rule `assisted`: its checks, as they were judged in the run. Their models are not fitted
     /// again to be shown.
@@ -71,6 +78,8 @@ struct Responses {
     [[nodiscard]] std::span<const double> judged(const ResponseColumn& response) const {
         return std::span(response.values).first(settled);
     }
+    /// Places before `settled_points` that repeat a settled row.
+    [[nodiscard]] std::vector<RepeatedPlace> settled_repeats() const;
     /// Settled rows without a value.
     [[nodiscard]] std::size_t without_value(const ResponseColumn& response) const;
     /// Rows with a final outcome, wherever they stand.

@@ -14,7 +14,7 @@ constexpr std::size_t stretches = 8;
 
 /// Consecutive points that belong together.
 std::int64_t block_of(const Responses& responses) {
-    return static_cast<std::int64_t>(responses.design().block(responses.factors.size()));
+    return static_cast<std::int64_t>(responses.design().block(responses.group_names.size()));
 }
 
 }  // namespace

@@ -17,11 +17,18 @@ namespace {
 constexpr std::size_t noise_settings = 64, least_of_a_combination = 16, most_combinations = 32;
 
 std::size_t levels_in(const ModelFactor& factor) {
-    return factor.is_word() ? factor.words.size() : factor.numbers.size();
+    return factor.is_word() ? factor.choices() : factor.numbers.size();
 }
 
 double level_number(const ModelFactor& factor, std::size_t level) {
     return factor.is_word() ? static_cast<double>(level) : factor.numbers[level];
+}
+
+/// Some of the factors, without their conditions: these read all factors.
+std::vector<ModelFactor> factors_at(const std::vector<ModelFactor>& factors, const std::vector<std::size_t>& places) {
+    std::vector<ModelFactor> chosen;
+    for (const auto j : places) chosen.emplace_back(factors[j]).counts = nullptr;
+    return chosen;
 }
 
 /// Every combination of the levels of the factors at `places`, in copies of a setting.
@@ -43,8 +50,7 @@ std::vector<Setting> combinations_of(const Setting& setting, const std::vector<M
 /// Sobol points of the factors at `places`, cells centred.
 std::vector<Setting> centred_points(const std::vector<ModelFactor>& factors, const std::vector<std::size_t>& places,
                                     std::size_t count) {
-    std::vector<ModelFactor> chosen;
-    for (const auto j : places) chosen.push_back(factors[j]);
+    const auto chosen = factors_at(factors, places);
     if (chosen.empty()) return {Setting{}};
     const auto set =
         sobol_points({.levels = std::vector<std::size_t>(chosen.size(), 0),
@@ -123,10 +129,16 @@ WindowSpace::WindowSpace(const ModelCases& cases, const Held& held, const std::v
         if (!std::isnan(empty_[j]) || std::ranges::find(every_, j) != every_.end()) continue;
         (factors_[j].noise ? noise_ : searched_).push_back(j);
     }
-    for (const auto j : searched_) searched_factors_.push_back(factors_[j]);
+    searched_factors_ = factors_at(factors_, searched_);
     if (searched_.empty())
         throw campaign::wrong_question("window", "",
                                        "no factor is left to be searched: each is held, noise, or named by 'for all'");
+    const auto shares = std::ranges::count_if(factors_, &ModelFactor::share);
+    for (const auto* some : {&searched_, &noise_})
+        if (const auto count = std::ranges::count_if(*some, [&](std::size_t j) { return factors_[j].share; });
+            count != 0 && count != shares)
+            throw campaign::wrong_question("window", "",
+                                           "shares that add to one are all searched, all held, or all noise");
 }
 
 std::vector<BoxPoint> WindowSpace::embedded(std::vector<BoxPoint> points) const {
@@ -134,6 +146,7 @@ std::vector<BoxPoint> WindowSpace::embedded(std::vector<BoxPoint> points) const 
         auto setting = empty_;
         for (std::size_t k = 0; k < searched_.size(); ++k) setting[searched_[k]] = point.setting[k];
         point.setting = std::move(setting);
+        if (!averages()) fold(factors_, point.setting);
     }
     if (admits_)
         std::erase_if(points, [&](const BoxPoint& point) {
@@ -184,6 +197,7 @@ std::vector<std::vector<Setting>> WindowSpace::behind(const Setting& setting) co
         for (const auto& point : noise) {
             Setting full = one;
             for (const auto j : averaged) full[j] = point[j];
+            fold(factors_, full);
             if (!admits_ || admits_(full)) group.push_back(std::move(full));
         }
     }

@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/reader.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/store/when_clauses.hpp"
 
 #include <algorithm>
 #include <set>
@@ -11,6 +12,7 @@ namespace grainsweep::tests {
 campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula, std::size_t cases,
                              const std::function<bool(const campaign::PlacedCase&)>& wanted) {
     auto campaign = campaign::parse_campaign(text, std::filesystem::temp_directory_path());
+    campaign.space.when = store::when_clauses(campaign.space);
     const auto placed =
         campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
     const auto states = store.enrol(campaign, placed, here());

@@ -65,7 +65,8 @@ INSTANTIATE_TEST_SUITE_P(
               "$.campaign: got \"sqlite_x\"; the database has a table or view of this name; take another. Did you mean "
               "'my_sqlite_x'?"},
         Wrong{R"([{"op": "move", "from": "/design", "path": "/desing"}])",
-              "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'where', 'design', 'calibration', "
+              "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'simplex', 'where', 'design', "
+              "'calibration', "
               "'replicates', "
               "'seed', 'common_random_numbers', 'convergence', 'accuracy', 'model', 'program', 'machine', 'powder', "
               "'limits', 'execution' or 'notes'. Did "
@@ -116,7 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "add", "path": "/factors/1/scale", "value": "log"}])",
               "$.factors[1].scale: got \"log\"; levels have no scale; it belongs to \"between\"."},
         Wrong{R"([{"op": "replace", "path": "/factors/0", "value": {"name": "behave_attempts", "between": [0, 3]}}])",
-              "$.factors[0].between: got [0,3]; 'behave_attempts' is a whole number; vary it by \"levels\"."},
+              "$.factors[0].between: got [0,3]; 'behave_attempts' is a whole number: add \"whole\": true, or vary it "
+              "by \"levels\"."},
         Wrong{R"([{"op": "replace", "path": "/factors/0", "value": {"name": "behaviour", "between": [0, 3]}}])",
               "$.factors[0].between: got [0,3]; the values of 'behaviour' are words; vary it by \"levels\"."},
         Wrong{
@@ -131,7 +133,8 @@ INSTANTIATE_TEST_SUITE_P(
               "$.factors[1].levels[1]: got 1.5; 'behave_attempts' must be a whole number from 0 to 1000."},
         Wrong{R"([{"op": "add", "path": "/factors/0/level", "value": [1]}])",
               "$.factors[0].level: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale', 'uniform', "
-              "'normal', 'lognormal', 'triangular', 'beta', 'sample', 'role' or 'notes'. Did you mean 'levels'?"}));
+              "'normal', 'lognormal', 'triangular', 'beta', 'sample', 'step', 'whole', 'group', 'when', "
+              "'role' or 'notes'. Did you mean 'levels'?"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Fixed, WrongCampaign,

@@ -228,7 +228,8 @@ TEST(ProgramSection, AWholeNumberIsVariedByLevels) {
     };
     EXPECT_EQ(said({{"levels", {1, 2.0, 1e3}}}, 4, true), "");
     EXPECT_EQ(said({{"between", {1, 10}}}, 4, false), "");
-    EXPECT_NE(said({{"between", {1, 10}}}, 4, true).find("'layers' is a whole number; vary it by \"levels\""),
+    EXPECT_NE(said({{"between", {1, 10}}}, 4, true)
+                  .find("'layers' is a whole number: add \"whole\": true, or vary it by \"levels\""),
               std::string::npos);
     EXPECT_NE(said({{"levels", {1, 2.5}}}, 4, true).find("got 2.5; 'layers' is a whole number"), std::string::npos);
     EXPECT_NE(said({{"levels", {1, 2}}}, 4.5, true).find("$.fixed.rounds: got 4.5; 'rounds' is a whole number"),

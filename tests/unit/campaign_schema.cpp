@@ -109,8 +109,10 @@ TEST(Schema, HasEveryParameterOfEveryScene) {
             if (bounds != nullptr && std::isfinite(bounds->high)) {
                 EXPECT_EQ(fixed[parameter.name][bounds->high_open ? "exclusiveMaximum" : "maximum"], bounds->high);
             }
+            const bool number = !std::holds_alternative<std::string>(parameter.default_value);
+            EXPECT_EQ(factors[j]["properties"].contains("between"), number) << parameter.name;
             const bool real = std::holds_alternative<double>(parameter.default_value);
-            EXPECT_EQ(factors[j]["properties"].contains("between"), real) << parameter.name;
+            EXPECT_EQ(factors[j]["properties"].contains("normal"), real) << parameter.name;
         }
     }
 }

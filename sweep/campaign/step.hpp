@@ -1,0 +1,33 @@
+// Values of a factor at multiples of a step, counted from 0: a gap in steps of 0.5 mm, a whole number of blades.
+//
+// m_1 ... m_2: the multiples within the range. The range is widened to [(m_1 - 1/2) step, (m_2 + 1/2) step], and
+// every value of the widened range is rounded to the nearest multiple. So each multiple has a whole cell, the first
+// and the last too, and no value lies outside of the range. Of a linear range all multiples are equally likely; of a
+// logarithmic one each has the probability of its cell, log((m + 1/2)/(m - 1/2)) divided by that of all cells.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+
+#include <cstdint>
+
+namespace grainsweep::campaign {
+
+/// Numbers of the first and last multiple of a step within [low, high]; last < first: there is none.
+struct Multiples {
+    std::int64_t first = 0, last = -1;
+    [[nodiscard]] std::int64_t count() const { return last - first + 1; }
+};
+
+/// More multiples than this are no steps.
+inline constexpr std::int64_t most_multiples = 1'000'000'000;
+
+/// Returns number * step as the double nearest to the decimal product: 3 * 0.1 is 0.3.
+[[nodiscard]] double multiple_of(double step, std::int64_t number);
+/// Finds the multiples within a range. Needs step > 0 and at most `most_multiples` steps from 0 to either end.
+[[nodiscard]] Multiples multiples_in(double step, double low, double high);
+/// Returns whether x is a multiple, to the last bit.
+[[nodiscard]] bool is_multiple(double step, double x);
+/// Returns the multiple at the coordinate u in [0, 1] of a range that has at least one.
+[[nodiscard]] double stepped(const Between& range, double step, double u);
+
+}  // namespace grainsweep::campaign
