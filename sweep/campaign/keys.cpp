@@ -110,7 +110,8 @@ std::span<const Key> factor_keys() {
         {"lognormal", Kind::object, "lognormal distribution: median and sigma, the sd of ln x, or ratio, exp(sigma)"},
         {"triangular", Kind::object, "triangular distribution: low, mode, high"},
         {"beta", Kind::object, "beta distribution from low to high: low, high, a, b"},
-        {"sample", Kind::value, "CSV file with values in SI units under the name of the parameter; or file, column"},
+        {"sample", Kind::value,
+         "CSV file with values in SI units under the name of the parameter; or file or powder, column"},
         {"step", Kind::value, "values are multiples of it, counted from 0: a number or a text with a unit"},
         {"whole", Kind::flag, "true: values are whole numbers, as by a step of 1"},
         {"group", Kind::text, "factors of one group move together in saltelli and morris, and have one index"},
@@ -177,7 +178,8 @@ std::span<const Key> beta_keys() {
 
 std::span<const Key> sample_keys() {
     static constexpr auto keys = std::to_array<Key>({
-        needed({"file", Kind::text, "CSV file beside the campaign file, a row per draw"}),
+        {"file", Kind::text, "CSV file beside the campaign file, a row per draw"},
+        {"powder", Kind::text, "or a powder file beside it, whose \"posterior\" is such a CSV file"},
         {"column", Kind::text, "its column; without it the name of the factor"},
     });
     return keys;

@@ -89,17 +89,12 @@ std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
 void use_powder(const Cursor& place, const fs::path& folder, Campaign& campaign) {
     if (is_program(campaign.scene().name))
         place.refuse("a program has no powder of this kind; name the file in its \"files\"");
-    const fs::path file = folder / place.text();
-    std::error_code none;
-    if (!fs::is_regular_file(file, none))
-        place.refuse("there is no such powder file beside the campaign file",
-                     nearest_word(file.filename().string(), json_files_beside(file)));
-    const Powder powder = read_powder(file);
+    const Powder powder = powder_beside(place, folder);
     const PowderUse use = apply_powder(powder, campaign.space);
     if (use.set.empty() && use.overridden.empty())
         place.refuse(
             fmt::format("scene '{}' has no parameter that powder '{}' gives", campaign.scene().shown(), powder.name));
-    campaign.powder = fmt::format("{} ({}) {}", powder.name, file.filename().string(), use.sentence());
+    campaign.powder = fmt::format("{} ({}) {}", powder.name, powder.file.filename().string(), use.sentence());
     add_powder_files(place.path(), powder, campaign);
 }
 
@@ -208,6 +203,15 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     if (const auto limits = top.find("limits")) campaign.limits = read_limits(*limits);
     if (const auto execution = top.find("execution")) campaign.execution = read_execution(*execution);
     return campaign;
+}
+
+Powder powder_beside(const Cursor& place, const fs::path& folder) {
+    const fs::path file = folder / place.text();
+    std::error_code none;
+    if (!fs::is_regular_file(file, none))
+        place.refuse("there is no such powder file beside the campaign file",
+                     nearest_word(file.filename().string(), json_files_beside(file)));
+    return read_powder(file);
 }
 
 Campaign parse_campaign(std::string_view text, const fs::path& folder, std::string_view experiment) {

@@ -5,6 +5,8 @@
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/powder.hpp"
+#include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
 
@@ -135,7 +137,9 @@ void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
             if (key.kind == Key::Kind::value) form["properties"][std::string(key.name)]["type"] = value["type"];
     }
     properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
-    properties["sample"]["oneOf"] = {{{"type", "string"}, {"minLength", 1}}, section(sample_keys())};
+    OrderedJson named = section(sample_keys());
+    named["oneOf"] = {{{"required", {"file"}}}, {{"required", {"powder"}}}};
+    properties["sample"]["oneOf"] = {{{"type", "string"}, {"minLength", 1}}, std::move(named)};
 }
 
 /// A factor that is this parameter.
@@ -225,6 +229,40 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
     return schema;
 }
 
+/// Of a powder file: its properties are those that scenes have.
+OrderedJson properties_of_powder(std::span<const Key> keys) {
+    OrderedJson schema = section(keys);
+    for (const auto& key : keys) {
+        auto& property = schema["properties"][std::string(key.name)];
+        property.update(value_schema(powder_parameter(key.name)));
+        property.erase("default");  // what a powder file leaves out stays as the scene has it
+    }
+    return schema;
+}
+
+/// Numbers above 0, or texts with a unit.
+OrderedJson positive_values(std::span<const Key> keys) {
+    OrderedJson schema = section(keys);
+    for (const auto& key : keys)
+        if (key.kind == Key::Kind::value)
+            schema["properties"][std::string(key.name)].update(
+                {{"type", {"number", "string"}}, {"pattern", pattern_of_quantities}, {"exclusiveMinimum", 0}});
+    return schema;
+}
+
+OrderedJson sizes_of_powder() {
+    OrderedJson schema = positive_values(powder_keys::sizes());
+    auto& properties = schema["properties"];
+    properties["lognormal"].update(positive_values(powder_keys::lognormal()));
+    properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
+    properties["rosin_rammler"].update(positive_values(powder_keys::rosin_rammler()));
+    schema["oneOf"] = OrderedJson::array();
+    for (const char* key : {"file", "diameter", "d50", "lognormal", "rosin_rammler"})
+        schema["oneOf"].push_back({{"required", {key}}});
+    for (const char* key : {"d10", "d50", "d90"}) schema["dependentRequired"][key] = {"d10", "d50", "d90"};
+    return schema;
+}
+
 /// Of a scene that the key of the same name defines: names of parameters are not known here.
 OrderedJson defined_scene_rule(std::string_view word, OrderedJson accuracy) {
     OrderedJson then = OrderedJson::object();
@@ -277,6 +315,24 @@ std::string pattern_of_reserved_names() {
 }
 
 }  // namespace
+
+std::string powder_schema(int indentation) {
+    OrderedJson schema = {
+        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+        {"title", "grainsweep powder"},
+        {"description", "material, sizes and contacts of a powder; SI units where a number has no unit"}};
+    schema.update(section(powder_keys::top()));
+    auto& properties = schema["properties"];
+    properties["material"].update(properties_of_powder(powder_keys::material()));
+    properties["contacts"].update(properties_of_powder(powder_keys::contacts()));
+    properties["sizes"].update(sizes_of_powder());
+    properties["cut"].update(positive_values(powder_keys::cut()));
+    properties["cut"]["minProperties"] = 1;
+    properties["measured"]["items"] = section(powder_keys::measured());
+    for (const char* key : {"value", "error"})
+        properties["measured"]["items"]["properties"][key]["type"] = {"number", "string"};
+    return schema.dump(indentation);
+}
 
 std::string campaign_schema(int indentation) {
     OrderedJson schema = {

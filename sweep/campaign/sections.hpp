@@ -14,6 +14,8 @@
 
 namespace grainsweep::campaign {
 
+struct Powder;
+
 /// A value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file is
 /// looked for in `folder` and becomes "file:<hash of its contents>:<absolute path>".
 [[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter,
@@ -39,7 +41,10 @@ struct NamedColumn {
     std::string file, column;
 };
 /// What the factor's "sample" names, without reading the file.
-[[nodiscard]] NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter);
+[[nodiscard]] NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter,
+                                            const std::filesystem::path& folder);
+/// The powder file that a key names beside the campaign file.
+[[nodiscard]] Powder powder_beside(const Cursor& place, const std::filesystem::path& folder);
 /// Reads the files and gives the factors their columns; those of one file share its rows.
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
                   const std::filesystem::path& folder);
