@@ -9,7 +9,7 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_moment = std::numeric_limits<double>::quiet_NaN();
 
 /// Statistics of one sequence, or of all.
 struct Levels {
@@ -23,10 +23,10 @@ struct Levels {
         expensive_pairs.add(values.expensive[p]);
     }
     [[nodiscard]] double statistic(Statistic which) const {
-        return cheap.count() < 2 ? undefined : cheap.summary().of(which);
+        return cheap.count() < 2 ? no_moment : cheap.summary().of(which);
     }
     [[nodiscard]] double difference(Statistic which) const {
-        if (cheap_pairs.count() < 2) return undefined;
+        if (cheap_pairs.count() < 2) return no_moment;
         return expensive_pairs.summary().of(which) - cheap_pairs.summary().of(which);
     }
 };
@@ -34,7 +34,7 @@ struct Levels {
 /// Undefined where all repetitions are equal: then their scatter is unknown.
 double half_width_of(std::span<const double> repetitions) {
     const double half_width = student_half_width(repetitions);
-    return half_width > 0 ? half_width : undefined;
+    return half_width > 0 ? half_width : no_moment;
 }
 
 std::int64_t whole_sequences(double points, std::int64_t sequences, std::int64_t most) {
@@ -102,7 +102,7 @@ double mean_square(std::span<const double> values, std::span<const double> less)
         const double d = values[i] - (less.empty() ? 0 : less[i]);
         sum += d * d;
     }
-    return values.empty() ? undefined : sum / static_cast<double>(values.size());
+    return values.empty() ? no_moment : sum / static_cast<double>(values.size());
 }
 
 /// Cost of a relative half-width of 1, up to a factor that all settings share.
@@ -147,7 +147,7 @@ TwoLevelMoment two_level_moment(Statistic statistic, const TwoLevelValues& value
     moment.statistics = half_width_of(s);
     moment.numerics = corrected ? half_width_of(d) : 0;
     moment.together = std::max(half_width_of(t), std::hypot(moment.statistics, moment.numerics));
-    if (std::isnan(moment.statistics) || std::isnan(moment.numerics)) moment.together = undefined;
+    if (std::isnan(moment.statistics) || std::isnan(moment.numerics)) moment.together = no_moment;
     return moment;
 }
 

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t pilot_rounds = 2, first_rounds = 8, first_pair_rounds = 4;  // points of each sequence
 
 /// A setting and what a case costs there, predicted: measured time would make the course depend on the machine.
-struct Setting {
+struct CostedSetting {
     std::string name;
     double seconds = 0;
     campaign::CaseHash first_case{};
@@ -76,7 +76,7 @@ private:
             if (name == campaign::AccuracyGoal::measure) continue;
             add(name);
             const auto before = std::span(settings_).first(settings_.size() - 1);
-            const bool known = std::ranges::count(before, settings_.back().first_case, &Setting::first_case) > 0;
+            const bool known = std::ranges::count(before, settings_.back().first_case, &CostedSetting::first_case) > 0;
             if (known && name != goal_.setting) settings_.pop_back();
         }
         std::ranges::rotate(settings_, settings_.begin() + 1);
@@ -135,7 +135,7 @@ private:
         return true;
     }
     [[nodiscard]] double cost_ratio() const {
-        const auto chosen = std::ranges::find(settings_, *goal_.setting, &Setting::name);
+        const auto chosen = std::ranges::find(settings_, *goal_.setting, &CostedSetting::name);
         const bool known = chosen != settings_.end() && chosen->seconds > 0 && settings_.back().seconds > 0;
         return known ? settings_.back().seconds / chosen->seconds : 1;
     }
@@ -164,7 +164,7 @@ private:
     campaign::Campaign asked_;
     campaign::AccuracyGoal goal_;
     std::int64_t sequences_ = 1, most_ = 0, points_ = 0, pairs_ = 0, settled_ = 0;
-    std::vector<Setting> settings_;
+    std::vector<CostedSetting> settings_;
     bool passed_ = false;  ///< the check before
     std::optional<RunReport> ended_;
 };

@@ -65,12 +65,12 @@ void add_costs(const store::Store& store, NumericsCost& cost) {
     cost.seconds = number_of(row[2]);
 }
 
-std::string share(double relative) {
+std::string share_or_unknown(double relative) {
     return std::isfinite(relative) ? fmt::format("{:.2g} %", 100 * relative) : "unknown";
 }
 
 /// Largest of the gates, relative; NaN where one is unknown.
-double largest(const stats::TwoLevelCheck& check, double stats::TwoLevelMoment::*part) {
+double largest_part(const stats::TwoLevelCheck& check, double stats::TwoLevelMoment::*part) {
     double found = 0;
     for (const auto& moment : check.moments) {
         const double relative = moment.relative(moment.*part);
@@ -102,9 +102,12 @@ double core_seconds(const store::Store& store, std::string_view what, const std:
             .front());
 }
 
-double cases_alone(const stats::TwoLevelCheck& check, double tolerance) {
-    const double ratio = largest(check, &stats::TwoLevelMoment::statistics) / tolerance;
-    return static_cast<double>(check.points) * ratio * ratio;
+/// No fewer than the first check has.
+double cases_alone(const stats::TwoLevelCheck& check, double tolerance, std::int64_t sequences) {
+    const double ratio = largest_part(check, &stats::TwoLevelMoment::statistics) / tolerance;
+    constexpr std::int64_t first_rounds_alone = 8;
+    return std::max(static_cast<double>(check.points) * ratio * ratio,
+                    static_cast<double>(first_rounds_alone * sequences));
 }
 
 }  // namespace
@@ -158,11 +161,11 @@ std::string Corrected::verdict() const {
                            ? fmt::format("{} cases at {}", check.points, *goal.setting)
                            : fmt::format("{} cases at {} and {} pairs", check.points, *goal.setting, check.pairs);
     return fmt::format("{} {} {} of {}: {}; numerics {}, statistics {}, together {}; {}, {:.3g} core-s{}",
-                       goal.observable, within ? "within" : "not yet within", share(goal.tolerance),
+                       goal.observable, within ? "within" : "not yet within", share_or_unknown(goal.tolerance),
                        campaign::AccuracyGoal::measure, moments,
-                       share(largest(check, &stats::TwoLevelMoment::numerics)),
-                       share(largest(check, &stats::TwoLevelMoment::statistics)),
-                       share(largest(check, &stats::TwoLevelMoment::together)), cases, core_seconds,
+                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::numerics)),
+                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::statistics)),
+                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::together)), cases, core_seconds,
                        alone ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone) : "");
 }
 
@@ -238,7 +241,8 @@ std::optional<Corrected> corrected_of(const store::Store& store, const store::Ca
         found.within = found.within || (row.converged && row.points == found.check.points);
     found.core_seconds = core_seconds(store, "total", campaigns_of_goal(store, campaign));
     if (paired)
-        found.alone = cases_alone(found.check, goal->tolerance) * core_seconds(store, "avg", fmt::format("'{}'", name));
+        found.alone = cases_alone(found.check, goal->tolerance, campaign.sequences) *
+                      core_seconds(store, "avg", fmt::format("'{}'", name));
     found.goal = std::move(*goal);
     return found;
 }
