@@ -21,6 +21,7 @@ struct RunRequest {
     std::optional<std::int64_t> stop_after_failures;  ///< start nothing more after so many
     std::optional<campaign::Outcome> again;           ///< ask again what ended like this
     std::optional<std::int64_t> max_cases;            ///< settle at most so many
+    std::optional<std::int64_t> points;               ///< of the design, in place of the file's
     std::string adopt;  ///< campaign whose answers are taken over from an earlier version of the program; empty: none
     /// Not empty: nothing is computed; the folder that tasks of `work` share says what is asked, and their answers are
     /// put into the database.

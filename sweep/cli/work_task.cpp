@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <string_view>
 
@@ -137,12 +138,14 @@ WorkReport work_on(const WorkRequest& request) {
     files::ArtefactFolder artefacts(spool.artefacts());
     workers::stage_campaign(campaign, artefacts);
     spool::Task::Watchers watchers;
-    watchers.progress = [&](const spool::Task::Tally& tally) {
+    watchers.progress = [&, began = std::chrono::steady_clock::now()](const spool::Task::Tally& tally) {
         schedule::Progress progress;
         progress.tally.questions = tally.cases;
         progress.tally.decided = tally.answered;
         progress.tally.settled_now = progress.durable = tally.computed;
-        progress.to_go = tally.cases - tally.answered;
+        progress.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        progress.predicted_done = static_cast<double>(tally.computed);  // cases: the others are as long on average
+        progress.predicted_to_go = static_cast<double>(tally.cases - tally.answered);
         line.update(progress);
     };
     watchers.note = [&](const std::string& text) { line.note(text); };

@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double shortest_pause = 1, longest_pause = 1800;  // s
-constexpr double beside_a_run = 100, alone = 2;             // times the processor time of the last page
+constexpr double beside_a_run = 300, alone = 2;             // times the processor time of the last page
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();

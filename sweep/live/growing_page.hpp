@@ -1,7 +1,7 @@
 // The report's data of databases that grow, made anew by a thread of its own.
 //
 // Figures of a campaign (moments, indices, models) take longer than its results come: they are made again when
-// something was committed, but for no more than a hundredth of the time while a run computes.
+// something was committed, but for no more than a three-hundredth of the time while a run computes.
 #pragma once
 
 #include <atomic>
