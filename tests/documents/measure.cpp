@@ -72,8 +72,9 @@ std::vector<Passage> passages_of(const Page& page) {
 }
 
 std::vector<std::string> sentences_of(const std::string& text) {
+    std::istringstream stream(text);
     std::vector<std::string> sentences(1);
-    for (const auto& word : words_in(text)) {
+    for (std::string word; stream >> word;) {
         sentences.back() += (sentences.back().empty() ? "" : " ") + word;
         if (std::string(".!?").find(word.back()) != std::string::npos) sentences.emplace_back();
     }
