@@ -338,7 +338,7 @@ TEST_F(Powders, AnswerTheQuestionOfAnEngineer) {
         EXPECT_EQ(ended.code, 0) << arguments[0] << ": " << ended.err;
         return ended.out;
     };
-    const std::vector<std::string> question = {"window",     "ti.db", "--where",  "mfr >= 0.1",
+    const std::vector<std::string> question = {"window",     "ti.db", "--where",  "tool_force <= 0.01",
                                                "--maximize", "speed", "--format", "json"};
     auto doubled = question;
     doubled.insert(doubled.end(), {"--hold", "surface_energy=0.1 mJ/m2"});
