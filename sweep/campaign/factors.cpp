@@ -120,7 +120,7 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
         } else if (key == "levels") {
             factor.range = read_levels(section, parameter, folder);
         } else if (key == "sample") {
-            sampled.push_back(read_named_column(section, factors.size(), parameter));
+            sampled.push_back(read_named_column(section, factors.size(), parameter, folder));
         } else {
             std::visit([&](auto&& range) { factor.range = std::move(range); },
                        read_distribution(section, key, parameter, folder));

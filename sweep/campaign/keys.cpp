@@ -18,6 +18,7 @@ constexpr Interval counts{1, 1e6};
 constexpr Interval measurable{-1e100, 1e100};  // squares of it, and sums of them, are numbers
 
 constexpr std::array<std::string_view, 4> accuracy_words = {"survey", "fast", "balanced", "reference"};
+constexpr std::array<std::string_view, 2> goal_words = {"mean", "sd"};
 constexpr std::array<std::string_view, 2> scale_words = {"linear", "log"};
 constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
 constexpr std::array<std::string_view, 5> gate_words = {"mean", "sd", "skewness", "g1", "kurtosis"};
@@ -81,7 +82,9 @@ std::span<const Key> campaign_keys() {
          "difference is that of the parameter",
          "[]"},
         {"convergence", Kind::object, "when the statistics are good enough"},
-        {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
+        {"accuracy", Kind::value,
+         "a named set of numerical inputs of the scene: survey, fast, balanced or reference; or an object with the "
+         "error that the answer may have"},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
         {"program", Kind::object, "with \"scene\": \"program\": the command that answers a case"},
         {"machine", Kind::value, "with \"scene\": \"machine\": a machine file beside the campaign file, or its object"},
@@ -110,7 +113,8 @@ std::span<const Key> factor_keys() {
         {"lognormal", Kind::object, "lognormal distribution: median and sigma, the sd of ln x, or ratio, exp(sigma)"},
         {"triangular", Kind::object, "triangular distribution: low, mode, high"},
         {"beta", Kind::object, "beta distribution from low to high: low, high, a, b"},
-        {"sample", Kind::value, "CSV file with values in SI units under the name of the parameter; or file, column"},
+        {"sample", Kind::value,
+         "CSV file with values in SI units under the name of the parameter; or file or powder, column"},
         {"step", Kind::value, "values are multiples of it, counted from 0: a number or a text with a unit"},
         {"whole", Kind::flag, "true: values are whole numbers, as by a step of 1"},
         {"group", Kind::text, "factors of one group move together in saltelli and morris, and have one index"},
@@ -177,7 +181,8 @@ std::span<const Key> beta_keys() {
 
 std::span<const Key> sample_keys() {
     static constexpr auto keys = std::to_array<Key>({
-        needed({"file", Kind::text, "CSV file beside the campaign file, a row per draw"}),
+        {"file", Kind::text, "CSV file beside the campaign file, a row per draw"},
+        {"powder", Kind::text, "or a powder file beside it, whose \"posterior\" is such a CSV file"},
         {"column", Kind::text, "its column; without it the name of the factor"},
     });
     return keys;
@@ -203,6 +208,25 @@ std::span<const Key> convergence_keys() {
          {},
          {4, 1e9}},
         {"stop", Kind::flag, "whether a converged campaign starts no further case", "true"},
+    });
+    return keys;
+}
+
+std::span<const Key> accuracy_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"observable", Kind::word, "a scalar observable of the scene"}),
+        {"gates", Kind::words, "the statistics that are judged", R"(["mean", "sd"])", {}, goal_words},
+        {"tolerance",
+         Kind::number,
+         "largest error against reference, numerics and statistics together, relative, with 95 %",
+         "0.01",
+         {0, 1, true, true}},
+        {"setting",
+         Kind::word,
+         "the setting of most cases; without it a pilot chooses the one that costs least",
+         {},
+         {},
+         accuracy_words},
     });
     return keys;
 }

@@ -42,10 +42,6 @@ const std::vector<ParameterSpec>& powder_parameters() {
     return all;
 }
 
-const ParameterSpec& powder_parameter(std::string_view name) {
-    return *std::ranges::find(powder_parameters(), name, &ParameterSpec::name);
-}
-
 /// Calls visit(name, place) for every value of "material" and "contacts".
 template <class Visit>
 void for_each_property(const Section& top, const Visit& visit) {
@@ -90,6 +86,10 @@ std::string names_in(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+const ParameterSpec& powder_parameter(std::string_view name) {
+    return *std::ranges::find(powder_parameters(), name, &ParameterSpec::name);
+}
 
 std::optional<double> Powder::unit() const {
     if (diameter) return diameter;

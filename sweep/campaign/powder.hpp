@@ -43,6 +43,8 @@ struct Powder {
     [[nodiscard]] std::string sizes_name() const;
 };
 
+/// A key of "material" or "contacts", as the scenes declare it.
+[[nodiscard]] const ParameterSpec& powder_parameter(std::string_view name);
 /// Reads and checks the text of a powder file; `read` gives the contents of files it names. Throws WrongQuestion with
 /// the path and the rule.
 [[nodiscard]] Powder powder_of(std::string text, const std::string& name,

@@ -1,6 +1,7 @@
 // "sample": columns of a CSV file as the distribution of factors.
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
+#include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -86,15 +87,27 @@ std::vector<std::vector<double>> values_in(CsvTable& table, const SampledFile& f
     return values;
 }
 
+/// The posterior of the powder file, from the folder.
+std::string posterior_of(const Cursor& place, const fs::path& folder) {
+    const fs::path posterior = powder_beside(place, folder).posterior;
+    if (posterior.empty())
+        place.refuse("this powder has no \"posterior\", the CSV file that a calibration writes (calibrate --powder)");
+    return posterior.lexically_relative(fs::absolute(folder / ".")).string();
+}
+
 }  // namespace
 
-NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter) {
+NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter,
+                              const fs::path& folder) {
     const Cursor place = section.at("sample");
     if (place.json().is_string()) return {factor, place, place.text(), parameter.name};
-    if (!place.json().is_object()) place.refuse("must be the name of a CSV file, or {\"file\": ..., \"column\": ...}");
+    if (!place.json().is_object())
+        place.refuse("must be the name of a CSV file, or {\"file\": ... or \"powder\": ..., \"column\": ...}");
     const Section named(place, sample_keys());
-    const auto column = named.find("column");
-    return {factor, place, named.at("file").text(), column ? column->text() : parameter.name};
+    const auto column = named.find("column"), file = named.find("file"), powder = named.find("powder");
+    if (file.has_value() == powder.has_value()) place.refuse("needs \"file\" or \"powder\", one of the two");
+    return {factor, place, file ? file->text() : posterior_of(*powder, folder),
+            column ? column->text() : parameter.name};
 }
 
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,

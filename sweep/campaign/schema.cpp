@@ -5,6 +5,8 @@
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/powder.hpp"
+#include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
 
@@ -135,7 +137,9 @@ void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
             if (key.kind == Key::Kind::value) form["properties"][std::string(key.name)]["type"] = value["type"];
     }
     properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
-    properties["sample"]["oneOf"] = {{{"type", "string"}, {"minLength", 1}}, section(sample_keys())};
+    OrderedJson named = section(sample_keys());
+    named["oneOf"] = {{{"required", {"file"}}}, {{"required", {"powder"}}}};
+    properties["sample"]["oneOf"] = {{{"type", "string"}, {"minLength", 1}}, std::move(named)};
 }
 
 /// A factor that is this parameter.
@@ -173,6 +177,16 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
     return schema;
 }
 
+/// A setting by its name, or a goal.
+OrderedJson accuracy_schema(const OrderedJson& offered, const OrderedJson& scalars) {
+    OrderedJson goal = section(accuracy_keys());
+    if (!scalars.empty()) goal["properties"]["observable"]["enum"] = scalars;
+    goal["properties"]["setting"]["enum"] = offered;
+    OrderedJson schema;
+    schema["oneOf"] = {{{"enum", offered}}, goal};
+    return schema;
+}
+
 /// If the campaign asks this scene, then its parameters, scalars and accuracy settings are these.
 OrderedJson scene_rule(const SceneInfo& scene) {
     OrderedJson factors = OrderedJson::array();
@@ -193,7 +207,7 @@ OrderedJson scene_rule(const SceneInfo& scene) {
     then["convergence"]["properties"]["observable"]["enum"] = scalars;
     OrderedJson offered = OrderedJson::array();
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
-    then["accuracy"] = offered.empty() ? OrderedJson(false) : OrderedJson{{"enum", offered}};
+    then["accuracy"] = offered.empty() ? OrderedJson(false) : accuracy_schema(offered, scalars);
     OrderedJson condition;
     condition["properties"]["scene"]["const"] = scene.shown();
     condition["required"] = {"scene"};
@@ -222,6 +236,40 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
             schema["oneOf"] = {{{"required", {option.name}}}, {{"required", {"file"}}}};
         }
     }
+    return schema;
+}
+
+/// Of a powder file: its properties are those that scenes have.
+OrderedJson properties_of_powder(std::span<const Key> keys) {
+    OrderedJson schema = section(keys);
+    for (const auto& key : keys) {
+        auto& property = schema["properties"][std::string(key.name)];
+        property.update(value_schema(powder_parameter(key.name)));
+        property.erase("default");  // what a powder file leaves out stays as the scene has it
+    }
+    return schema;
+}
+
+/// Numbers above 0, or texts with a unit.
+OrderedJson positive_values(std::span<const Key> keys) {
+    OrderedJson schema = section(keys);
+    for (const auto& key : keys)
+        if (key.kind == Key::Kind::value)
+            schema["properties"][std::string(key.name)].update(
+                {{"type", {"number", "string"}}, {"pattern", pattern_of_quantities}, {"exclusiveMinimum", 0}});
+    return schema;
+}
+
+OrderedJson sizes_of_powder() {
+    OrderedJson schema = positive_values(powder_keys::sizes());
+    auto& properties = schema["properties"];
+    properties["lognormal"].update(positive_values(powder_keys::lognormal()));
+    properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
+    properties["rosin_rammler"].update(positive_values(powder_keys::rosin_rammler()));
+    schema["oneOf"] = OrderedJson::array();
+    for (const char* key : {"file", "diameter", "d50", "lognormal", "rosin_rammler"})
+        schema["oneOf"].push_back({{"required", {key}}});
+    for (const char* key : {"d10", "d50", "d90"}) schema["dependentRequired"][key] = {"d10", "d50", "d90"};
     return schema;
 }
 
@@ -278,6 +326,23 @@ std::string pattern_of_reserved_names() {
 
 }  // namespace
 
+std::string powder_schema(int indentation) {
+    OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                          {"title", "grainsweep powder"},
+                          {"description", "material, sizes, contacts; SI units where a number has no unit"}};
+    schema.update(section(powder_keys::top()));
+    auto& properties = schema["properties"];
+    properties["material"].update(properties_of_powder(powder_keys::material()));
+    properties["contacts"].update(properties_of_powder(powder_keys::contacts()));
+    properties["sizes"].update(sizes_of_powder());
+    properties["cut"].update(positive_values(powder_keys::cut()));
+    properties["cut"]["minProperties"] = 1;
+    properties["measured"]["items"] = section(powder_keys::measured());
+    for (const char* key : {"value", "error"})
+        properties["measured"]["items"]["properties"][key]["type"] = {"number", "string"};
+    return schema.dump(indentation);
+}
+
 std::string campaign_schema(int indentation) {
     OrderedJson schema = {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
@@ -295,6 +360,7 @@ std::string campaign_schema(int indentation) {
     properties["factors"]["minItems"] = 1;
     properties["simplex"].update({{"minItems", 2}, {"uniqueItems", true}});
     properties["convergence"].update(section(convergence_keys()));
+    properties["accuracy"]["oneOf"] = {{{"type", "string"}}, section(accuracy_keys())};
     properties["model"].update(section(model_keys()));
     properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});
     properties["calibration"].update(section(calibration_keys()));
@@ -324,7 +390,8 @@ std::string campaign_schema(int indentation) {
     scenes.push_back(program_word);
     schema["allOf"].push_back(defined_scene_rule(program_word, false));
     scenes.push_back(machine_word);
-    schema["allOf"].push_back(defined_scene_rule(machine_word, {{"enum", {"fast", "balanced", "reference"}}}));
+    schema["allOf"].push_back(
+        defined_scene_rule(machine_word, accuracy_schema(OrderedJson::array({"fast", "balanced", "reference"}), {})));
     properties["machine"]["type"] = {"string", "object"};
     properties["scene"]["enum"] = scenes;
     return schema.dump(indentation);

@@ -1,6 +1,7 @@
 // The sections of a campaign file, each read by its own file. Internal to the reader.
 #pragma once
 
+#include "sweep/campaign/accuracy_goal.hpp"
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/cursor.hpp"
 
@@ -13,6 +14,8 @@
 #include <vector>
 
 namespace grainsweep::campaign {
+
+struct Powder;
 
 /// A value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file is
 /// looked for in `folder` and becomes "file:<hash of its contents>:<absolute path>".
@@ -39,7 +42,10 @@ struct NamedColumn {
     std::string file, column;
 };
 /// What the factor's "sample" names, without reading the file.
-[[nodiscard]] NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter);
+[[nodiscard]] NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter,
+                                            const std::filesystem::path& folder);
+/// The powder file that a key names beside the campaign file.
+[[nodiscard]] Powder powder_beside(const Cursor& place, const std::filesystem::path& folder);
 /// Reads the files and gives the factors their columns; those of one file share its rows.
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
                   const std::filesystem::path& folder);
@@ -83,6 +89,14 @@ void check_growing(const Cursor& place, const Campaign& campaign);
 /// A listed row must lie within the declared range of its factor.
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value);
 
+/// One of the scene's scalar observables.
+[[nodiscard]] std::string read_scalar(const Cursor& place, const SceneInfo& scene);
+/// Statistics that are judged, each once.
+[[nodiscard]] std::vector<std::string> read_gates(const Section& section, const std::vector<std::string>& standard);
+/// "accuracy": the setting, or the goal; beside a goal the numerical inputs change no seed.
+std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaign);
+/// Refuses a design whose points are no independent sequences of different cases, and what would stop beside the goal.
+void check_accuracy(const Cursor& place, const Campaign& campaign);
 [[nodiscard]] Convergence read_convergence(const Cursor& place, const Campaign& campaign);
 /// "model": the features, as written; whether they can be evaluated is for report::check_features.
 [[nodiscard]] std::vector<std::string> read_features(const Cursor& place);

@@ -328,11 +328,16 @@ int list_designs(const std::string& name, Format format) {
     return 0;
 }
 
-int print_schema(Format format) {
+int print_schema(const std::string& name, Format format) {
+    const std::vector<std::string> known = {"campaign", "powder"};
+    if (!name.empty() && std::ranges::find(known, name) == known.end())
+        throw campaign::wrong_question("NAME", name, "there are the schemas campaign and powder",
+                                       campaign::nearest_word(name, known));
+    const auto schema = name == "powder" ? campaign::powder_schema : campaign::campaign_schema;
     if (format == Format::csv)
-        report::write(std::cout, store::Table{{"schema"}, {{campaign::campaign_schema()}}}, format);
+        report::write(std::cout, store::Table{{"schema"}, {{schema(2)}}}, format);
     else
-        std::cout << campaign::campaign_schema(format == Format::json ? campaign::on_one_line : 2) << '\n';
+        std::cout << schema(format == Format::json ? campaign::on_one_line : 2) << '\n';
     return 0;
 }
 
@@ -343,7 +348,6 @@ void declare_name(Parser& parser, std::string& name) {
 }  // namespace
 
 std::vector<Command> catalogue_commands() {
-    struct Nothing {};
     return {
         command<std::string>("scenes", "lists the scenes, or the parameters and observables of one scene", declare_name,
                              list_scenes),
@@ -351,9 +355,12 @@ std::vector<Command> catalogue_commands() {
                              "lists the machines that are installed, or the parameters and observables of one machine",
                              declare_name, list_machines),
         command<std::string>("designs", "lists the designs, or the options of one design", declare_name, list_designs),
-        verbatim(command<Nothing>(
-            "schema", "prints the JSON Schema of a campaign file", [](Parser&, Nothing) {},
-            [](Nothing, Format format) { return print_schema(format); })),
+        verbatim(command<std::string>(
+            "schema", "prints the JSON Schema of a campaign file, or of a powder file",
+            [](Parser& parser, std::string& name) {
+                parser.add_option("[NAME]", name, "campaign, the default, or powder");
+            },
+            print_schema)),
     };
 }
 

@@ -4,6 +4,7 @@
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/plan_tables.hpp"
@@ -244,6 +245,11 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
         std::cout << fmt::format("rule       {} on {}, tolerance {}, checked every {} points\n", convergence->rule,
                                  convergence->observable, convergence->tolerance, convergence->block);
     }
+    if (const auto goal = campaign::remarks_in(campaign.text).goal)
+        std::cout << fmt::format(
+            "goal       {} of {} within {:.3g} % of {}; at most the cases above at {}, and pairs\n",
+            campaign::listed(goal->gates), goal->observable, 100 * goal->tolerance, campaign::AccuracyGoal::measure,
+            goal->setting.value_or("the setting that a pilot chooses"));
     if (!campaign.powder.empty()) std::cout << fmt::format("powder     {}\n", campaign.powder);
     for (const auto& [name, value] : campaign::fixed_as_stated(campaign.space)) {
         const auto& unit = scene.find_parameter(name)->unit;

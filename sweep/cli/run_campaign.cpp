@@ -208,8 +208,10 @@ class Run {
 public:
     explicit Run(const RunRequest& request)
         : request_(request),
-          campaign_(request.spool.empty() ? read_with_program(request.config, request.experiment)
-                                          : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
+          campaign_(!request.text.empty() ? parse_with_program(request.text, request.config)
+                    : request.spool.empty()
+                        ? read_with_program(request.config, request.experiment)
+                        : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
           workers_(worker_count(campaign_, request.workers)) {
         if (request.points) ask_points(campaign_, *request.points);
         unfold();

@@ -12,6 +12,7 @@ namespace grainsweep::cli {
 
 struct RunRequest {
     std::filesystem::path config;
+    std::string text;                     ///< in place of the contents of `config`; empty: those
     std::string experiment;               ///< of a calibration over several; empty: the file has one campaign
     bool goes_on = false;                 ///< warnings were printed when this run began
     std::filesystem::path database;       ///< empty: NAME.db in the current folder

@@ -1,6 +1,7 @@
 #include "sweep/cli/work_task.hpp"
 
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
@@ -71,6 +72,10 @@ void refuse_what_follows_from_answers(const campaign::Campaign& campaign, const 
         throw campaign::wrong_question(
             config.string() + ": $", campaign.design,
             "its later points depend on results, which a task of work does not have; use run");
+    if (campaign::remarks_in(campaign.text).goal)
+        throw campaign::wrong_question(config.string() + ": $.accuracy", "",
+                                       "how many cases reach this tolerance depends on results, which a task of work "
+                                       "does not have; use run, or name a setting");
     if (campaign.convergence && campaign.convergence->stop)
         throw campaign::wrong_question(
             config.string() + ": $.convergence.stop", "true",

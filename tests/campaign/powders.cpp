@@ -247,4 +247,111 @@ TEST_F(Powders, AreSpreadFromFilesAndReplayedFromTheDatabaseAlone) {
     EXPECT_THAT(say({"verify", "ti.db"}), HasSubstr("nothing is damaged"));
 }
 
+/// Two conditions that leave a ridge of x1 with x2, at x1 = 0.3 and x2 = 0.6.
+const char* const calibration = R"({"campaign": "cal", "scene": "rehearsal",
+    "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+    "fixed": {"response": "spreading_a", "x4": 0.5, "noise": 0.02},
+    "calibration": {"targets": [{"observable": "y", "value": 0.2555, "error": 0.003, "inputs": {"x3": 0.5}},
+                                {"observable": "y", "value": 0.5093, "error": 0.003, "inputs": {"x3": 0.95}}],
+                    "discrepancy": {"y": 0.001}, "waves": 3, "points_per_wave": 24, "checks": 2}})";
+
+TEST_F(Powders, AreNoiseAsFarAsACalibrationKnowsThem) {
+    folder.write("cal.json", calibration);
+    out({"calibrate", "cal.json", "--quiet"});
+    folder.write("known.json", R"({"powder": "known", "posterior": "cal_posterior.csv"})");
+    folder.write("layer.json", R"({"campaign": "layer", "scene": "rehearsal",
+        "factors": [{"name": "x3", "between": [0.3, 1]},
+                    {"name": "x1", "sample": {"powder": "known.json"}, "role": "noise"},
+                    {"name": "x2", "sample": {"powder": "known.json"}, "role": "noise"}],
+        "fixed": {"response": "spreading_a", "x4": 0.5, "noise": 0.02}, "design": {"kind": "halton", "points": 64}})");
+    EXPECT_THAT(out({"plan", "layer.json"}), HasSubstr("column 1 of 2 of a sample of"));
+    out({"run", "layer.json", "--quiet"});
+    const auto window =
+        json::parse(out({"window", "layer.db", "--where", "y <= 0.4", "--maximize", "x3", "--format", "json"}));
+    const double gap = window["best"]["inputs"]["x3"];
+    EXPECT_GE(window["best"]["probability"].get<double>(), 0.95);
+    EXPECT_GT(gap, 0.55);  // y = 0.4 at 0.697, where the powder is known
+    folder.write("truth.json", json{{"campaign", "truth"},
+                                    {"scene", "rehearsal"},
+                                    {"factors", {{{"name", "x3"}, {"levels", {gap}}}}},
+                                    {"fixed", {{"response", "spreading_a"}, {"x1", 0.3}, {"x2", 0.6}, {"x4", 0.5}}},
+                                    {"design", {{"kind", "lattice"}, {"levels", 1}}}}
+                                   .dump());
+    const auto fresh = json::parse(out({"solve", "truth.json", "--format", "json"}));
+    EXPECT_LE(fresh["scalars"]["y"].get<double>(), 0.4);
+
+    folder.write("known.json", R"({"powder": "known", "material": {"density": 2500}})");
+    const auto refused = ask({"plan", "layer.json"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("$.factors[1].sample.powder: got \"known.json\"; this powder has no "
+                                       "\"posterior\""));
+}
+
+TEST_F(Powders, HaveASchema) {
+    const auto schema = json::parse(out({"schema", "powder"}));
+    const auto& properties = schema["properties"];
+    EXPECT_EQ(schema["required"], json{"powder"});
+    for (const auto& [key, value] : ti64().items()) EXPECT_TRUE(properties.contains(key)) << key;
+    for (const char* object : {"material", "contacts"}) {
+        EXPECT_EQ(properties[object]["additionalProperties"], false);
+        for (const auto& [key, value] : ti64()[object].items())
+            EXPECT_TRUE(properties[object]["properties"].contains(key)) << key;
+    }
+    EXPECT_THAT(properties["contacts"]["properties"]["cohesion_law"]["enum"].dump(), HasSubstr("\"dmt\""));
+    EXPECT_EQ(properties["sizes"]["oneOf"].size(), 5U);
+    const auto refused = ask({"schema", "powdr"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("Did you mean 'powder'?"));
+}
+
+// Where is the layer good with 95 % for the powder as known, what does twice the surface energy do; figure, table; and
+// all of it again from the database alone.
+TEST_F(Powders, AnswerTheQuestionOfAnEngineer) {
+    import_sizes();
+    auto asked = spreading();
+    asked["factors"].push_back(
+        {{"name", "surface_energy"}, {"lognormal", {{"median", "0.05 mJ/m2"}, {"ratio", 1.5}}}, {"role", "noise"}});
+    asked["fixed"].update({{"gap", "120 um"},
+                           {"tool_scale", "0.4 mm"},
+                           {"travel", "32*diameter"},
+                           {"layer_beyond", "12*diameter"},
+                           {"layer_area", "0.55*1.5*gap*(travel + layer_beyond)"}});
+    asked["accuracy"] = "survey";
+    asked["fixed"]["settle_time"] = "5 ms";
+    asked["design"]["points"] = 12;
+    folder.write("ti64.json", [] {
+        auto soft = ti64();
+        soft["material"]["youngs_modulus"] = "1 MPa";
+        return soft.dump();
+    }());
+    auto unknown = asked;
+    unknown["fixed"]["layer_height"] = "60 um";
+    folder.write("ti.json", unknown.dump());
+    EXPECT_THAT(ask({"plan", "ti.json"}).err, HasSubstr("Did you mean 'gap'?"));
+    folder.write("ti.json", asked.dump(1));
+    out({"run", "ti.json", "-j", "2", "--quiet"});
+
+    const Folder empty(in_memory());
+    fs::rename(folder.path() / "ti.db", empty.path() / "ti.db");
+    const auto say = [&](const std::vector<std::string>& arguments) {
+        const auto ended = run_program(arguments, empty.path());
+        EXPECT_EQ(ended.code, 0) << arguments[0] << ": " << ended.err;
+        return ended.out;
+    };
+    const std::vector<std::string> question = {"window",     "ti.db", "--where",  "mfr >= 0.1",
+                                               "--maximize", "speed", "--format", "json"};
+    auto doubled = question;
+    doubled.insert(doubled.end(), {"--hold", "surface_energy=0.1 mJ/m2"});
+    const auto known = json::parse(say(question)), sticky = json::parse(say(doubled));
+    EXPECT_TRUE(known["best"]["inputs"]["surface_energy"].is_null());
+    EXPECT_EQ(sticky["best"]["inputs"]["surface_energy"], 1e-4);
+    say({"figure", "ti.db", "effects", "-o", "effects.pdf", "--width", "85mm"});
+    EXPECT_TRUE(text_of(empty.path() / "effects.pdf").starts_with("%PDF"));
+    say({"query", "ti.db", "SELECT * FROM ti", "--format", "xlsx", "-o", "ti.xlsx"});
+    EXPECT_TRUE(text_of(empty.path() / "ti.xlsx").starts_with("PK"));
+    const auto ids = json::parse(say({"query", "ti.db", "SELECT case_id FROM ti LIMIT 2", "--format", "json"}));
+    for (const auto& row : ids)
+        EXPECT_TRUE(json::parse(say({"replay", "ti.db", row["case_id"], "--format", "json"}))["agrees"]);
+}
+
 }  // namespace grainsweep::tests::powders_test

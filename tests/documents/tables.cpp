@@ -192,6 +192,7 @@ std::string keys_table(const std::string& section) {
                          : section == "target" ? schema["properties"]["calibration"]["properties"]["targets"]["items"]
                          : section == "experiment"
                              ? schema["properties"]["calibration"]["properties"]["experiments"]["additionalProperties"]
+                         : section == "accuracy" ? schema["properties"]["accuracy"]["oneOf"][1]
                          : section == "stop"   ? schema["properties"]["calibration"]["properties"]["stop"]
                                                : schema["properties"][section];
     std::string table = head({"key", "default", "meaning"});
@@ -238,7 +239,7 @@ std::string commands_table() {
     return table;
 }
 
-/// The arguments and options of one command, without those of every command.
+/// The arguments and options of one command, without those of every command, and its example.
 std::string command_table(const std::string& command) {
     std::string table = head({"argument", "meaning"});
     for (auto [name, meaning] : entries_of_help({command}, "Positionals:"))
@@ -246,7 +247,10 @@ std::string command_table(const std::string& command) {
     for (const auto& [name, meaning] : entries_of_help({command}, "Options:"))
         if (name != "-h,--help" && name != "--format FORMAT" && name != "--wide")
             table += row({"`" + name.substr(0, name.find(" REQUIRED")) + "`", meaning});
-    return table == head({"argument", "meaning"}) ? "No arguments.\n" : table;
+    if (table == head({"argument", "meaning"})) table = "No arguments.\n";
+    for (const auto& [example, ignored] : entries_of_help({command}, "Example:"))
+        table += "\nExample: `" + example + "`\n";
+    return table;
 }
 
 std::string generated(const std::string& what) {

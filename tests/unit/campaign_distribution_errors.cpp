@@ -120,12 +120,15 @@ INSTANTIATE_TEST_SUITE_P(
     Samples, WrongDistribution,
     testing::Values(
         Wrong{R"({"name": "x1", "sample": 3})",
-              "$.factors[0].sample: got 3; must be the name of a CSV file, or {\"file\": ..., \"column\": ...}."},
+              "$.factors[0].sample: got 3; must be the name of a CSV file, or {\"file\": ... or \"powder\": ..., "
+              "\"column\": "
+              "...}."},
         Wrong{
             R"({"name": "x1", "sample": [0.1, 0.2]})",
-            "$.factors[0].sample: got [0.1,0.2]; must be the name of a CSV file, or {\"file\": ..., \"column\": ...}."},
+            "$.factors[0].sample: got [0.1,0.2]; must be the name of a CSV file, or {\"file\": ... or \"powder\": ..., "
+            "\"column\": ...}."},
         Wrong{R"({"name": "x1", "sample": {"column": "x2"}})",
-              "$.factors[0].sample: key 'file' is missing: CSV file beside the campaign file, a row per draw."},
+              "$.factors[0].sample: got {\"column\":\"x2\"}; needs \"file\" or \"powder\", one of the two."},
         Wrong{R"({"name": "x1", "sample": "none.csv"})",
               "$.factors[0].sample: got \"none.csv\"; there is no such file beside the campaign file."},
         Wrong{R"({"name": "x3", "sample": "two.csv"})",

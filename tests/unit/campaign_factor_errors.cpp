@@ -90,6 +90,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{ADD2("/factors/0/group", "\"a\"", "/factors/1/group", "\"a\""),
               "factors move in groups in the designs saltelli and morris, not in halton"},
+        Wrong{R"([{"op": "add", "path": "/factors/0/group", "value": "a"}, {"op": "remove", "path": "/factors/3"},
+                  {"op": "remove", "path": "/design"}, {"op": "add", "path": "/calibration", "value": {
+                   "targets": [{"observable": "y", "value": 1, "error": 0.1}], "discrepancy": {"y": 0.1}}}])",
+              "factors move in groups in the designs saltelli and morris, not in calibration"},
         Wrong{ADD2("/factors/0/group", "\"a\"", "/design", R"({"kind": "morris", "trajectories": 4})"),
               "this group has one factor"},
         Wrong{ADD2("/factors/0/group", "\"x2\"", "/design", R"({"kind": "morris", "trajectories": 4})"),

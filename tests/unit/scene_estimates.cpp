@@ -107,6 +107,8 @@ TEST(SceneEstimates, AToolFromAFileDrawsTheWarningOfABar) {
                 testing::Contains("tool thicker than the measured travel"));
     EXPECT_THAT(kinds(with_tool(1e-3), {{"tool", solid(bar(0, 0.5, 0, 40, 200))}}),
                 testing::Contains("size of the tool"));
+    EXPECT_THAT(kinds(with_tool(1e-3), {{"tool", solid(bar(0, 5, 0, 10, 200))}}), testing::ElementsAre("low tool"))
+        << "the layer is 7 mm high before the tool";
 }
 
 TEST(SceneEstimates, AToolOfAWrongUnitIsRefusedWithItsSize) {

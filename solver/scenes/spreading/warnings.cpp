@@ -4,6 +4,7 @@
 #include "solver/geometry/loose_parts.hpp"
 #include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
+#include "solver/scenes/spreading/filling.hpp"
 #include "solver/scenes/spreading/study.hpp"
 
 #include <algorithm>
@@ -76,12 +77,17 @@ void warn_of_layer(std::vector<Warning>& warnings, const Study& s, double layer)
             {"narrow layer", sentence("the layer repeats itself after %.3g of the largest diameters: particles "
                                       "feel their own images below about %.0f",
                                       s.width / largest, narrowest)});
-    const double fall = std::sqrt(2 * layer / s.gravity), settling = static_cast<double>(s.settle_steps) * s.time_step;
-    if (settling < fall)
+    // A collision may turn the whole start velocity upwards: v t - g t^2/2 = -layer.
+    const double thrown = std::numbers::sqrt3 * start_velocity;
+    const double back = (thrown + std::sqrt(thrown * thrown + 2 * s.gravity * layer)) / s.gravity;
+    const double settling = static_cast<double>(s.settle_steps) * s.time_step;
+    if (settling < back)
         warnings.push_back(
-            {"layer still falling", sentence("settle_time of %.3g s ends before a particle has fallen the "
-                                             "height of the layer, in %.3g s",
-                                             settling, fall)});
+            {"layer still falling",
+             sentence("settle_time of %.3g s is too short: particles start with up to %.2g m/s, and those thrown up "
+                      "are back on the bed after %.2g s; later ones fall on the spread layer and raise "
+                      "layer_roughness",
+                      settling, thrown, back)});
 }
 
 /// A corner of the file that is far from its place draws its triangles out to a needle.
@@ -100,8 +106,22 @@ void warn_of_needles(std::vector<Warning>& warnings, const Study& s) {
                          needle->length, needle->width, needle->tip[1])});
 }
 
-void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
-    if (s.tool == Tool::file) warn_of_needles(warnings, s);
+/// What lies above the gap is pushed ahead and slopes at about 30 degrees: h^2/(2 tan 30) = (layer - gap) travel.
+void warn_of_height(std::vector<Warning>& warnings, const Study& s, double layer) {
+    const double heap = layer + std::sqrt(2 * std::numbers::inv_sqrt3 * std::max(layer - s.gap, 0.0) * s.travel);
+    const double top = s.gap + s.surface.high()[2];
+    if (top < heap)
+        warnings.push_back(
+            {"low tool", sentence("the top of the tool is %.3g m over the base, and the powder ahead of it piles up to "
+                                  "about %.3g m: it passes over the tool and falls on the spread layer",
+                                  top, heap)});
+}
+
+void warn_of_tool(std::vector<Warning>& warnings, const Study& s, double layer) {
+    if (s.tool == Tool::file) {
+        warn_of_needles(warnings, s);
+        warn_of_height(warnings, s, layer);
+    }
     const double measured = (1 - measured_from) * s.travel;
     if (s.behind + s.clearance >= measured)
         warnings.push_back(
@@ -146,7 +166,7 @@ std::vector<Warning> warnings_of(const Inputs& inputs, const Files& files) {
     std::vector<Warning> warnings;
     warn_of_gap(warnings, s, layer);
     warn_of_layer(warnings, s, layer);
-    warn_of_tool(warnings, s);
+    warn_of_tool(warnings, s, layer);
     kit::warn_of_rare_sizes(warnings, s.sizes, s.diameter, static_cast<double>(s.particles));
     return warnings;
 }
