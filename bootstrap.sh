@@ -5,12 +5,13 @@
 #   ./bootstrap.sh sanitize               ... build with the sanitizers, run what reads bytes, steps particles or has threads
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
 #   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
+#   ./bootstrap.sh docs                   write the documents as a static site to build/site
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 jobs=$(nproc)
 
 usage() {
-    sed -n '2,7p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
+    sed -n '2,8p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
     exit 2
 }
 
@@ -32,6 +33,7 @@ test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
     sqlite3=/usr/bin/sqlite3 python3=/usr/bin/python3 chromium=/usr/bin/chromium
 )
+docs_packages=(mkdocs=/usr/bin/mkdocs mkdocs-material=/usr/share/mkdocs/themes/material)
 sanitize_packages=(g++-aarch64-linux-gnu=/usr/bin/aarch64-linux-gnu-g++)
 
 present() {  # PACKAGE=FILE[:LIBRARY]
@@ -155,6 +157,19 @@ bench)
             exit 2
         fi
     done
+    ;;
+docs)
+    install_missing "${docs_packages[@]}"
+    pages=$here/build/site_source
+    rm -rf "$pages"
+    mkdir -p "$pages"
+    # What pages link to, in the folders of the repository, so that their links hold.
+    (cd "$here" && cp --parents -r ./*.md docs stats/*.hpp results_schema/*.sql solver/*/{README.md,*.svg} "$pages")
+    # Behind the language of a block stand words for tests/documents: a file's name becomes the block's title.
+    find "$pages" -name '*.md' -exec sed -E -i \
+        -e 's/^```(json) ([^ ]+\.json)\+?$/```\1 title="\2"/' -e 's/^```([a-z]+) [^"]*$/```\1/' {} +
+    quiet "building the site" mkdocs build --strict --clean --config-file "$here/docs/mkdocs.yml"
+    echo "the site is in build/site; to read and search it: python3 -m http.server --directory build/site"
     ;;
 *)
     usage

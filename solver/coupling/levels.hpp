@@ -139,6 +139,11 @@ public:
     void remember(std::size_t p, const Vec3& rate) { rate_[p] = rate; }
     [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
 
+    /// What particle p gives the fluid in this step.
+    [[nodiscard]] Vec3 force(std::size_t p, double vibration) const {
+        return Form::force_on_fluid(sphere_, rate_[p], vibration);
+    }
+
     void save(std::vector<std::byte>& into) const { append_bytes<Vec3>(into, rate_); }
     void restore(std::span<const std::byte>& from) { take_bytes<Vec3>(from, rate_); }
 

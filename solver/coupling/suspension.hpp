@@ -48,8 +48,10 @@ public:
         if (cloud_.size() == 0) return;
         fluid_.midpoint(velocity_, acceleration_);
         const auto& order = order_.of(cloud_, fluid_.grid());
-        const auto gathered = [&](std::size_t /*p*/, const Stencil<Kernel>& at) {
-            return Surroundings{at.gather(velocity_), at.gather(acceleration_), s, {}};
+        const auto gathered = [&]([[maybe_unused]] std::size_t p, const Stencil<Kernel>& at) {
+            Surroundings around{at.gather(velocity_), at.gather(acceleration_), s, {}};
+            if constexpr (requires { Level::subtracts_own_wake; }) level_.subtract(p, middle(p), s, walls_, around);
+            return around;
         };
         const auto moved = [&]([[maybe_unused]] std::size_t p, [[maybe_unused]] const Vec3& before) {
             if constexpr (Level::acts_on_fluid) {

@@ -85,6 +85,10 @@ std::vector<ParameterSpec> parameters() {
         word("source_form",
              "two-way force on the fluid: all that the fluid does to the particles, or the literal -m dV/dt of eq. 9",
              {"force", "eq9"}, {with_particles, two_way}),
+        word("own_wake",
+             "what a particle does to the fluid at its own place: felt as if others had done it, or taken out of the "
+             "fluid it feels",
+             {"kept", "subtracted"}, {with_particles, two_way, {"source_form", Condition::is_word, {"force"}}}),
         word("wall_contact", "a particle meets a wall with its surface or with its centre", {"radius", "centre"},
              {with_particles}),
         real("restitution", "1", "of the rebound from walls", 1, between(0, 1), {with_particles, without_contacts}),

@@ -287,7 +287,10 @@ std::string family_of(const Identity& identity) {
 }
 
 std::string design_line(const Identity& identity) {
-    const auto options = in_one_line(identity.options + identity.extent);
+    std::string stated;  // options without a value have no say: the levels of a lattice whose factors have their own
+    for (const auto& line : lines_of(identity.options + identity.extent))
+        if (!line.ends_with("= ") && !line.ends_with('=')) stated += line + '\n';
+    const auto options = in_one_line(stated);
     return identity.design + (options.empty() ? "" : ": ") + options;
 }
 

@@ -18,6 +18,7 @@ constexpr Interval counts{1, 1e6};
 constexpr Interval measurable{-1e100, 1e100};  // squares of it, and sums of them, are numbers
 
 constexpr std::array<std::string_view, 4> accuracy_words = {"survey", "fast", "balanced", "reference"};
+constexpr std::array<std::string_view, 2> goal_words = {"mean", "sd"};
 constexpr std::array<std::string_view, 2> scale_words = {"linear", "log"};
 constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
 constexpr std::array<std::string_view, 5> gate_words = {"mean", "sd", "skewness", "g1", "kurtosis"};
@@ -81,7 +82,9 @@ std::span<const Key> campaign_keys() {
          "difference is that of the parameter",
          "[]"},
         {"convergence", Kind::object, "when the statistics are good enough"},
-        {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
+        {"accuracy", Kind::value,
+         "a named set of numerical inputs of the scene: survey, fast, balanced or reference; or an object with the "
+         "error that the answer may have"},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
         {"program", Kind::object, "with \"scene\": \"program\": the command that answers a case"},
         {"machine", Kind::value, "with \"scene\": \"machine\": a machine file beside the campaign file, or its object"},
@@ -203,6 +206,25 @@ std::span<const Key> convergence_keys() {
          {},
          {4, 1e9}},
         {"stop", Kind::flag, "whether a converged campaign starts no further case", "true"},
+    });
+    return keys;
+}
+
+std::span<const Key> accuracy_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"observable", Kind::word, "a scalar observable of the scene"}),
+        {"gates", Kind::words, "the statistics that are judged", R"(["mean", "sd"])", {}, goal_words},
+        {"tolerance",
+         Kind::number,
+         "largest error against reference, numerics and statistics together, relative, with 95 %",
+         "0.01",
+         {0, 1, true, true}},
+        {"setting",
+         Kind::word,
+         "the setting of most cases; without it a pilot chooses the one that costs least",
+         {},
+         {},
+         accuracy_words},
     });
     return keys;
 }

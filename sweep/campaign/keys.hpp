@@ -43,6 +43,7 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> beta_keys();
 [[nodiscard]] std::span<const Key> sample_keys();
 [[nodiscard]] std::span<const Key> convergence_keys();
+[[nodiscard]] std::span<const Key> accuracy_keys();
 [[nodiscard]] std::span<const Key> model_keys();
 [[nodiscard]] std::span<const Key> calibration_keys();
 [[nodiscard]] std::span<const Key> experiment_keys();

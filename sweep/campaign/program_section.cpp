@@ -55,6 +55,13 @@ void check_word(const Cursor& place) {
         place.refuse("a word does not begin with 'file:' and has no ' | '");
 }
 
+/// Whether a factor rounds its range to whole numbers.
+bool has_whole_steps(const nlohmann::json& factor) {
+    if (factor.value("whole", nlohmann::json()) == true) return true;
+    const auto step = factor.value("step", nlohmann::json());
+    return step.is_number() && step.get<double>() == std::floor(step.get<double>());
+}
+
 /// The parameters that a campaign gives values to, and what words each takes.
 class Given {
 public:
@@ -72,6 +79,9 @@ public:
         const auto [first, last] = numbers_.equal_range(name);
         for (const auto& place : std::ranges::subrange(first, last) | std::views::values) {
             const auto& value = place.json();
+            if (value.is_array())
+                place.refuse(
+                    fmt::format("'{}' is a whole number: add \"whole\": true, or vary it by \"levels\"", name));
             if (value.is_number() && value.get<double>() != std::floor(value.get<double>()))
                 place.refuse(fmt::format("'{}' is a whole number", name));
         }
@@ -114,7 +124,8 @@ private:
             for (const auto& level : factor["levels"].elements()) add(name, level);
         } else {
             words_.try_emplace(name);
-            if (factor.json().contains("between")) numbers_.emplace(name, factor["between"]);
+            if (factor.json().contains("between") && !has_whole_steps(factor.json()))
+                numbers_.emplace(name, factor["between"]);
         }
     }
     void add_conditions(const Cursor& calibration) {

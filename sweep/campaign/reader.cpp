@@ -78,13 +78,6 @@ std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& fo
     return read_machine(file);
 }
 
-std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
-    std::vector<std::string> offered;
-    for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
-    if (offered.empty()) place.refuse(fmt::format("scene '{}' offers no accuracy settings; leave it out", scene.name));
-    return place.word(offered);
-}
-
 /// "powder": parameters from a powder file, under what the campaign gives itself.
 void use_powder(const Cursor& place, const fs::path& folder, Campaign& campaign) {
     if (is_program(campaign.scene().name))
@@ -193,7 +186,8 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     const Inputs given = fixed_as_stated(space);
     campaign.files = files_beside(document, folder);
     if (const auto powder = top.find("powder")) use_powder(*powder, folder, campaign);
-    if (const auto accuracy = top.find("accuracy")) campaign.accuracy = read_accuracy(*accuracy, *space.scene);
+    const auto accuracy = top.find("accuracy");
+    const auto goal = accuracy ? read_accuracy(*accuracy, campaign) : std::nullopt;
     resolve_accuracy(space, campaign.accuracy);
     check_relevance(top, space, declared, given);
 
@@ -204,6 +198,7 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     check_groups(top.at("factors"), campaign);
     if (simplex) check_simplex(*simplex, campaign);
     check_unfit(campaign);
+    if (goal) check_accuracy(*accuracy, campaign);
     if (const auto model = top.find("model")) campaign.features = read_features(*model);
     if (const auto limits = top.find("limits")) campaign.limits = read_limits(*limits);
     if (const auto execution = top.find("execution")) campaign.execution = read_execution(*execution);
@@ -237,6 +232,13 @@ Campaign read_campaign(const fs::path& file, std::string_view experiment) {
 std::vector<std::string> read_experiment_names(const fs::path& file) {
     const std::string text = read_text(file);
     return asked_in(file, [&] { return experiment_names(parse_json(text)); });
+}
+
+bool states_goal(const fs::path& file) {
+    const std::string text = read_text(file);
+    const Json document = asked_in(file, [&] { return parse_json(text); });
+    const auto accuracy = document.find("accuracy");
+    return document.is_object() && accuracy != document.end() && accuracy->is_object();
 }
 
 }  // namespace grainsweep::campaign

@@ -22,6 +22,9 @@ namespace grainsweep::campaign {
 /// The experiments of a campaign file, ordered by name; empty where it is of one. Throws as read_campaign does.
 [[nodiscard]] std::vector<std::string> read_experiment_names(const std::filesystem::path& file);
 
+/// Whether the campaign file says what its answer may be off by: "accuracy" as an object. Throws as read_campaign does.
+[[nodiscard]] bool states_goal(const std::filesystem::path& file);
+
 /// A value of a parameter as a command line gives it ("0.3", "60 um", "sjkr"), checked as a campaign file's would be.
 /// `where` names the place in messages.
 [[nodiscard]] Value parse_value(const ParameterSpec& parameter, std::string_view word,

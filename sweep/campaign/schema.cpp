@@ -173,6 +173,16 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
     return schema;
 }
 
+/// A setting by its name, or a goal.
+OrderedJson accuracy_schema(const OrderedJson& offered, const OrderedJson& scalars) {
+    OrderedJson goal = section(accuracy_keys());
+    if (!scalars.empty()) goal["properties"]["observable"]["enum"] = scalars;
+    goal["properties"]["setting"]["enum"] = offered;
+    OrderedJson schema;
+    schema["oneOf"] = {{{"enum", offered}}, goal};
+    return schema;
+}
+
 /// If the campaign asks this scene, then its parameters, scalars and accuracy settings are these.
 OrderedJson scene_rule(const SceneInfo& scene) {
     OrderedJson factors = OrderedJson::array();
@@ -193,7 +203,7 @@ OrderedJson scene_rule(const SceneInfo& scene) {
     then["convergence"]["properties"]["observable"]["enum"] = scalars;
     OrderedJson offered = OrderedJson::array();
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
-    then["accuracy"] = offered.empty() ? OrderedJson(false) : OrderedJson{{"enum", offered}};
+    then["accuracy"] = offered.empty() ? OrderedJson(false) : accuracy_schema(offered, scalars);
     OrderedJson condition;
     condition["properties"]["scene"]["const"] = scene.shown();
     condition["required"] = {"scene"};
@@ -295,6 +305,7 @@ std::string campaign_schema(int indentation) {
     properties["factors"]["minItems"] = 1;
     properties["simplex"].update({{"minItems", 2}, {"uniqueItems", true}});
     properties["convergence"].update(section(convergence_keys()));
+    properties["accuracy"]["oneOf"] = {{{"type", "string"}}, section(accuracy_keys())};
     properties["model"].update(section(model_keys()));
     properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});
     properties["calibration"].update(section(calibration_keys()));
@@ -324,7 +335,8 @@ std::string campaign_schema(int indentation) {
     scenes.push_back(program_word);
     schema["allOf"].push_back(defined_scene_rule(program_word, false));
     scenes.push_back(machine_word);
-    schema["allOf"].push_back(defined_scene_rule(machine_word, {{"enum", {"fast", "balanced", "reference"}}}));
+    schema["allOf"].push_back(
+        defined_scene_rule(machine_word, accuracy_schema(OrderedJson::array({"fast", "balanced", "reference"}), {})));
     properties["machine"]["type"] = {"string", "object"};
     properties["scene"]["enum"] = scenes;
     return schema.dump(indentation);

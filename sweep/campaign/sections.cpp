@@ -1,4 +1,4 @@
-// "convergence", "model", "limits" and "execution".
+// "accuracy", "convergence", "model", "limits" and "execution".
 #include "sweep/campaign/sections.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
@@ -6,13 +6,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
 
-namespace {
-
-std::string read_observable(const Cursor& place, const SceneInfo& scene) {
+std::string read_scalar(const Cursor& place, const SceneInfo& scene) {
     std::vector<std::string> scalars;
     for (const auto& observable : scene.observables) {
         if (observable.shape == Shape::scalar) scalars.push_back(observable.name);
@@ -24,6 +23,19 @@ std::string read_observable(const Cursor& place, const SceneInfo& scene) {
     }
     return place.word(scalars);
 }
+
+std::vector<std::string> read_gates(const Section& section, const std::vector<std::string>& standard) {
+    auto gates = section.words("gates", standard);
+    if (gates.empty()) section.at("gates").refuse("at least one statistic must be judged");
+    for (std::size_t k = 0; k < gates.size(); ++k) {
+        const auto earlier = std::span(gates).first(k);
+        if (std::ranges::find(earlier, gates[k]) != earlier.end())
+            section.at("gates")[k].refuse("this statistic is there twice");
+    }
+    return gates;
+}
+
+namespace {
 
 void check_rule(const Section& section, const Convergence& convergence, const Campaign& campaign) {
     const std::string path = path_of(section.place().path(), "rule");
@@ -74,24 +86,82 @@ std::optional<double> read_time_limit(const Section& section, std::string_view k
     return unless_zero(seconds);
 }
 
+/// Points of a sequence at the first check.
+constexpr std::int64_t fewest_rounds = 8;
+
+AccuracyGoal read_goal(const Cursor& place, const SceneInfo& scene, const std::vector<std::string>& offered) {
+    const Section section(place, accuracy_keys());
+    if (!scene.accuracy.contains(AccuracyGoal::measure))
+        place.refuse(
+            fmt::format("scene '{}' has no setting '{}' to compare with", scene.shown(), AccuracyGoal::measure));
+    AccuracyGoal goal;
+    goal.observable = read_scalar(section.at("observable"), scene);
+    goal.gates = read_gates(section, goal.gates);
+    goal.tolerance = section.number("tolerance", goal.tolerance);
+    if (const auto setting = section.find("setting")) goal.setting = setting->word(offered);
+    return goal;
+}
+
+/// Whether two points may be one case.
+bool may_repeat(const Factor& factor) {
+    const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
+    return factor.step || !factor.when.empty() ||
+           (distribution != nullptr && std::holds_alternative<stats::SampleColumn>(distribution->form()));
+}
+
 }  // namespace
+
+std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaign) {
+    const auto& scene = campaign.scene();
+    std::vector<std::string> offered;
+    for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
+    if (offered.empty()) place.refuse(fmt::format("scene '{}' offers no accuracy settings; leave it out", scene.name));
+    if (!place.json().is_object()) {
+        campaign.accuracy = place.word(offered);
+        return std::nullopt;
+    }
+    auto goal = read_goal(place, scene, offered);
+    campaign.accuracy = goal.setting.value_or("");
+    std::set<std::string> common(campaign.common_random_numbers.begin(), campaign.common_random_numbers.end());
+    for (const auto& [setting, inputs] : scene.accuracy)
+        for (const auto& [name, value] : inputs) common.insert(name);
+    campaign.common_random_numbers.assign(common.begin(), common.end());
+    return goal;
+}
+
+void check_accuracy(const Cursor& place, const Campaign& campaign) {
+    if (campaign.convergence)
+        throw wrong_question("$.convergence", "",
+                             "beside an \"accuracy\" with a tolerance it has no effect: leave one of them out");
+    if (campaign.replicates != 1)
+        throw wrong_question("$.replicates", std::to_string(campaign.replicates),
+                             "an \"accuracy\" with a tolerance needs one run of each point: leave it out");
+    const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
+    if (sequences < stats::fewest_sequences || candidates_of(campaign) < fewest_rounds * sequences)
+        throw wrong_question("$.design", campaign.design,
+                             fmt::format("an \"accuracy\" with a tolerance needs a halton or sobol design with "
+                                         "\"scramble\": \"random\", \"sequences\" of at least {} (8 is good) and at "
+                                         "least {} points for each",
+                                         stats::fewest_sequences, fewest_rounds));
+    const auto& factors = campaign.space.factors;
+    for (const auto& factor : factors)
+        if (may_repeat(factor))
+            throw wrong_question("$.factors", factor.name,
+                                 "an \"accuracy\" with a tolerance needs different cases at all points: give the "
+                                 "factor a range without 'step', 'whole' or 'when'");
+    if (std::ranges::all_of(factors, [](const Factor& f) { return std::holds_alternative<Levels>(f.range); }))
+        place.refuse("it needs a factor with a range: factors with levels alone repeat their cases");
+}
 
 Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
     const Section section(place, convergence_keys());
     Convergence convergence;
-    convergence.observable = read_observable(section.at("observable"), campaign.scene());
+    convergence.observable = read_scalar(section.at("observable"), campaign.scene());
     convergence.rule = section.word("rule", convergence.rule);
-    convergence.gates = section.words("gates", convergence.gates);
     convergence.tolerance = section.number("tolerance", convergence.tolerance);
     convergence.block = section.whole("block", convergence.block);
     convergence.stop = section.flag("stop", convergence.stop);
-    if (convergence.gates.empty()) section.at("gates").refuse("at least one statistic must be judged");
-    for (std::size_t k = 0; k < convergence.gates.size(); ++k) {
-        const auto earlier = std::span(convergence.gates).first(k);
-        if (std::ranges::find(earlier, convergence.gates[k]) != earlier.end()) {
-            section.at("gates")[k].refuse("this statistic is there twice");
-        }
-    }
+    convergence.gates = read_gates(section, convergence.gates);
     check_rule(section, convergence, campaign);
     for (std::size_t k = 0; k < convergence.gates.size(); ++k) {
         if (convergence.traits().of_model && convergence.gates[k] == "skewness")

@@ -1,6 +1,7 @@
 // The sections of a campaign file, each read by its own file. Internal to the reader.
 #pragma once
 
+#include "sweep/campaign/accuracy_goal.hpp"
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/cursor.hpp"
 
@@ -83,6 +84,14 @@ void check_growing(const Cursor& place, const Campaign& campaign);
 /// A listed row must lie within the declared range of its factor.
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value);
 
+/// One of the scene's scalar observables.
+[[nodiscard]] std::string read_scalar(const Cursor& place, const SceneInfo& scene);
+/// Statistics that are judged, each once.
+[[nodiscard]] std::vector<std::string> read_gates(const Section& section, const std::vector<std::string>& standard);
+/// "accuracy": the setting, or the goal; beside a goal the numerical inputs change no seed.
+std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaign);
+/// Refuses a design whose points are no independent sequences of different cases, and what would stop beside the goal.
+void check_accuracy(const Cursor& place, const Campaign& campaign);
 [[nodiscard]] Convergence read_convergence(const Cursor& place, const Campaign& campaign);
 /// "model": the features, as written; whether they can be evaluated is for report::check_features.
 [[nodiscard]] std::vector<std::string> read_features(const Cursor& place);

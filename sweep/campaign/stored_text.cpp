@@ -51,6 +51,17 @@ std::vector<std::string> noise_in(const Json& document) {
     return names;
 }
 
+std::optional<AccuracyGoal> goal_in(const Json& document) {
+    const auto found = document.find("accuracy");
+    if (found == document.end() || !found->is_object() || !found->contains("observable")) return std::nullopt;
+    AccuracyGoal goal;
+    goal.observable = (*found)["observable"].get<std::string>();
+    goal.gates = found->value("gates", goal.gates);
+    goal.tolerance = found->value("tolerance", goal.tolerance);
+    if (found->contains("setting")) goal.setting = (*found)["setting"].get<std::string>();
+    return goal;
+}
+
 /// A calibration's conditions as factors with levels, in the order in which its reader meets them.
 void append_conditions(Json& factors, const Json& calibration) {
     const auto targets = calibration.find("targets");
@@ -75,7 +86,7 @@ void append_conditions(Json& factors, const Json& calibration) {
 Remarks remarks_in(std::string_view campaign_file) {
     const Json document = document_in(campaign_file);
     if (!document.is_object()) return {};
-    Remarks remarks{notes_in(document), std::nullopt, features_in(document), noise_in(document)};
+    Remarks remarks{notes_in(document), std::nullopt, features_in(document), noise_in(document), goal_in(document)};
     const auto limits = document.find("limits");
     if (limits == document.end() || !limits->is_object()) return remarks;
     const auto attempts = limits->find("attempts");
@@ -103,6 +114,9 @@ nlohmann::ordered_json begun(const Json& document, std::string_view name, std::s
     for (const char* key : {"scene", "program", "machine", "factors", "simplex", "fixed", "where", "accuracy",
                             "common_random_numbers", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
+    // Of a goal the setting alone: it needs a design of its own.
+    if (const auto goal = goal_in(document)) text.erase("accuracy");
+    if (const auto goal = goal_in(document); goal && goal->setting) text["accuracy"] = *goal->setting;
     return text;
 }
 
@@ -110,6 +124,14 @@ Json document_of_campaign(std::string_view campaign_file) {
     Json document = document_in(campaign_file);
     if (!document.is_object()) throw std::invalid_argument("further points: the text is no campaign file");
     return document;
+}
+
+/// Parameters that change no seed in the file, and these.
+std::vector<std::string> common_with(const Json& document, std::span<const std::string> numerical) {
+    std::vector<std::string> common = document.value("common_random_numbers", std::vector<std::string>());
+    for (const auto& name : numerical)
+        if (std::ranges::count(common, name) == 0) common.push_back(name);
+    return common;
 }
 
 }  // namespace
@@ -137,12 +159,22 @@ std::string with_other_numerics(std::string_view campaign_file, const OtherNumer
     text["accuracy"] = numerics.accuracy;
     for (const auto& [name, value] : numerics.fixed)
         std::visit([&](const auto& plain) { text["fixed"][name] = plain; }, value);
-    std::vector<std::string> common = document.value("common_random_numbers", std::vector<std::string>());
-    for (const auto& name : numerics.numerical)
-        if (std::ranges::count(common, name) == 0) common.push_back(name);
-    text["common_random_numbers"] = common;
+    text["common_random_numbers"] = common_with(document, numerics.numerical);
     if (document.contains("seed")) text["seed"] = document["seed"];
     text["design"] = list_design(rows);
+    return text.dump(2) + '\n';
+}
+
+std::string at_setting(std::string_view campaign_file, const AtSetting& at) {
+    const Json document = document_of_campaign(campaign_file);
+    auto text = nlohmann::ordered_json::parse(campaign_file);
+    text["campaign"] = at.name;
+    if (at.keeps_goal)
+        text["accuracy"]["setting"] = at.setting;
+    else
+        text["accuracy"] = at.setting;
+    text["common_random_numbers"] = common_with(document, at.numerical);
+    text["design"]["points"] = at.points;
     return text.dump(2) + '\n';
 }
 

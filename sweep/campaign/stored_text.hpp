@@ -1,6 +1,7 @@
 // Texts that an archive keeps as they are and does not interpret: the campaign file, and an attempt's seconds by phase.
 #pragma once
 
+#include "sweep/campaign/accuracy_goal.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/identity.hpp"
 
@@ -19,6 +20,7 @@ struct Remarks {
     std::optional<std::int64_t> attempts;  ///< limits.attempts, where it says so
     std::vector<std::string> features;     ///< model.features; empty: it says nothing of them
     std::vector<std::string> noise;        ///< factors with "role": "noise"
+    std::optional<AccuracyGoal> goal;      ///< "accuracy" as an object
 };
 /// Of a campaign file that was read and stored by this program or an older one; empty where it is none.
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);
@@ -41,6 +43,17 @@ struct OtherNumerics {
 /// and one replicate. Throws std::invalid_argument for a text that is no campaign file.
 [[nodiscard]] std::string with_other_numerics(std::string_view campaign_file, const OtherNumerics& numerics,
                                               std::span<const std::vector<Value>> rows);
+
+/// The same question at one setting of the numerics, over the first points of the design.
+struct AtSetting {
+    std::string name, setting;
+    std::int64_t points = 0;
+    std::vector<std::string> numerical = {};  ///< inputs that change no seed
+    bool keeps_goal = false;                  ///< its "accuracy" stays an object, with this setting
+};
+/// A campaign file that asks so what another asks whose design has "points" for its extent. Throws
+/// std::invalid_argument for a text that is no campaign file.
+[[nodiscard]] std::string at_setting(std::string_view campaign_file, const AtSetting& at);
 
 /// The campaign file of a calibration's experiment as one of that experiment alone; any other text as it is.
 [[nodiscard]] std::string text_of_experiment(std::string_view campaign_file, const Identity& campaign);

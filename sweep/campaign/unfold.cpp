@@ -205,7 +205,7 @@ private:
             }
         }
         for (std::size_t k = 0; k < counts.size(); ++k)
-            if (counts[k] == 0) refuse_unused(space_.when[k].factor);
+            if (counts[k] == 0 && points_.rows.empty()) refuse_unused(space_.when[k].factor);
         unused_ = std::move(unused);
     }
     [[nodiscard]] std::size_t number_of(const std::string& factor) const {

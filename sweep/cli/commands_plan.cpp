@@ -4,9 +4,11 @@
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/stated_distribution.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/plan_tables.hpp"
+#include "sweep/cli/probe.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/store/campaign_name.hpp"
@@ -17,11 +19,8 @@
 #include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -54,81 +53,6 @@ std::string option_text(const designs::OptionValue& value) {
     if (const auto* rows = std::get_if<designs::Rows>(&value)) return fmt::format("({} of them)", rows->size());
     if (const auto* word = std::get_if<std::string>(&value)) return *word;
     return option_json(value).text();
-}
-
-/// Bars of the probability in equal parts of the range, the highest full.
-std::string density_text(const stats::Distribution& distribution) {
-    constexpr std::array<std::string_view, 9> bars = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-    constexpr std::size_t parts = 16;
-    const auto [low, high] = distribution.range();
-    std::array<double, parts> shares{};
-    double before = distribution.cumulative(low), highest = 0;
-    for (std::size_t k = 0; k < parts; ++k) {
-        const double upto = k + 1 == parts
-                                ? distribution.cumulative(high)
-                                : distribution.cumulative(std::lerp(low, high, static_cast<double>(k + 1) / parts));
-        shares[k] = upto - before;
-        before = upto;
-        highest = std::max(highest, shares[k]);
-    }
-    std::string text;
-    for (const double share : shares)
-        text += bars[share > 0 ? static_cast<std::size_t>(std::ceil(8 * share / highest)) : 0];
-    return "|" + text + "|";
-}
-
-/// "multiples of 0.5, when tool = 'roller'".
-std::string factor_rules(const campaign::Factor& factor) {
-    std::vector<std::string> rules;
-    if (factor.step) rules.push_back(fmt::format("multiples of {}", campaign::shortest(*factor.step)));
-    if (factor.share) rules.emplace_back("share");
-    if (!factor.group.empty()) rules.push_back("group " + factor.group);
-    if (!factor.when.empty()) rules.push_back("when " + factor.when);
-    return fmt::format("{}", fmt::join(rules, ", "));
-}
-
-/// A column for what factors say beside their values, where one does.
-void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors) {
-    if (std::ranges::all_of(factors, [](const auto& factor) { return factor_rules(factor).empty(); })) return;
-    table.columns.emplace_back("rules");
-    for (std::size_t j = 0; j < factors.size(); ++j) table.rows[j].emplace_back(factor_rules(factors[j]));
-}
-
-store::Table factors_of(const Campaign& campaign) {
-    store::Table table{{"factor", "unit", "low", "high", "scale", "levels"}, {}};
-    for (const auto& factor : campaign.space.factors) {
-        const Cell unit = campaign.scene().find_parameter(factor.name)->unit;
-        if (const auto* range = std::get_if<campaign::Between>(&factor.range)) {
-            const std::string scale = range->scale == campaign::Scale::log ? "log" : "linear";
-            table.rows.push_back({factor.name, unit, range->low, range->high, scale, Cell{}});
-        } else if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range)) {
-            const auto [low, high] = distribution->range();
-            table.rows.push_back({factor.name, unit, low, high, campaign::described(*distribution), Cell{}});
-        } else {
-            std::string levels;
-            for (const auto& level : std::get<campaign::Levels>(factor.range).values) {
-                levels += (levels.empty() ? "" : ", ") + campaign::to_text(level);
-            }
-            table.rows.push_back({factor.name, unit, Cell{}, Cell{}, Cell{}, levels});
-        }
-    }
-    add_rules(table, campaign.space.factors);
-    return table;
-}
-
-/// Quantiles of the factors that follow a distribution, its density as a row of signs over the range, and what the
-/// bounds of the parameter cut off; no rows where none does.
-store::Table distributions_of(const Campaign& campaign) {
-    store::Table table{{"factor", "cut %", "5 %", "50 %", "95 %", "low to high"}, {}};
-    for (const auto& factor : campaign.space.factors) {
-        const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
-        if (distribution == nullptr) continue;
-        std::vector<Cell> row = {factor.name, 100 * distribution->cut()};
-        for (const double u : {0.05, 0.5, 0.95}) row.emplace_back(distribution->quantile(u));
-        row.emplace_back(density_text(*distribution));
-        table.rows.push_back(std::move(row));
-    }
-    return table;
 }
 
 /// One row per placed case: where it stands, what it is, its factors.
@@ -173,11 +97,13 @@ struct Outlook {
     std::string database;                         ///< that has the campaign already; empty: none
     std::optional<store::CampaignRecord> stored;  ///< as it stands there, with what is asked now
     std::int64_t finished = 0;                    ///< of the cases, in the database
+    double left_seconds = 0;                      ///< of one plain core, for the others
+    std::optional<Probe> probe;                   ///< measured; the predictions are scaled by it
 };
 
 /// The design and, where `archive` is there, what it has of it. Factors take the order in which they are stored, as
 /// they do in a run.
-Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
+Outlook outlook_of(Campaign& campaign, const store::Store* archive, bool probes) {
     store::check_campaign_name(campaign.name);
     study::check_features(campaign);
     if (archive != nullptr) campaign::reorder_factors(campaign, archive->factor_order(campaign.name));
@@ -186,15 +112,22 @@ Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
     outlook.cost = campaign::forecast(campaign.scene(), outlook.cases, workers::memory_room(campaign));
     outlook.candidates = campaign::candidates_of(campaign);
     outlook.warnings = campaign::warnings_of(campaign, outlook.cost);
+    if (archive != nullptr) outlook.finished = archive->settled(outlook.cases);
+    std::vector<bool> settled(outlook.cases.size());
+    for (std::size_t i = 0; outlook.finished > 0 && i < settled.size(); ++i)
+        settled[i] = outlook.cases.is_first(i) && archive->is_settled(outlook.cases.id(i));
+    if (probes) outlook.probe = probe_median_case(campaign, outlook.cases, outlook.cost, settled);
+    if (outlook.probe) scale_by(*outlook.probe, outlook.cost);
+    for (std::size_t i = 0; i < settled.size(); ++i)
+        if (!settled[i] && outlook.cases.is_first(i)) outlook.left_seconds += outlook.cost.seconds[i];
     if (archive == nullptr) return outlook;
-    outlook.finished = archive->settled(outlook.cases);
     outlook.stored = archive->stored(campaign);
     if (outlook.stored) outlook.stored->asked = {outlook.candidates, campaign.replicates};
     return outlook;
 }
 
 Json plan_json(const Campaign& campaign, const Outlook& outlook) {
-    const auto& [cases, cost, candidates, warnings, database, stored, finished] = outlook;
+    const auto& [cases, cost, candidates, warnings, database, stored, finished, left_seconds, probe] = outlook;
     Json design = {{"kind", campaign.design}}, already;
     for (const auto& [name, value] : campaign.request.options) design.add(name, option_json(value));
     if (stored)
@@ -222,6 +155,8 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
                  {"impossible", cost.impossible},
                  {"predicted_seconds", cost.total_seconds},
                  {"longest_seconds", cost.longest_seconds},
+                 {"left_seconds", left_seconds},
+                 {"probe", probe ? probe_json(*probe) : Json()},
                  {"all_waves_seconds", course ? Json(course->seconds) : Json()},
                  {"largest_bytes", cost.largest_bytes},
                  {"threads", campaign::is_program(campaign.scene().name) ? Json()
@@ -262,10 +197,6 @@ std::string threads_text(const Campaign& campaign) {
     return fmt::format("{} per case", *campaign.execution.threads);
 }
 
-std::string seconds_text(double seconds) {
-    return seconds < 60 ? fmt::format("{:.2g} s", seconds) : duration(seconds);
-}
-
 void show_plan(const Campaign& campaign, const Outlook& outlook) {
     const auto& cost = outlook.cost;
     const Cases& cases = outlook.cases;
@@ -294,13 +225,17 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     if (course)
         std::cout << fmt::format("all waves  {} on one core at most: {} waves of {} settings, {} checks\n",
                                  seconds_text(course->seconds), course->waves, course->points_per_wave, course->checks);
+    if (outlook.probe) std::cout << fmt::format("probe      {}\n", probe_text(*outlook.probe));
     if (cost.largest_bytes >= memory_worth_a_line)
         std::cout << fmt::format("memory     {:.2g} GB for the largest case; {:.2g} GB are available\n",
                                  1e-9 * cost.largest_bytes, 1e-9 * workers::memory_room());
     if (const auto threads = threads_text(campaign); !threads.empty())
         std::cout << fmt::format("threads    {}\n", threads);
     if (!outlook.database.empty())
-        std::cout << fmt::format("finished   {} of {} in {}\n", outlook.finished, cost.places, outlook.database);
+        std::cout << fmt::format("finished   {} of {} in {}{}\n", outlook.finished, cost.places, outlook.database,
+                                 outlook.left_seconds > 0 ? fmt::format("; the others take {} on one core",
+                                                                        seconds_text(outlook.left_seconds))
+                                                          : "");
     if (outlook.stored) {
         if (const auto note = study::extent_note(*outlook.stored); !note.empty())
             std::cout << fmt::format("stored     {}\n", note);
@@ -310,6 +245,11 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
         std::cout << fmt::format("rule       {} on {}, tolerance {}, checked every {} points\n", convergence->rule,
                                  convergence->observable, convergence->tolerance, convergence->block);
     }
+    if (const auto goal = campaign::remarks_in(campaign.text).goal)
+        std::cout << fmt::format(
+            "goal       {} of {} within {:.3g} % of {}; at most the cases above at {}, and pairs\n",
+            campaign::listed(goal->gates), goal->observable, 100 * goal->tolerance, campaign::AccuracyGoal::measure,
+            goal->setting.value_or("the setting that a pilot chooses"));
     if (!campaign.powder.empty()) std::cout << fmt::format("powder     {}\n", campaign.powder);
     for (const auto& [name, value] : campaign::fixed_as_stated(campaign.space)) {
         const auto& unit = scene.find_parameter(name)->unit;
@@ -333,6 +273,7 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
 
 struct PlanRequest {
     std::string config, database;
+    bool probe = false;
 };
 
 /// Returns the seconds of all waves; 0 where the campaign is no calibration.
@@ -344,7 +285,8 @@ double plan_one(const PlanRequest& request, std::string_view experiment, Format 
     std::optional<store::Store> archive;
     if (database.empty() && std::filesystem::exists(file)) database = file;
     if (!database.empty()) archive.emplace(database, store::Store::Mode::read);
-    auto outlook = campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr); });
+    auto outlook =
+        campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr, request.probe); });
     outlook.database = database;
     if (format == Format::text) show_plan(campaign, outlook);
     if (format == Format::json) write_json(campaign, outlook);
@@ -379,6 +321,8 @@ std::vector<Command> plan_commands() {
         parser.add_option("--db FILE", request.database,
                           "database of the campaign, whose finished cases are counted; default: NAME.db in the current "
                           "folder, if it exists");
+        parser.add_flag("--probe", request.probe,
+                        "runs the case of median predicted cost and scales the prediction by what it took");
     };
     return {command<PlanRequest>("plan", "checks a campaign file; shows the design and the predicted cost", arguments,
                                  plan)};

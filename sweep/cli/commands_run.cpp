@@ -75,6 +75,10 @@ void declare_run(Parser& parser, RunArguments& request) {
                       "take over the answers of a campaign whose program differs only in the contents of its files");
     parser.add_option("--max-cases N", request.max_cases, "finish at most N cases in this run; 0: all")
         ->check(whole_number(0));
+    parser
+        .add_option("--points N", request.points,
+                    "points of the design in place of the file's; a design that extends keeps its first points")
+        ->check(whole_number(1));
     parser.add_flag("--network-disk", request.network_disk,
                     "allow a database on a network file system; only one node may write it at a time");
     parser.add_flag("--quiet", request.quiet, "print no progress and no tables");

@@ -102,7 +102,7 @@ int serve(const ServeRequest& request, report::Format) {
         if (found == databases || found.empty()) continue;
         databases = std::move(found);
         try {
-            served = std::make_unique<live::Served>(databases, control, token);
+            served = std::make_unique<live::Served>(databases, control, token, served->work());
             server.publish(served->changed());
         } catch (const BrokenWorld& error) {  // of one of them; the others stay on the page as they are
             std::cerr << "grainsweep: " << error.what() << '\n';

@@ -24,7 +24,6 @@ NowWriter::~NowWriter() {
 
 void NowWriter::update(const schedule::Progress& progress) {
     const auto now = Clock::now();
-    const auto seconds = [&](Clock::time_point from) { return std::chrono::duration<double>(now - from).count(); };
     if (now - written_ < std::chrono::seconds(1)) return;
     written_ = now;
     const auto& tally = progress.tally;
@@ -32,13 +31,12 @@ void NowWriter::update(const schedule::Progress& progress) {
     now_.decided = static_cast<std::int64_t>(tally.decided);
     now_.failed = static_cast<std::int64_t>(tally.failed);
     now_.settled = static_cast<std::int64_t>(progress.durable);
-    now_.seconds = seconds(began_);
-    now_.seconds_left = seconds_left(progress, now_.seconds, cores_);
+    now_.seconds = progress.seconds;
+    now_.seconds_left = seconds_left(progress, cores_);
     now_.judgement = progress.judgement;
-    std::erase_if(since_, [&](const auto& one) { return !progress.under_way.contains(one.first); });
     now_.running.clear();
     for (const auto& [id, one] : progress.under_way)
-        now_.running.push_back({id, one.attempt, one.share, seconds(since_.try_emplace(id, now).first->second),
+        now_.running.push_back({id, one.attempt, one.share, progress.seconds - one.given,
                                 one.computer ? one.computer->host : std::string()});
     live::write_now(file_, now_);
 }

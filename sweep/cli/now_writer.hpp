@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <string>
 
 namespace grainsweep::cli {
@@ -28,8 +27,7 @@ private:
     std::filesystem::path file_;
     live::Now now_;
     std::size_t cores_;
-    Clock::time_point began_ = Clock::now(), written_{};
-    std::map<campaign::CaseId, Clock::time_point> since_;  ///< of the cases under way
+    Clock::time_point written_{};
 };
 
 }  // namespace grainsweep::cli

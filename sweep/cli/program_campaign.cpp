@@ -37,6 +37,11 @@ campaign::Campaign read_with_program(const fs::path& config, std::string_view ex
     return with_program(campaign::read_campaign(config, experiment), config);
 }
 
+campaign::Campaign parse_with_program(std::string_view text, const fs::path& config) {
+    auto campaign = campaign::asked_in(config, [&] { return campaign::parse_campaign(text, config.parent_path()); });
+    return with_program(std::move(campaign), config);
+}
+
 StagedProgram::StagedProgram(std::shared_ptr<const campaign::Program> program, fs::path cases)
     : program_(std::move(program)), cases_(std::move(cases)) {
     if (program_ == nullptr) return;

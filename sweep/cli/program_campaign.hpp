@@ -18,6 +18,8 @@ namespace grainsweep::cli {
 /// Reads a campaign file so; `experiment` chooses one of a calibration over several.
 [[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config,
                                                    std::string_view experiment = {});
+/// The same of a text in the place of the file.
+[[nodiscard]] campaign::Campaign parse_with_program(std::string_view text, const std::filesystem::path& config);
 
 /// Puts the program where workers find it, for as long as this lives; then removes what is not kept.
 class StagedProgram {

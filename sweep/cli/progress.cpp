@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace grainsweep::cli {
 namespace {
@@ -68,21 +69,18 @@ std::string duration(double seconds) {
     return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
 }
 
-double seconds_left(const schedule::Progress& progress, double elapsed, std::size_t cores) {
-    const auto& tally = progress.tally;
-    const auto open = static_cast<double>(tally.questions - tally.decided);
-    if (open <= 0) return 0;
-    const double to_go = std::max(0.0, tally.predicted_left) * static_cast<double>(progress.to_go) / open;
-    const double done = tally.predicted_done;
+double seconds_left(const schedule::Progress& progress, std::size_t cores) {
+    const double to_go = progress.predicted_to_go, done = progress.predicted_done;
     const bool telling = done > 0.02 * (done + to_go);
-    return to_go * (telling ? elapsed / done : 1 / static_cast<double>(std::max<std::size_t>(cores, 1)));
+    return to_go * (telling ? progress.seconds / done : 1 / static_cast<double>(std::max<std::size_t>(cores, 1)));
 }
 
-ProgressLine::ProgressLine(bool quiet, std::size_t cores)
+ProgressLine::ProgressLine(bool quiet, std::size_t cores, std::string end)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       coloured_(terminal_ && wants_colour()),
-      cores_(std::max<std::size_t>(cores, 1)) {}
+      cores_(std::max<std::size_t>(cores, 1)),
+      end_(std::move(end)) {}
 
 ProgressLine::~ProgressLine() {
     if (line_open_) show("\n");
@@ -100,7 +98,7 @@ void ProgressLine::update(const schedule::Progress& progress) {
         shown_ = now;
         return;
     }
-    const std::string text = describe(progress, now);
+    const std::string text = describe(progress);
     if (text == last_) return;
     shown_ = now;
     last_ = text;
@@ -143,17 +141,17 @@ std::string ProgressLine::on_terminal(const std::string& text, const schedule::P
     return "[" + painted("32", std::string(full, '#')) + std::string(bar - full, '.') + "] " + line;
 }
 
-std::string ProgressLine::describe(const schedule::Progress& progress, Clock::time_point now) {
+std::string ProgressLine::describe(const schedule::Progress& progress) const {
     const auto& tally = progress.tally;
-    const double elapsed = std::chrono::duration<double>(now - began_).count();
-    const double rate = elapsed > 0 ? static_cast<double>(progress.durable) / elapsed : 0;
-    const double left = seconds_left(progress, elapsed, cores_);
+    const double rate = progress.seconds > 0 ? static_cast<double>(progress.durable) / progress.seconds : 0;
+    const double left = seconds_left(progress, cores_);
 
     auto text = fmt::format("{}/{} cases", tally.decided, tally.questions);
     if (rate > 0) {
         text += rate >= 0.5 ? fmt::format(", {:.3g}/s", rate) : fmt::format(", {:.3g}/min", 60 * rate);
     }
-    if (tally.decided < tally.questions) text += ", " + duration(left) + " left";
+    if (tally.decided < tally.questions)
+        text += fmt::format(", {} left{}{}", duration(left), end_.empty() ? "" : " ", end_);
     if (tally.failed > 0) text += fmt::format(", {} failed", tally.failed);
     if (!progress.judgement.empty()) text += "; " + progress.judgement;
     return text;

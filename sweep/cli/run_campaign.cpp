@@ -190,21 +190,39 @@ void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunReque
                                                    campaign.design));
 }
 
+/// Puts another number of points in the place of the file's.
+void ask_points(campaign::Campaign& campaign, std::int64_t points) {
+    const auto& design = designs::design_named(campaign.design);
+    const auto option = std::ranges::find(design.options, "points", &designs::OptionSpec::name);
+    if (!design.extends || option == design.options.end())
+        throw campaign::wrong_question("--points", std::to_string(points),
+                                       fmt::format("a {} design cannot be extended by points", campaign.design));
+    if (points > option->maximum)
+        throw campaign::wrong_question("--points", std::to_string(points),
+                                       fmt::format("must be at most {}", option->maximum));
+    campaign.request.options["points"] = points;
+}
+
 /// One run: a design that grows takes a round after the other, every other one.
 class Run {
 public:
     explicit Run(const RunRequest& request)
         : request_(request),
-          campaign_(request.spool.empty() ? read_with_program(request.config, request.experiment)
-                                          : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
+          campaign_(!request.text.empty() ? parse_with_program(request.text, request.config)
+                    : request.spool.empty()
+                        ? read_with_program(request.config, request.experiment)
+                        : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
           workers_(worker_count(campaign_, request.workers)) {
+        if (request.points) ask_points(campaign_, *request.points);
         unfold();
         if (!request.spool.empty()) refuse_other_cases(request.spool, placed_);
         database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
         refuse_what_cannot_start(campaign_, request, database_);
         artefacts_ =
             request.artefacts.empty() ? folder_beside(database_, of_artefacts) : fs::absolute(request.artefacts);
-        line_.emplace(request.quiet, workers_ * threads_of_a_case(campaign_));
+        const auto& design = designs::design_named(campaign_.design);
+        const auto* const end = design.calibrates ? "in this wave" : design.grows ? "in this round" : "";
+        line_.emplace(request.quiet, workers_ * threads_of_a_case(campaign_), end);
         if (request.spool.empty()) walltime_ = walltime_of(campaign_);
         store_.emplace(database_, store::Store::Mode::create,
                        request.network_disk ? store::Store::Disk::network : store::Store::Disk::found_out);

@@ -12,6 +12,7 @@ namespace grainsweep::cli {
 
 struct RunRequest {
     std::filesystem::path config;
+    std::string text;                     ///< in place of the contents of `config`; empty: those
     std::string experiment;               ///< of a calibration over several; empty: the file has one campaign
     bool goes_on = false;                 ///< warnings were printed when this run began
     std::filesystem::path database;       ///< empty: NAME.db in the current folder
@@ -20,6 +21,7 @@ struct RunRequest {
     std::optional<std::int64_t> stop_after_failures;  ///< start nothing more after so many
     std::optional<campaign::Outcome> again;           ///< ask again what ended like this
     std::optional<std::int64_t> max_cases;            ///< settle at most so many
+    std::optional<std::int64_t> points;               ///< of the design, in place of the file's
     std::string adopt;  ///< campaign whose answers are taken over from an earlier version of the program; empty: none
     /// Not empty: nothing is computed; the folder that tasks of `work` share says what is asked, and their answers are
     /// put into the database.

@@ -3,6 +3,7 @@
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/run_accurate.hpp"
 #include "sweep/files/aside_file.hpp"
 #include "sweep/study/calibration_files.hpp"
 
@@ -79,6 +80,7 @@ void conclude(RunReport& report, bool powder) {
 }  // namespace
 
 RunReport run_file(const RunRequest& request) {
+    if (request.spool.empty() && campaign::states_goal(request.config)) return run_accurate(request);
     const auto names =
         request.spool.empty() ? campaign::read_experiment_names(request.config) : std::vector<std::string>{};
     auto asked = request;

@@ -1,6 +1,7 @@
 #include "sweep/cli/work_task.hpp"
 
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
@@ -22,6 +23,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <string_view>
 
@@ -70,6 +72,10 @@ void refuse_what_follows_from_answers(const campaign::Campaign& campaign, const 
         throw campaign::wrong_question(
             config.string() + ": $", campaign.design,
             "its later points depend on results, which a task of work does not have; use run");
+    if (campaign::remarks_in(campaign.text).goal)
+        throw campaign::wrong_question(config.string() + ": $.accuracy", "",
+                                       "how many cases reach this tolerance depends on results, which a task of work "
+                                       "does not have; use run, or name a setting");
     if (campaign.convergence && campaign.convergence->stop)
         throw campaign::wrong_question(
             config.string() + ": $.convergence.stop", "true",
@@ -132,12 +138,14 @@ WorkReport work_on(const WorkRequest& request) {
     files::ArtefactFolder artefacts(spool.artefacts());
     workers::stage_campaign(campaign, artefacts);
     spool::Task::Watchers watchers;
-    watchers.progress = [&](const spool::Task::Tally& tally) {
+    watchers.progress = [&, began = std::chrono::steady_clock::now()](const spool::Task::Tally& tally) {
         schedule::Progress progress;
         progress.tally.questions = tally.cases;
         progress.tally.decided = tally.answered;
         progress.tally.settled_now = progress.durable = tally.computed;
-        progress.to_go = tally.cases - tally.answered;
+        progress.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        progress.predicted_done = static_cast<double>(tally.computed);  // cases: the others are as long on average
+        progress.predicted_to_go = static_cast<double>(tally.cases - tally.answered);
         line.update(progress);
     };
     watchers.note = [&](const std::string& text) { line.note(text); };

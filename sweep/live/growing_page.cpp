@@ -16,7 +16,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double shortest_pause = 1, longest_pause = 1800;  // s
-constexpr double beside_a_run = 100, alone = 2;             // times the processor time of the last page
+constexpr double rest = 20, alone = 2;                      // times the processor time of the last page
+// Processor time beside a run, s: at once, and of each second. A short run is followed closely, a long one costs
+// little.
+constexpr double at_once = 0.25, of_a_second = 1.0 / 400;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -44,6 +47,10 @@ GrowingPage::~GrowingPage() = default;
 void GrowingPage::grown(bool computing) {
     const std::lock_guard lock(mutex_);
     grown_ = true;
+    if (computing && !computing_) {
+        run_began_ = Clock::now();
+        spent_ = 0;
+    }
     computing_ = computing;
     wake_.notify_one();
 }
@@ -74,9 +81,10 @@ void GrowingPage::keep_up(const std::stop_token& stop) {
     auto last = Clock::now();
     while (!stop.stop_requested()) {
         if (!wake_.wait(lock, stop, [&] { return grown_; })) return;
-        const double pause =
-            std::clamp((computing_ ? beside_a_run : alone) * last_seconds_, shortest_pause, longest_pause);
-        if (seconds_since(last) < pause) {
+        const double passed = seconds_since(last);
+        const bool dear = computing_ && spent_ + last_seconds_ > at_once + of_a_second * seconds_since(run_began_);
+        if (passed < std::max((computing_ ? rest : alone) * last_seconds_, shortest_pause) ||
+            (dear && passed < longest_pause)) {
             wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return false; });
             continue;
         }
@@ -96,6 +104,7 @@ void GrowingPage::keep_up(const std::stop_token& stop) {
         lock.lock();
         latest_ = std::move(made);
         last_seconds_ = took;
+        spent_ += took;
         last = Clock::now();
     }
 }

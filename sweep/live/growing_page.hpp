@@ -1,10 +1,11 @@
 // The report's data of databases that grow, made anew by a thread of its own.
 //
 // Figures of a campaign (moments, indices, models) take longer than its results come: they are made again when
-// something was committed, but for no more than a hundredth of the time while a run computes.
+// something was committed; while a run computes, for a quarter of a second and a four-hundredth of the time.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -43,7 +44,8 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable_any wake_;
     bool grown_ = false, computing_ = false;
-    double last_seconds_ = 0;
+    double last_seconds_ = 0, spent_ = 0;  ///< processor time of the last page, and of all since the run began
+    std::chrono::steady_clock::time_point run_began_{};
     std::shared_ptr<const PageData> latest_;
     std::jthread thread_;  ///< ends first
 };

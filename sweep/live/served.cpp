@@ -126,12 +126,14 @@ std::string new_token() {
     return drawn_word(16);
 }
 
-Served::Served(const std::vector<fs::path>& databases, std::optional<Control> control, std::string token)
+Served::Served(const std::vector<fs::path>& databases, std::optional<Control> control, std::string token,
+               std::shared_ptr<Work> work)
     : token_(std::move(token)),
       run_(drawn_word(4)),
       followers_(follow(databases)),
       control_(std::move(control)),
-      page_(databases, told_) {
+      page_(databases, told_),
+      work_(std::move(work)) {
     version_ = page_.latest()->version;
 }
 
@@ -208,7 +210,7 @@ HttpReply Served::answer(const HttpQuestion& question) {
         return refused(403, "a page of another origin may not ask this");
     if (acts && path == "/query") return start_query(question);
     if (acts && path == "/film") return start_film(question);
-    if (acts && (path == "/stop" || path == "/run" || path == "/again")) return steer(question);
+    if (acts && (path == "/stop" || path == "/run" || path == "/again" || path == "/more")) return steer(question);
     return asks || acts ? refused(404, "there is no such page") : refused(405, "only GET and POST");
 }
 
@@ -258,8 +260,8 @@ HttpReply Served::start_query(const HttpQuestion& question) {
     if (question.body.empty()) return refused(400, "the question is empty");
     const auto file = fs::absolute(follower->file());
     const auto number =
-        jobs_.start({"query", "--format", "json", "--limit-seconds", "10", "--", file.string(), question.body},
-                    file.parent_path(), of_query);
+        work_->jobs.start({"query", "--format", "json", "--limit-seconds", "10", "--", file.string(), question.body},
+                          file.parent_path(), of_query);
     return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
 }
 
@@ -272,8 +274,8 @@ HttpReply Served::start_film(const HttpQuestion& question) {
     if (fs::exists(film, error)) return json({{"film", true}});
     fs::create_directories(film.parent_path(), error);
     if (error) return refused(500, fmt::format("'{}': {}", film.parent_path().string(), error.message()));
-    const auto number =
-        jobs_.start({"replay", file.string(), std::string(id), "--watch", film.string()}, file.parent_path(), of_film);
+    const auto number = work_->jobs.start({"replay", file.string(), std::string(id), "--watch", film.string()},
+                                          file.parent_path(), of_film);
     return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
 }
 
@@ -291,7 +293,7 @@ HttpReply Served::job(const HttpQuestion& question) {
     const auto word = argument(question, "number");
     std::int64_t number = 0;
     std::from_chars(word.data(), word.data() + word.size(), number);
-    const auto state = jobs_.look_at(number);
+    const auto state = work_->jobs.look_at(number);
     if (!state.known) return refused(404, "there is no such job");
     if (!state.ended) return json({{"running", true}});
     return json({{"code", state.ended->code}, {"out", state.ended->out}, {"err", state.ended->err}});
@@ -310,14 +312,22 @@ HttpReply Served::steer(const HttpQuestion& question) {
             return refused(409, "the run has ended");
         return json({{"stopping", true}});
     }
-    if (now || runner_.running()) return refused(409, "a run is under way; stop it first");
+    if (now || work_->runner.running()) return refused(409, "a run is under way; stop it first");
     std::vector<std::string> arguments = {"run", fs::absolute(control_->config).string(), "--db", file.string()};
     if (question.path == "/again") {
         const auto outcome = argument(question, "outcome");
         if (!campaign::outcome_named(outcome)) return refused(400, "there is no such outcome");
         arguments.insert(arguments.end(), {"--again", std::string(outcome)});
     }
-    if (!runner_.start(arguments, file)) return refused(503, "the run cannot be started");
+    if (question.path == "/more") {
+        const auto points = argument(question, "points");
+        std::int64_t count = 0;
+        const auto [end, error] = std::from_chars(points.data(), points.data() + points.size(), count);
+        if (error != std::errc() || end != points.data() + points.size() || count < 1)
+            return refused(400, "the number of points must be a whole number, at least 1");
+        arguments.insert(arguments.end(), {"--points", std::string(points)});
+    }
+    if (!work_->runner.start(arguments, file)) return refused(503, "the run cannot be started");
     return json({{"started", true}});
 }
 

@@ -10,7 +10,7 @@
 //   POST /film?token=T&database=NAME&case=ID          -> {"job": n}, or {"film": address} where it is there already
 //   GET  /job?token=T&number=n        {"running": true} | {"code", "out", "err"}
 //   GET  /film?token=T&database=NAME&case=ID          the page of a film
-//   POST /stop | /run | /again?...    only where the user allowed it: what the command line would do
+//   POST /stop | /run | /again?... | /more?points=N   only where the user allowed it: what the command line would do
 //
 // Every question needs the token that was printed, and a Host field of this machine: a page of another site cannot ask
 // even where it makes its own name point here (DNS rebinding).
@@ -27,6 +27,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,13 +41,21 @@ struct Control {
     std::filesystem::path config;  ///< the campaign file that is run again
 };
 
+/// What a page has started. It goes on where a database is added to those that are served.
+struct Work {
+    Jobs jobs;
+    Runner runner;
+};
+
 /// Draws a random word of 128 bits.
 [[nodiscard]] std::string new_token();
 
 class Served {
 public:
     /// Throws BrokenWorld, or WrongQuestion for a file that is no database of this program.
-    Served(const std::vector<std::filesystem::path>& databases, std::optional<Control> control, std::string token);
+    Served(const std::vector<std::filesystem::path>& databases, std::optional<Control> control, std::string token,
+           std::shared_ptr<Work> work = std::make_shared<Work>());
+    [[nodiscard]] const std::shared_ptr<Work>& work() const { return work_; }
 
     [[nodiscard]] HttpReply answer(const HttpQuestion& question);
     /// Looks at the databases; the events since the last look, to be published.
@@ -75,8 +84,7 @@ private:
     std::optional<Control> control_;
     std::atomic<std::int64_t> told_ = 0;
     GrowingPage page_;
-    Jobs jobs_;
-    Runner runner_;
+    std::shared_ptr<Work> work_;
     std::deque<std::pair<std::int64_t, std::string>> recent_;  ///< events of results: number of the last result, text
     std::size_t recent_bytes_ = 0;
     std::int64_t version_ = 0;  ///< of the page that readers were told of

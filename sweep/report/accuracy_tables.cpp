@@ -1,6 +1,7 @@
 #include "sweep/report/accuracy_tables.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/corrected_tables.hpp"
 #include "sweep/study/error_text.hpp"
 
 #include <fmt/format.h>
@@ -138,6 +139,35 @@ Document accuracy_document(std::string_view campaign, std::span<const NumericsCo
                       {"cheapest", best ? Json(costs[*best].numerics.says) : Json()},
                       {"settings", Json::list(costs, setting_json)}};
     return document;
+}
+
+store::Table corrected_table(const study::Corrected& corrected) {
+    store::Table table{{"statistic", *corrected.goal.setting, "corrected", "numerics", "statistics", "together"}, {}};
+    for (const auto& one : corrected.check.moments)
+        table.rows.push_back({std::string(to_string(one.statistic)),
+                              study::with_error(one.cheap, std::numeric_limits<double>::quiet_NaN()),
+                              study::with_error(one.value, one.together), share_text(one.relative(one.numerics)),
+                              share_text(one.relative(one.statistics)), share_text(one.relative(one.together))});
+    return table;
+}
+
+Json corrected_json(const study::Corrected& corrected) {
+    Json moments = Json::object();
+    for (const auto& one : corrected.check.moments)
+        moments.add(to_string(one.statistic), Json{{"value", one.value},
+                                                   {"error", one.together},
+                                                   {"numerics", one.numerics},
+                                                   {"statistics", one.statistics},
+                                                   {"uncorrected", one.cheap}});
+    return {{"observable", corrected.goal.observable},
+            {"setting", *corrected.goal.setting},
+            {"cases", corrected.check.points},
+            {"pairs", corrected.check.pairs},
+            {"tolerance", corrected.goal.tolerance},
+            {"within", corrected.within},
+            {"core_seconds", corrected.core_seconds},
+            {"alone_core_seconds", corrected.alone ? Json(*corrected.alone) : Json()},
+            {"statistics", moments}};
 }
 
 }  // namespace grainsweep::report

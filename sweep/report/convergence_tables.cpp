@@ -1,6 +1,7 @@
 #include "sweep/report/convergence_tables.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/corrected_tables.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
 
@@ -324,13 +325,18 @@ Document convergence_document(const store::Store& store, const Responses& respon
     const auto lattices = lattice_family(store, responses, response);
     Document shown{.rows = checks_rows(responses, response, history), .converged = history.converged.value_or(false)};
     for (auto& row : provisional_rows(responses, response, history).rows) shown.rows.rows.push_back(std::move(row));
-    if (format == Format::json)
+    const auto corrected = study::corrected_of(store, responses.campaign);
+    if (corrected) shown.converged = corrected->within;
+    if (format == Format::json) {
         shown.value = to_json(responses, response, history, lattices)
                           .add("estimators", estimators_json(history, estimators_of(store, responses, response)));
+        if (corrected) shown.value.add("corrected", corrected_json(*corrected));
+    }
     if (format == Format::text) {
         shown.say(study_heading(responses, response)).say();
         say_history(shown, responses, history, lattices);
         if (repeats(responses)) say_estimators(shown, history, estimators_of(store, responses, response));
+        if (corrected) shown.say().show(corrected_table(*corrected)).say(corrected->verdict());
     }
     return shown;
 }

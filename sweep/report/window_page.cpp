@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <ostream>
 
@@ -51,6 +53,51 @@ double probability_of(const Judgement& one) {
 }
 double objective_of(const Judgement& one) {
     return one.objective.mean;
+}
+
+/// Variance of `values` that the means of groups of points near one another in a factor make: eight groups of equal
+/// count, or the factor's values where these are no more. 0 where no point has a value of the factor.
+double variance_by(std::span<const Setting> settings, std::span<const double> values, std::size_t factor) {
+    constexpr std::size_t most_groups = 8;
+    struct Group {
+        double sum = 0;
+        std::size_t count = 0;
+    };
+    std::map<double, Group> by_value;
+    double mean = 0;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        if (std::isnan(settings[i][factor])) return 0;
+        auto& group = by_value[settings[i][factor]];
+        group.sum += values[i];
+        ++group.count;
+        mean += values[i] / static_cast<double>(values.size());
+    }
+    const auto least = by_value.size() <= most_groups ? 1 : settings.size() / most_groups;
+    double variance = 0;
+    Group group;
+    for (const auto& [value, one] : by_value) {
+        group.sum += one.sum;
+        group.count += one.count;
+        if (group.count < least) continue;
+        const double off = group.sum / static_cast<double>(group.count) - mean;
+        variance += off * off * static_cast<double>(group.count) / static_cast<double>(values.size());
+        group = {};
+    }
+    return variance;
+}
+
+/// Factors by how much they decide over the whole box whether the condition holds, those of a map first.
+void put_decisive_first(std::vector<std::size_t>& order, const ModelCases& cases, const WindowRequest& request,
+                        const Window& window, const Admits& admits) {
+    constexpr std::size_t most_points = 1024;  // of the searched ones, which are a Sobol sequence
+    if (request.where.empty()) return;
+    const auto settings = std::span(window.searched).first(std::min(most_points, window.searched.size()));
+    std::vector<double> probabilities;
+    for (const auto& one : judge_settings(cases, request, window, admits, settings))
+        probabilities.push_back(one.probability);
+    std::vector<double> weights;
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) weights.push_back(variance_by(settings, probabilities, j));
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return weights[j]; });
 }
 
 /// Factors by how much they matter, see the header.
@@ -125,7 +172,8 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
         const auto [low, high] = std::ranges::minmax(means);
         whole_range = high - low;
     }
-    const auto order = order_of(curves, modelled, whole_range);
+    auto order = order_of(curves, modelled, whole_range);
+    put_decisive_first(order, cases, request, window, admits);
     Json responses = Json::array();
     for (const auto& model : window.models) responses.push_back({{"name", model.observable}, {"unit", model.unit}});
     const auto settings = [&](const std::vector<Judgement>& judged) {

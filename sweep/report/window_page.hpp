@@ -1,9 +1,9 @@
 // A process window as a page of its own, to be printed and to hang beside the machine: the best setting, what it gives
-// with its errors, the map of the two factors that matter most there, and every response against every factor.
-//
-// Map and curves go through the best setting (where there is none, the one where the condition is likeliest): the other
-// factors stay there. A factor matters by how much it changes things along its curve through that setting: range of the
-// probability that the condition holds, and range of the objective's mean over that of its means at the cases.
+// with its errors, the map of the two factors that decide the condition, and every response against every factor. Map
+// and curves go through the best setting (where there is none, the one where the condition is likeliest). A factor
+// decides by the variance of the probability that its value makes over the searched box; where factors decide alike, by
+// how much it changes along its curve: range of the probability, and range of the objective's mean divided by that of
+// its means at the cases.
 // Curves have 41 points, the map 41 x 41 cells, evenly over the ranges (logarithmic ones over their logarithms); a
 // factor with levels has one each. Bands are 95 %: of the mean, and of a single run about it.
 #pragma once

@@ -43,7 +43,6 @@ Plan::Plan(Questions questions, const Rules& rules)
             decide(i, *known);
         } else {
             queue_.push_back(static_cast<std::uint32_t>(i));
-            tally_.predicted_left += entry.predicted;
         }
         entries_.push_back(entry);
     }
@@ -58,6 +57,7 @@ void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
     const std::vector<std::uint32_t> in_order(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(end));
     double left = 0;
     for (const auto question : in_order) left += length(question);
+    tally_.predicted_left = left;
 
     // Longest first, of equally long ones the first, block by block.
     std::vector<std::uint32_t> by_length = in_order;
@@ -118,15 +118,20 @@ void Plan::advanced(const campaign::Attempt& attempt, double share) {
     const auto found = find(attempt);
     if (found == under_way_.end() || !(share >= 0 && share <= 1)) return;
     Running& one = found->second;
-    const bool first = !one.share;
+    const bool resumed = !one.share && one.number > 1;  // a first attempt has no checkpoint
     move_on(one, share);
-    if (first) tally_.predicted_done -= share * entries_[one.question].predicted;
+    if (resumed) tally_.predicted_done -= share * entries_[one.question].predicted;
+}
+
+double Plan::predicted(const campaign::Attempt& attempt) const {
+    const auto found = under_way_.find(attempt.case_id);
+    if (found == under_way_.end() || found->second.number != attempt.number) return 0;
+    return entries_[found->second.question].predicted;
 }
 
 double Plan::seconds_left(const campaign::Attempt& attempt) const {
     const auto found = under_way_.find(attempt.case_id);
-    if (found == under_way_.end() || found->second.number != attempt.number) return 0;
-    return entries_[found->second.question].predicted * (1 - found->second.share.value_or(0));
+    return found == under_way_.end() ? 0 : predicted(attempt) * (1 - found->second.share.value_or(0));
 }
 
 Plan::UnderWay::iterator Plan::find(const campaign::Attempt& attempt) {

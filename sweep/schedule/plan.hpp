@@ -64,6 +64,9 @@ public:
     /// How many next() could return one after the other now.
     [[nodiscard]] std::size_t waiting() const;
 
+    /// Predicted seconds of a running attempt; 0: it is not running.
+    [[nodiscard]] double predicted(const campaign::Attempt& attempt) const;
+    [[nodiscard]] std::size_t workers() const { return rules_.workers; }
     /// Of a running attempt: those predicted, less what it has done. 0: it is not running.
     [[nodiscard]] double seconds_left(const campaign::Attempt& attempt) const;
     /// A running attempt has come so far, 0 to 1. What it had done when first reported, from a checkpoint, was not done
@@ -100,7 +103,7 @@ public:
         std::size_t settled_now = 0;  ///< completed or skipped in this run
         std::size_t failed_now = 0;   ///< given up, unstable or rejected in this run
         std::size_t failed = 0;       ///< given up or settled as unstable or rejected, in all runs
-        double predicted_left = 0;    ///< seconds, less what running cases have done
+        double predicted_left = 0;    ///< seconds, of what this run may settle, less what running cases have done
         double predicted_done = 0;    ///< seconds, in this run
     };
     [[nodiscard]] const Tally& tally() const { return tally_; }

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace grainsweep::schedule {
 namespace {
@@ -89,7 +90,7 @@ void Scheduler::hand_out() {
         recorder_.write(store::Recorder::Begun{start->attempt, place->computer});
         crew_.give(*place, start->attempt, start->question);
         progress_.under_way.insert_or_assign(start->attempt.case_id,
-                                             UnderWay{start->attempt.number, place->computer, {}});
+                                             UnderWay{start->attempt.number, place->computer, {}, seconds()});
     }
 }
 
@@ -137,6 +138,8 @@ void Scheduler::handle_finished(workers::Finished& finished) {
     // A worker that reports a crash or a time-out of what it started.
     if (!settles(finished.result.outcome)) return handle_failure(std::move(finished.result));
     const auto& result = finished.result;
+    finished_seconds_ += result.cost.wall_seconds;
+    finished_predicted_ += plan_.predicted(result.attempt);
     progress_.under_way.erase(result.attempt.case_id);
     if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
     if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected) {
@@ -196,14 +199,32 @@ void Scheduler::judge_prefix(Judge::Models models) {
     }
 }
 
-std::size_t Scheduler::cases_to_go() const {
+/// Of what is left, the part that is computed before the statistics are expected to converge.
+double Scheduler::share_to_go() const {
     const auto& tally = plan_.tally();
-    std::size_t left = std::min(tally.questions - tally.decided, plan_.waiting() + progress_.under_way.size());
-    if (const auto share = judge_ != nullptr ? judge_->expected_share() : std::nullopt) {
-        const auto needed = static_cast<std::size_t>(std::ceil(*share * static_cast<double>(tally.questions)));
-        left = std::min(left, std::max(needed, tally.decided) - tally.decided);
-    }
-    return left;
+    const auto left =
+        static_cast<double>(std::min(tally.questions - tally.decided, plan_.waiting() + progress_.under_way.size()));
+    const auto share = judge_ != nullptr && left > 0 ? judge_->expected_share() : std::nullopt;
+    if (!share) return 1;
+    const double needed = *share * static_cast<double>(tally.questions) - static_cast<double>(tally.decided);
+    return std::clamp(needed / left, 0.0, 1.0);
+}
+
+/// Predicted seconds done of the running cases that do not report how far they are (programs): by their age, at the
+/// pace of the cases that ended. Of those handed out the oldest run, one per worker; the others wait behind them.
+double Scheduler::done_unreported() const {
+    constexpr double at_most = 0.9;  // of a case that has not ended
+    if (!(finished_predicted_ > 0)) return 0;
+    const double pace = finished_seconds_ / finished_predicted_, now = seconds();
+    std::vector<std::pair<double, double>> ages;  // when it was given, predicted seconds
+    for (const auto& [id, one] : progress_.under_way)
+        if (!one.share) ages.emplace_back(one.given, plan_.seconds_left({id, one.attempt}));
+    std::ranges::sort(ages);
+    ages.resize(std::min(ages.size(), plan_.workers()));
+    double done = 0;
+    for (const auto& [given, predicted] : ages)
+        done += std::min(pace > 0 ? (now - given) / pace : 0, at_most * predicted);
+    return done;
 }
 
 void Scheduler::show() {
@@ -214,7 +235,10 @@ void Scheduler::show() {
         if (std::erase(checkpointed_, result.attempt.case_id) > 0) watchers_.forget_checkpoint(result.attempt.case_id);
     }
     progress_.tally = plan_.tally();
-    progress_.to_go = cases_to_go();
+    progress_.seconds = seconds();
+    const double unreported = done_unreported();
+    progress_.predicted_done = progress_.tally.predicted_done + unreported;
+    progress_.predicted_to_go = std::max(0.0, progress_.tally.predicted_left - unreported) * share_to_go();
     watchers_.progress(progress_);
 }
 

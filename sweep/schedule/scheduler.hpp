@@ -7,6 +7,7 @@
 #include "sweep/store/recorder.hpp"
 #include "sweep/workers/crew.hpp"
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -40,6 +41,7 @@ struct UnderWay {
     std::int64_t attempt = 0;
     std::shared_ptr<const campaign::Computer> computer;
     std::optional<double> share;  ///< done, 0 to 1, as last reported; none: not begun, or not known
+    double given = 0;             ///< when it was handed out, in seconds of the run
 };
 
 /// What watchers get. Counts are of results on disk.
@@ -47,9 +49,11 @@ struct Progress {
     Plan::Tally tally;
     std::size_t durable = 0;  ///< results of this run on disk
     std::map<campaign::CaseId, UnderWay> under_way;
-    /// Cases that this run will still settle: all that are left, or fewer where the number of cases is limited or the
+    double seconds = 0;         ///< since the run began
+    double predicted_done = 0;  ///< seconds, of what this run has computed, cases under way in part
+    /// Seconds, of what it will still compute: all that is left, or less where the number of cases is limited or the
     /// statistics are expected to converge before.
-    std::size_t to_go = 0;
+    double predicted_to_go = 0;
     std::string judgement;  ///< last verdict on convergence in one line
 };
 
@@ -69,11 +73,15 @@ public:
     Ending run();
 
 private:
+    using Clock = std::chrono::steady_clock;
+
     void hand_out();
     /// Leaves out what does not fit into the time left, and stops when there is none.
     void look_at_time();
     [[nodiscard]] Ending ending() const;
-    [[nodiscard]] std::size_t cases_to_go() const;
+    [[nodiscard]] double share_to_go() const;
+    [[nodiscard]] double done_unreported() const;
+    [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
     void handle_failure(campaign::CaseResult result);
@@ -89,6 +97,8 @@ private:
     Judge* judge_;
     Watchers watchers_;
     Walltime walltime_;
+    Clock::time_point began_ = Clock::now();
+    double finished_seconds_ = 0, finished_predicted_ = 0;  ///< of the cases that ended: taken, and predicted
     Progress progress_;
     std::optional<Ending> early_;
     std::optional<std::string> broken_;  ///< why nothing more can be computed

@@ -1,6 +1,9 @@
 #include "sweep/study/accuracy.hpp"
 
 #include "stats/confidence.hpp"
+#include "sweep/campaign/stored_text.hpp"
+#include "sweep/study/corrected.hpp"
+#include "sweep/study/error_text.hpp"
 #include "sweep/study/responses.hpp"
 
 #include <fmt/format.h>
@@ -62,6 +65,51 @@ void add_costs(const store::Store& store, NumericsCost& cost) {
     cost.seconds = number_of(row[2]);
 }
 
+std::string share_or_unknown(double relative) {
+    return std::isfinite(relative) ? fmt::format("{:.2g} %", 100 * relative) : "unknown";
+}
+
+/// Largest of the gates, relative; NaN where one is unknown.
+double largest_part(const stats::TwoLevelCheck& check, double stats::TwoLevelMoment::*part) {
+    double found = 0;
+    for (const auto& moment : check.moments) {
+        const double relative = moment.relative(moment.*part);
+        found = std::isnan(relative) || relative > found ? relative : found;
+    }
+    return found;
+}
+
+/// The campaign and those of the same design at other settings, as SQL texts.
+std::string campaigns_of_goal(const store::Store& store, const store::CampaignRecord& campaign) {
+    std::string names;
+    for (const auto& other : store.campaigns()) {
+        const bool same = other.scene == campaign.scene && other.factors == campaign.factors &&
+                          other.seed == campaign.seed && other.design == campaign.design;
+        if (other.name == campaign.name || (same && other.name.starts_with(campaign.name + "_")))
+            names += fmt::format("{}'{}'", names.empty() ? "" : ", ", other.name);
+    }
+    return names;
+}
+
+/// Processor time of the attempts of these campaigns, each case once: `what` is an aggregate of it.
+double core_seconds(const store::Store& store, std::string_view what, const std::string& names) {
+    return number_of(
+        store
+            .query(fmt::format("SELECT {}(cpu_seconds) FROM attempt WHERE case_key IN (SELECT case_key FROM "
+                               "campaign_case JOIN campaign USING (campaign_id) WHERE name IN ({}))",
+                               what, names))
+            .rows.front()
+            .front());
+}
+
+/// No fewer than the first check has.
+double cases_alone(const stats::TwoLevelCheck& check, double tolerance, std::int64_t sequences) {
+    const double ratio = largest_part(check, &stats::TwoLevelMoment::statistics) / tolerance;
+    constexpr std::int64_t first_rounds_alone = 8;
+    return std::max(static_cast<double>(check.points) * ratio * ratio,
+                    static_cast<double>(first_rounds_alone * sequences));
+}
+
 }  // namespace
 
 double Bias::relative_bound() const {
@@ -102,6 +150,101 @@ std::optional<std::size_t> cheapest_within(std::span<const NumericsCost> costs,
     }
     if (best && !(costs[*best].seconds < costs.back().seconds)) best.reset();
     return best;
+}
+
+std::string Corrected::verdict() const {
+    std::string moments;
+    for (const auto& moment : check.moments)
+        moments += fmt::format("{}{} {}", moments.empty() ? "" : ", ", to_string(moment.statistic),
+                               with_error(moment.value, moment.together));
+    const auto cases = check.pairs == 0
+                           ? fmt::format("{} cases at {}", check.points, *goal.setting)
+                           : fmt::format("{} cases at {} and {} pairs", check.points, *goal.setting, check.pairs);
+    return fmt::format("{} {} {} of {}: {}; numerics {}, statistics {}, together {}; {}, {:.3g} core-s{}",
+                       goal.observable, within ? "within" : "not yet within", share_or_unknown(goal.tolerance),
+                       campaign::AccuracyGoal::measure, moments,
+                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::numerics)),
+                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::statistics)),
+                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::together)), cases, core_seconds,
+                       alone ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone) : "");
+}
+
+std::string name_at(std::string_view campaign, std::string_view setting) {
+    return fmt::format("{}_{}", campaign, setting);
+}
+
+FirstValues first_values(const store::Store& store, std::string_view campaign, std::string_view observable,
+                         std::int64_t points) {
+    FirstValues found{std::vector<double>(static_cast<std::size_t>(points), nan)};
+    for (const auto& one : store.values(campaign, observable)) {
+        if (one.point >= points) break;
+        if (!has_final_outcome(one.outcome)) {
+            found.values.resize(static_cast<std::size_t>(one.point));
+            break;
+        }
+        found.values[static_cast<std::size_t>(one.point)] = one.value;
+        if (std::isnan(one.value)) ++found.without_value;
+    }
+    return found;
+}
+
+std::vector<stats::Statistic> gates_of(const campaign::AccuracyGoal& goal) {
+    std::vector<stats::Statistic> gates;
+    for (const auto& word : goal.gates)
+        if (const auto gate = stats::statistic_named(word)) gates.push_back(*gate);
+    return gates;
+}
+
+store::ConvergenceRow row_of(const stats::TwoLevelCheck& check, const campaign::AccuracyGoal& goal,
+                             std::int64_t excluded, bool converged) {
+    store::ConvergenceRow row{.observable = goal.observable,
+                              .points = check.points,
+                              .mean = nan,
+                              .sd = nan,
+                              .skewness = nan,
+                              .g1 = nan,
+                              .kurtosis = nan,
+                              .mean_error = nan,
+                              .sd_error = nan,
+                              .skewness_error = nan,
+                              .g1_error = nan,
+                              .kurtosis_error = nan,
+                              .zero_share = nan,
+                              .excluded = excluded,
+                              .converged = converged};
+    for (const auto& moment : check.moments) {
+        const bool mean = moment.statistic == stats::Statistic::mean;
+        (mean ? row.mean : row.sd) = moment.value;
+        (mean ? row.mean_error : row.sd_error) = moment.together;
+    }
+    return row;
+}
+
+std::optional<Corrected> corrected_of(const store::Store& store, const store::CampaignRecord& campaign) {
+    auto goal = campaign::remarks_in(campaign.text).goal;
+    if (!goal || !goal->setting) return std::nullopt;
+    const auto records = store.campaigns();
+    const auto name = name_at(campaign.name, campaign::AccuracyGoal::measure);
+    const auto measure = std::ranges::find(records, name, &store::CampaignRecord::name);
+    const bool paired = *goal->setting != campaign::AccuracyGoal::measure;
+    const auto cheap = first_values(store, campaign.name, goal->observable, campaign.asked.candidates).values;
+    std::vector<double> expensive;
+    if (paired && measure != records.end())
+        expensive = first_values(store, name, goal->observable,
+                                 std::min(measure->asked.candidates, static_cast<std::int64_t>(cheap.size())))
+                        .values;
+    if (cheap.empty() || (paired && expensive.empty())) return std::nullopt;
+    Corrected found;
+    const stats::TwoLevelRule rule{gates_of(*goal), goal->tolerance, campaign.asked.candidates, 1};
+    found.check = stats::two_level_check(rule, {cheap, expensive, campaign.sequences});
+    for (const auto& row : store.convergence(campaign.name, goal->observable))
+        found.within = found.within || (row.converged && row.points == found.check.points);
+    found.core_seconds = core_seconds(store, "total", campaigns_of_goal(store, campaign));
+    if (paired)
+        found.alone = cases_alone(found.check, goal->tolerance, campaign.sequences) *
+                      core_seconds(store, "avg", fmt::format("'{}'", name));
+    found.goal = std::move(*goal);
+    return found;
 }
 
 }  // namespace grainsweep::study

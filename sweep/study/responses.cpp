@@ -137,10 +137,12 @@ std::int64_t Responses::counted_points() const {
 }
 
 const ResponseColumn* Responses::main_observable() const {
-    if (campaign.convergence) {
-        const auto named = std::ranges::find(observables, campaign.convergence->observable, &ResponseColumn::name);
-        if (named != observables.end()) return &*named;
-    }
+    std::vector<std::string> asked;
+    if (campaign.convergence) asked.push_back(campaign.convergence->observable);
+    if (asked.empty() && design().rests_on) asked = design().rests_on(campaign::request_of(campaign));
+    for (const auto& name : asked)
+        if (const auto named = std::ranges::find(observables, name, &ResponseColumn::name); named != observables.end())
+            return &*named;
     const auto measured = std::ranges::find_if(observables, [](const ResponseColumn& response) {
         return std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); });
     });

@@ -92,8 +92,8 @@ struct Responses {
     /// Points the design numbers that the `where` clause leaves out.
     [[nodiscard]] std::int64_t dropped() const;
     [[nodiscard]] const designs::DesignInfo& design() const;
-    /// The observable of the convergence rule, else the scene's first that has a value, else the first; none where
-    /// the scene measures no scalar.
+    /// The observable of the convergence rule, else the first on which later points of the design rest (a calibration's
+    /// first target), else the scene's first with a value, else its first; none where it measures no scalar.
     [[nodiscard]] const ResponseColumn* main_observable() const;
     /// Throws WrongQuestion with the nearest name. Empty: the main observable.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;

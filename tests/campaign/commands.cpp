@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -44,6 +45,45 @@ TEST(Commands, PlanShowsEveryCaseAndTheCost) {
     const auto text = in_folder(folder, {"plan", "c.json"});
     EXPECT_EQ(text.code, 0);
     EXPECT_NE(text.out.find("cases      40"), std::string::npos) << text.out;
+}
+
+TEST(Commands, PlanRunsACaseAndCountsWhatIsStored) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const auto planned = [&] {
+        return json::parse(in_folder(folder, {"plan", "c.json", "--probe", "--format", "json"}).out);
+    };
+    const auto fresh = planned();
+    EXPECT_EQ(fresh["probe"]["outcome"], "completed");
+    const double measured = fresh["probe"]["measured_seconds"];
+    EXPECT_NEAR(fresh["predicted_seconds"], 40 * measured, 1e-9 + 1e-6 * measured);
+    EXPECT_NEAR(fresh["left_seconds"], 40 * measured, 1e-9 + 1e-6 * measured);
+    EXPECT_FALSE(std::filesystem::exists(folder / "c.db")) << "nothing is stored";
+    EXPECT_NE(in_folder(folder, {"plan", "c.json", "--probe"}).out.find("probe      point "), std::string::npos);
+    ASSERT_EQ(in_folder(folder, {"run", "c.json", "--max-cases", "30", "--quiet"}).code, 1);
+    const auto later = planned();
+    const double again = later["probe"]["measured_seconds"];
+    EXPECT_EQ(later["finished"], 30);
+    EXPECT_NEAR(later["left_seconds"], 10 * again, 1e-9 + 1e-6 * again);
+    ASSERT_EQ(in_folder(folder, {"run", "c.json", "--quiet"}).code, 0);
+    EXPECT_EQ(planned()["probe"], nullptr) << "no case is left";
+}
+
+TEST(Commands, RunTakesMorePointsOfADesignThatExtends) {
+    const Folder folder;
+    folder.write("c.json", config);
+    ASSERT_EQ(in_folder(folder, {"run", "c.json", "--points", "3", "--quiet"}).code, 0);
+    ASSERT_EQ(in_folder(folder, {"run", "c.json", "--points", "24", "--quiet"}).code, 0);
+    EXPECT_EQ(
+        in_folder(folder, {"query", "c.db", "SELECT count(*) FROM c WHERE outcome = 'completed'"}).out.find("48") ==
+            std::string::npos,
+        false);
+    folder.write("l.json", R"({"campaign": "l", "scene": "rehearsal", "factors": [{"name": "x1", "levels": [0, 1]}],
+      "design": {"kind": "lattice"}})");
+    const auto refused = in_folder(folder, {"run", "l.json", "--points", "24"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("a lattice design cannot be extended by points"), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "l.db"));
 }
 
 TEST(Commands, SolveTakesTheMiddleAndWhatIsSet) {

@@ -92,7 +92,7 @@ TEST_F(FactorRules, ArePredictedAndReported) {
                 HasSubstr("_next"));
     out({"report", "c.db", "-o", "c.html"});
     EXPECT_TRUE(std::filesystem::exists(folder / "c.html"));
-    EXPECT_EQ(json::parse(out({"converge", "c.db", "--campaign", "c", "--format", "json"}))["points"], 160);
+    EXPECT_EQ(json::parse(out({"converge", "c.db", "--campaign", "c", "--format", "json"}))[0]["points"], 160);
 }
 
 TEST_F(FactorRules, OfSharesAddToOneInEveryCase) {
@@ -116,7 +116,7 @@ TEST_F(FactorRules, OfSharesAddToOneInEveryCase) {
     EXPECT_NEAR(solved["inputs"]["x3"], 0.3, 1e-12);
     const auto half = ask({"solve", "c.json", "--set", "x1=0.5"});
     EXPECT_EQ(half.code, 2);
-    EXPECT_THAT(half.err, HasSubstr("x1, x2 and x3 add to one: set all of them or none"));
+    EXPECT_THAT(half.err, HasSubstr("x1, x2, x3 add to one: set all of them or none"));
 }
 
 TEST_F(FactorRules, OfGroupsHaveOneIndexEach) {

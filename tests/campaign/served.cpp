@@ -143,8 +143,11 @@ TEST_F(ServedCampaign, AFolderIsServedAndADatabaseThatAppears) {
     Reader reader(server.events());
     EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
     const int before = reader.pages;
+    const auto asked = Json::parse(server.post("/query", "database=a.db", "SELECT 1 AS one").body);
     begin("c", 3, 0);
     EXPECT_TRUE(reader.until([&] { return reader.pages > before; }));
+    const auto job = server.get("/job", fmt::format("number={}", asked["job"].get<int>()));
+    EXPECT_EQ(job.status, 200) << "what was asked before goes on: " << job.body;
     EXPECT_EQ(databases(), Json({"a.db", "b.db", "c.db"}));
     EXPECT_TRUE(reader.until([&] { return reader.now["databases"].size() == 3; }));
     EXPECT_EQ(server.work("/query", "database=c.db", "SELECT count(*) AS n FROM c").status, 200);
@@ -205,6 +208,10 @@ TEST_F(ServedCampaign, WithControlTheReaderStopsAndStartsTheRun) {
     EXPECT_EQ(server.post("/run", "").status, 200);
     EXPECT_TRUE(reader.until([&] { return settled("a") == 100; }));
     EXPECT_TRUE(fs::exists(folder / "a.run.log"));
+    EXPECT_TRUE(reader.until([&] { return !runs(); }));
+    EXPECT_EQ(server.post("/more", "points=many").status, 400);
+    EXPECT_EQ(server.post("/more", "points=130").status, 200);
+    EXPECT_TRUE(reader.until([&] { return settled("a") == 130; }));
 }
 
 TEST_F(ServedCampaign, AFilmIsComputedOnceAndKeptBesideTheDatabase) {

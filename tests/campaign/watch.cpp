@@ -80,6 +80,16 @@ function tested(player) {
     const middle = Math.floor(last / 2), before = pixels(player, middle);
     told.colours = player.shadings.map((shading) => { player.colourBy(shading.key); return [shading.key, differing(before, pixels(player, middle))]; });
     player.colourBy(player.shadings[0].key);
+    told.colour_range = [player.range.low, player.range.high, player.shading.low, player.shading.high];
+    const fields = [...document.querySelectorAll(".watch-range input")];
+    fields[1].value = Number(fields[1].value) / 3;
+    fields[1].dispatchEvent(new Event("change"));
+    told.narrower = differing(before, pixels(player, middle));
+    fields[1].value = "";
+    fields[1].dispatchEvent(new Event("change"));
+    told.wrong = fields[1].classList.contains("watch-wrong");
+    player.setRange(null);
+    told.reset = differing(before, pixels(player, middle));
     player.painter.show.walls = false;
     told.walls = differing(before, pixels(player, middle));
     player.painter.show.walls = true;
@@ -96,11 +106,24 @@ function tested(player) {
   told.keys = [...document.querySelectorAll(".watch-keys > span")].map((one) => one.textContent);
   return told;
 }
+async function compared() {
+  await grainsweepWatch.compare(`id="watch-film">${document.getElementById("watch-film").textContent}<`);
+  const { player } = grainsweepWatch, shown = player.film.frames - 1;
+  pixels(player, shown);
+  const { gl, canvas } = player.beside.painter, bytes = new Uint8Array(4 * canvas.width * canvas.height);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  return { stages: document.querySelectorAll(".watch-stage").length, moment: player.beside.moment - shown,
+    painted: differing(bytes, bytes.map((_, i) => Math.round(255 * (player.ground[i % 4] ?? 1)))),
+    captions: [...document.querySelectorAll(".watch-caption")].map((one) => one.textContent) };
+}
 (async () => {
   const told = document.documentElement.dataset;
   try {
     while (!window.grainsweepWatch) await new Promise((go) => setTimeout(go, 5));
-    told.selftest = JSON.stringify(tested(grainsweepWatch.player));
+    const seen = tested(grainsweepWatch.player);
+    seen.pair = await compared();
+    seen.stranger = await grainsweepWatch.compare("<p>no film</p>").then(() => "", (error) => error.message);
+    told.selftest = JSON.stringify(seen);
   } catch (error) {
     errors.push(String(error.stack));
   }
@@ -133,6 +156,11 @@ json watched(const char* config, const char* frames, const Folder& folder) {
     EXPECT_GT(told.at("painted"), told.at("pixels").get<double>() / 100) << told;
     EXPECT_GT(told.at("differing"), 100) << told;
     EXPECT_GT(told.at("turned"), 100) << told;
+    EXPECT_EQ(told.at("pair").at("stages"), 2) << told;
+    EXPECT_EQ(told.at("pair").at("moment"), 0) << told;
+    EXPECT_GT(told.at("pair").at("painted"), 100) << told;
+    EXPECT_EQ(told.at("pair").at("captions").size(), 2U) << told;
+    EXPECT_EQ(told.at("stranger"), "the file is no page of --watch");
     EXPECT_THAT(told.at("keys").get<std::vector<std::string>>(),
                 testing::IsSupersetOf({"space play or pause", "Home End first or last frame", "1 2 3 4 views"}));
     return told;
@@ -151,6 +179,12 @@ TEST(Watch, ABedIsPlayedWithItsBlade) {
     const Folder folder;
     const json told = watched(bed, "8", folder);
     EXPECT_GT(told.at("walls"), 100);
+    const auto range = told.at("colour_range").get<std::vector<double>>();
+    EXPECT_EQ(range[0], 0);
+    EXPECT_LT(range[1], range[3]) << "the fall at the start darkens the rest";
+    EXPECT_GT(told.at("narrower"), 100);
+    EXPECT_EQ(told.at("wrong"), true);
+    EXPECT_EQ(told.at("reset"), 0);
     EXPECT_LT(told.at("last").at("mean")[2], told.at("first").at("mean")[2]);  // the powder settles
 }
 

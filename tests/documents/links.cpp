@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <regex>
 #include <set>
 
@@ -49,6 +51,13 @@ TEST(Documents, EveryPageIsReachedFromTheReadme) {
         }
     }
     for (const auto& page : user_pages()) EXPECT_TRUE(reached.contains(page.file)) << page.file;
+}
+
+TEST(Documents, EveryPageStandsInTheSite) {
+    std::ifstream stream(source("docs/mkdocs.yml"));
+    const std::string site{std::istreambuf_iterator<char>(stream), {}};
+    for (const auto& page : user_pages())
+        EXPECT_NE(site.find("- " + page.file.string() + "\n"), std::string::npos) << page.file;
 }
 
 TEST(Documents, EveryCampaignFileIsMentioned) {

@@ -192,6 +192,7 @@ std::string keys_table(const std::string& section) {
                          : section == "target" ? schema["properties"]["calibration"]["properties"]["targets"]["items"]
                          : section == "experiment"
                              ? schema["properties"]["calibration"]["properties"]["experiments"]["additionalProperties"]
+                         : section == "accuracy" ? schema["properties"]["accuracy"]["oneOf"][1]
                          : section == "stop"   ? schema["properties"]["calibration"]["properties"]["stop"]
                                                : schema["properties"][section];
     std::string table = head({"key", "default", "meaning"});

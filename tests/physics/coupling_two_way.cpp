@@ -1,5 +1,6 @@
 // Two-way coupling: what particles give, the fluid gets.
 #include "solver/coupling/drag.hpp"
+#include "solver/coupling/own_wake.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/observables/flow_state.hpp"
 #include "tests/support/flow_boxes.hpp"
@@ -218,7 +219,9 @@ std::vector<std::byte> state_after(int steps, int cut) {
         fluid.set_temperature([](double, double, double z) { return z; });
         return Together<Level, Boussinesq>(std::move(fluid), heat.vibration, Motion<SchillerNaumann>(sphere, dt), box,
                                            random_cloud(50, box, stats::Stream(5, 1)), [&] {
-                                               if constexpr (Level::acts_on_fluid)
+                                               if constexpr (requires { Level::subtracts_own_wake; })
+                                                   return Level(grid, sides, sphere, 50, 0.1, dt);
+                                               else if constexpr (Level::acts_on_fluid)
                                                    return Level(grid, sides, sphere, 50, 0.1);
                                                else
                                                    return Level{};
@@ -241,6 +244,7 @@ TEST(Suspension, ContinuesBitForBitFromASavedState) {
     EXPECT_EQ(state_after<OneWay>(12, 0), state_after<OneWay>(12, 7));
     EXPECT_EQ(state_after<TwoWay<ForceForm>>(12, 0), state_after<TwoWay<ForceForm>>(12, 7));
     EXPECT_EQ(state_after<TwoWay<EquationNine>>(12, 0), state_after<TwoWay<EquationNine>>(12, 7));
+    EXPECT_EQ(state_after<TwoWayWithoutOwnWake<ForceForm>>(12, 0), state_after<TwoWayWithoutOwnWake<ForceForm>>(12, 7));
 }
 
 }  // namespace grainsweep::tests::coupling_two_way_test

@@ -125,10 +125,10 @@ layers() {
     shoot "layers.html#t=0.93" layers 900 640 0.85
 }
 
-# The mixer of docs/machines.md as its third step draws it: the first two blocks that write it.
+# The mixer of docs/tutorials/my_machine.md as its third step draws it: the first two blocks that write it.
 mixer() {
     awk '/^```json mixer.json/ {++block} /^```/ {inside = /^```json mixer.json/ && block < 3; next} inside {print > "block" block}' \
-        "$here/docs/machines.md"
+        "$here/docs/tutorials/my_machine.md"
     python3 -c 'import json; a, b = (json.load(open(f)) for f in ("block1", "block2")); \
 b["walls"].update(a["walls"]); print(json.dumps({**a, **b}))' >mixer.json
     "$program" draw mixer.json -o mixer.html

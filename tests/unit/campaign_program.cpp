@@ -228,6 +228,8 @@ TEST(ProgramSection, AWholeNumberIsVariedByLevels) {
     };
     EXPECT_EQ(said({{"levels", {1, 2.0, 1e3}}}, 4, true), "");
     EXPECT_EQ(said({{"between", {1, 10}}}, 4, false), "");
+    EXPECT_EQ(said({{"between", {1, 10}}, {"whole", true}}, 4, true), "");
+    EXPECT_EQ(said({{"between", {1, 10}}, {"step", 3}}, 4, true), "");
     EXPECT_NE(said({{"between", {1, 10}}}, 4, true)
                   .find("'layers' is a whole number: add \"whole\": true, or vary it by \"levels\""),
               std::string::npos);

@@ -1,5 +1,6 @@
 // However many threads compute flow and particles, their state has the same bytes after every step.
 #include "solver/coupling/dense_suspension.hpp"
+#include "solver/coupling/own_wake.hpp"
 #include "solver/coupling/projected_contacts.hpp"
 #include "solver/coupling/solids_pressure.hpp"
 #include "solver/coupling/spring_contacts.hpp"
@@ -142,6 +143,10 @@ TEST_P(CouplingThreads, BothWays) {
             coupling::TwoWay<Form>(box.grid, box.sides, Box::sphere(), box.cloud().size(), 0.12, Kernel::hats));
     };
     expect_same_bits("force", [&] { return two_way(coupling::Trilinear{}, coupling::ForceForm{}); });
+    expect_same_bits("without own wake", [&] {
+        return box.dilute<coupling::Trilinear>(coupling::TwoWayWithoutOwnWake<coupling::ForceForm>(
+            box.grid, box.sides, Box::sphere(), box.cloud().size(), 0.12, 0.01));
+    });
     expect_same_bits("equation 9", [&] { return two_way(coupling::Solenoidal{}, coupling::EquationNine{}); });
 }
 

@@ -172,7 +172,7 @@ TEST_F(LiveServed, TheDataOfThePageFollow) {
 }
 
 TEST_F(LiveServed, NobodySteersWithoutControl) {
-    for (const auto* path : {"/stop", "/run", "/again"}) EXPECT_EQ(status(post(path)), 403u) << path;
+    for (const auto* path : {"/stop", "/run", "/again", "/more"}) EXPECT_EQ(status(post(path)), 403u) << path;
 }
 
 // The file that says which process to stop may be written by anybody who may write into the folder.

@@ -62,6 +62,13 @@ TEST_F(WindowPage, MapsTheTwoFactorsThatMatterMostThroughTheBestSetting) {
 }
 
 /// The largest x1 with y <= 0.3: x1 = 0.8, at x2 = 1.
+TEST_F(WindowPage, FactorsThatDecideTheConditionComeBeforeThoseOfTheObjective) {
+    const auto known = cases();
+    request.where = "x2 <= 0.3 and x3 = 1";
+    const auto data = tests::parsed(window_page_data(known, request, window_of(store, known, request), {}));
+    EXPECT_EQ(data["order"][2], 0) << "x1 alone moves the objective";
+}
+
 TEST_F(WindowPage, AFactorMayBeTheObjective) {
     const auto known = cases();
     request.where = "y <= 0.3";

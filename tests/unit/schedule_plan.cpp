@@ -137,7 +137,7 @@ TEST(Plan, ACaseThatIsNotAskedHoldsThePrefixAndIsNotHandedOut) {
 }
 
 TEST(Plan, CountsWhatRunningCasesHaveDone) {
-    Plan plan = make_plan(2, {.attempts = 3}, {}, {100.0, 10.0});
+    Plan plan = make_plan(2, {.attempts = 3}, {{1, 0, {}, true}, {}}, {100.0, 10.0});
     const auto first = plan.next();
     plan.advanced(first->attempt, 0.1);  // from a checkpoint of an earlier run
     EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 100);
@@ -157,6 +157,20 @@ TEST(Plan, CountsWhatRunningCasesHaveDone) {
     EXPECT_EQ(plan.ended(second->attempt, Outcome::completed), Plan::Verdict::settled);
     EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 10);
     EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 80);
+}
+
+TEST(Plan, AFirstAttemptHasDoneInThisRunWhatItReportsFirst) {
+    Plan plan = make_plan(2, {}, {}, {100.0, 10.0});
+    const auto first = plan.next();
+    plan.advanced(first->attempt, 0.4);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 40);
+    EXPECT_DOUBLE_EQ(plan.predicted(first->attempt), 100);
+    EXPECT_DOUBLE_EQ(plan.predicted({"unknown", 1}), 0);
+}
+
+TEST(Plan, PredictsOnlyWhatThisRunMaySettle) {
+    const Plan plan = make_plan(4, {.max_cases = 2}, {}, {1.0, 2.0, 30.0, 40.0});
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 3);
 }
 
 TEST(Plan, TriesACrashAgainWithGrowingNumbersUpToTheLimit) {

@@ -1,6 +1,7 @@
 #include "solver/scenes/thermovibration/levels.hpp"
 
 #include "solver/coupling/dense_suspension.hpp"
+#include "solver/coupling/own_wake.hpp"
 #include "solver/coupling/projected_contacts.hpp"
 #include "solver/coupling/solids_pressure.hpp"
 #include "solver/coupling/spring_contacts.hpp"
@@ -76,13 +77,18 @@ std::unique_ptr<Coupled> one_way(const Question& q, std::uint64_t seed) {
 
 std::unique_ptr<Coupled> two_way(const Question& q, std::uint64_t seed) {
     return with_kernel(q, [&]<class Kernel>() {
+        const auto particles = static_cast<std::size_t>(q.particles);
         const auto form = [&]<class Form>(Form) {
             return dilute<Kernel>(
                 q, seed,
-                coupling::TwoWay<Form>(q.grid(), Question::sides(), q.sphere(), static_cast<std::size_t>(q.particles),
-                                       q.kernel(), Kernel::hats));
+                coupling::TwoWay<Form>(q.grid(), Question::sides(), q.sphere(), particles, q.kernel(), Kernel::hats));
         };
-        return q.source_form == "force" ? form(coupling::ForceForm{}) : form(coupling::EquationNine{});
+        if (q.source_form == "eq9") return form(coupling::EquationNine{});
+        if (q.own_wake == "kept") return form(coupling::ForceForm{});
+        return dilute<Kernel>(
+            q, seed,
+            coupling::TwoWayWithoutOwnWake<coupling::ForceForm>(q.grid(), Question::sides(), q.sphere(), particles,
+                                                                q.kernel(), q.step(), Kernel::hats));
     });
 }
 

@@ -38,6 +38,7 @@ Question::Question(const Inputs& inputs)
       particles(count(inputs, "particles")),
       level(particles > 0 ? &level_named(word(inputs, "coupling")) : &levels().front()),
       source_form(word(inputs, "source_form")),
+      own_wake(word(inputs, "own_wake")),
       wall_contact(word(inputs, "wall_contact")),
       particle_start(word(inputs, "particle_start")),
       interpolation(word(inputs, "interpolation")),

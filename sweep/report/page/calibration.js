@@ -4,6 +4,23 @@ function cardOf(title, { columns, rows }) {
     table(columns.map((name, j) => [name, rows.length > 0 && typeof rows[0][j] === "number" ? "number" : ""]), rows));
 }
 
+// Rows with a unit, in the prefix that suits them; `numbers(row)`: what the prefix follows.
+function inSuitedUnits({ columns, rows }, numbers, scaled) {
+  const unit = columns.indexOf("unit");
+  return { columns, rows: rows.map((row) => {
+    const shown = scaleFor(row[unit], numbers(row));
+    return row.map((cell, j) => (j === unit ? shown.unit : scaled.includes(columns[j]) ? scaledText(cell, shown.factor) : cell));
+  }) };
+}
+function posteriorTable({ factors, posterior }) {
+  const range = (row) => { const one = factors.find((f) => f.name === row[0]); return one ? [one.low, one.high] : [Number(row[2])]; };
+  return inSuitedUnits(posterior, range, ["mean", "sd", "5 %", "95 %"]);
+}
+function targetsTable({ targets }) {
+  const measured = targets.columns.indexOf("measured");
+  return inSuitedUnits(targets, (row) => [parseFloat(row[measured])], ["measured", "discrepancy", "model", "fresh runs"]);
+}
+
 // Settings that were run, and draws of the posterior.
 function posteriorFigure(calibration, i, j) {
   const [a, b] = [calibration.factors[i], calibration.factors[j]];
@@ -43,7 +60,7 @@ function calibrationSection(campaign) {
     : pairs.map(([i, j]) => posteriorFigure(calibration, i, j));
   return section("calibration", "Calibration", capital(calibration.says) + ".",
     calibration.notes.length === 0 ? null : el("div", { class: "verdict no" }, calibration.notes.map((note) => el("p", {}, note))),
-    el("div", { class: "grid wide" }, calibration.posterior ? cardOf("Posterior", calibration.posterior) : null,
-      cardOf("Targets", calibration.targets), cardOf("Waves", calibration.waves)),
+    el("div", { class: "grid wide" }, calibration.posterior ? cardOf("Posterior", posteriorTable(calibration)) : null,
+      cardOf("Targets", targetsTable(calibration)), cardOf("Waves", calibration.waves)),
     el("div", { class: "grid" }, figures));
 }

@@ -29,11 +29,9 @@ function filterOf(expression, column) {
 }
 
 function caseColumns(model) {
-  const numbers = (variable) => variable.levels.map(Number);
-  const words = (variable) => variable.levels.length > 0 && numbers(variable).some(Number.isNaN);
-  const ofLevels = (variable, levels) => ({ title: variable.name, unit: unitText(variable.unit), meaning: variable.meaning, number: (row) => levels[variable.values[row]],
-    text: (row) => textOf(variable, row), missing: () => false, sort: (row) => levels[variable.values[row]] });
-  const ofVariable = (variable) => (variable.levels.length > 0 && !words(variable) ? ofLevels(variable, numbers(variable)) : variable.levels.length > 0
+  const ofLevels = (variable, { numbers, factor, unit }) => ({ title: variable.name, unit, meaning: variable.meaning, number: (row) => numbers[variable.values[row]] * factor,
+    text: (row) => textOf(variable, row), stored: (row) => numbers[variable.values[row]], missing: () => false, sort: (row) => numbers[variable.values[row]] });
+  const ofVariable = (variable) => (variable.levels.length > 0 && shownLevels(variable).numbers ? ofLevels(variable, shownLevels(variable)) : variable.levels.length > 0
     ? { title: variable.name, unit: "", meaning: variable.meaning, text: (row) => textOf(variable, row), missing: () => false, sort: (row) => variable.values[row] }
     : ofNumbers(variable, steady(variable) ? quantity(variable) : { unit: unitText(variable.unit), of: (x) => x }));
   // The unit of the figures follows the values: where these grow, a filter that was typed must keep its meaning.

@@ -31,7 +31,7 @@ function withAlpha(hex, alpha) { return hex[0] === "#" ? hex + Math.round(255 * 
 function colouring(variable, numbers) {
   if (variable.levels.length > 0) {
     const tones = categories(variable.levels.length);
-    return { levels: variable.levels, tones, of: (x) => tones[x] };
+    return { levels: shownLevels(variable).texts, tones, of: (x) => tones[x] };
   }
   const tones = rampTones(), shown = quantity(variable, numbers), log = variable.log && rangeOf(numbers)[0] > 0;
   const [low, high] = rangeOf(numbers), at = log ? Math.log : (x) => x;

@@ -59,7 +59,7 @@ function curveFigure(model, family) {
     list.replaceChildren(...order.map((k) => names[k]));
     // The factor that colours comes first, the others small behind it.
     const first = factor(), shown = quantity(first), others = model.factors.filter((f) => f !== first);
-    const words = (f, row) => (f.levels.length > 0 ? f.levels[f.values[row]] : quantity(f).says(f.values[row]));
+    const words = (f, row) => (f.levels.length > 0 ? textOf(f, row) : quantity(f).says(f.values[row]));
     names.forEach((name, k) => {
       const { row } = family.curves[k], rest = others.map((f) => `${f.name} ${words(f, row)}`);
       name.lastChild.replaceChildren(el("b", {}, first.levels.length > 0 ? words(first, row) : shown.says(first.values[row])), " ", el("small", {}, rest.join(", ")));
@@ -68,8 +68,8 @@ function curveFigure(model, family) {
   };
   const recolour = (value) => { settings.by = chosen.curvesBy = value; sortNames(); self.redraw(); dress(); };
   const all = button("Show all", () => { alone.clear(); dress(); }, { hidden: true });
-  const controls = el("div", { class: "controls" }, choice("colour", model.factors.map((f) => [f.name, titled(f)]), settings.by, recolour), all);
-  const self = figure(titled(family), family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), build, { tall: true, controls, below: list });
+  const controls = el("div", { class: "controls" }, choice("colour", model.factors.map((f) => [f.name, quantity(f).title]), settings.by, recolour), all);
+  const self = figure(up.title, family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), build, { tall: true, controls, below: list });
   self.canvas.addEventListener("mouseleave", () => point(-1));
   sortNames();
   dress();

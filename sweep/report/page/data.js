@@ -53,14 +53,38 @@ function campaignTitle(campaign) { return data.databases.length > 1 ? `${campaig
 function titled(thing) { const unit = unitText(thing.unit); return thing.name + (unit ? ` (${unit})` : ""); }
 function textOf(variable, row) {
   const x = variable.values[row];
-  return variable.levels.length > 0 ? variable.levels[x] ?? "–" : show(x, 6);
+  return variable.levels.length > 0 ? shownLevels(variable).texts[x] ?? "–" : show(x, 6);
 }
 
-// A variable as an axis shows it: numbers times `factor`, and its title.
+// Levels as the page shows them: numbers with the prefix that suits all of them, words as they are.
+const levelsShown = new WeakMap();
+function shownLevels({ levels, unit }) {
+  if (!levelsShown.has(levels)) {
+    const numbers = levels.map(Number), numeric = !numbers.some(Number.isNaN), scale = numeric ? scaleFor(unit || "", numbers) : { factor: 1, unit: "" };
+    levelsShown.set(levels, { ...scale, numbers: numeric ? numbers : null, texts: scale.factor === 1 ? levels : numbers.map((x) => show(x * scale.factor, 6)) });
+  }
+  return levelsShown.get(levels);
+}
+
+// A variable as an axis shows it: numbers times `factor`, and its title. Of levels the numbers are their indices.
 function quantity(variable, numbers) {
+  if (variable.levels?.length > 0) {
+    const { unit, texts } = shownLevels(variable);
+    return { factor: 1, unit, title: variable.name + (unit ? ` (${unit})` : ""), of: (x) => x, says: (x) => texts[x] + (unit ? ` ${unit}` : "") };
+  }
   const range = Number.isFinite(variable.high) && variable.high > variable.low ? [variable.low, variable.high] : numbers || variable.values;
-  const { factor, unit } = variable.levels?.length > 0 ? { factor: 1, unit: "" } : scaleFor(variable.unit || "", range);
+  const { factor, unit } = scaleFor(variable.unit || "", range);
   return { factor, unit, title: variable.name + (unit ? ` (${unit})` : ""), of: (x) => x * factor, says: (x) => show(x * factor) + (unit ? ` ${unit}` : "") };
+}
+
+// A response of the page's data as its figures show it.
+function quantityOf(response) { return quantity(response, numbersOf(response.values)); }
+
+// "0.0036 ± 0.0002", or the number alone, times `factor`.
+function scaledText(text, factor) {
+  const [x, error] = String(text).split(" ± ").map(Number);
+  if (!Number.isFinite(x) || (factor === 1 && error !== undefined)) return text;
+  return error === undefined ? show(x * factor) : withError(x * factor, error * factor);
 }
 
 // The quantity on a curve's axis from its title, as "distance from the wall (m)".

@@ -19,12 +19,12 @@ endfunction()
 
 set(SHARED numbers ramp elements)
 set(FIGURES ${SHARED} data colours svg figure model_figures)
-set(PLAYER ${SHARED} watch/film watch/matrix watch/camera watch/scales watch/shaders watch/painter watch/shading watch/player)
+set(PLAYER ${SHARED} watch/film watch/matrix watch/camera watch/scales watch/shaders watch/painter watch/shading watch/range watch/player)
 set(REPORT ${FIGURES} response explore curves calibration model cases case_panel page)
 join_scripts(report ${REPORT})
 join_scripts(live ${REPORT} live)
 join_scripts(window ${FIGURES} window)
-join_scripts(watch ${PLAYER} watch/page)
+join_scripts(watch ${PLAYER} watch/pair watch/page)
 join_scripts(films ${PLAYER} watch/report)
 
 set(PAGE_FILES "${CHART_JS}" "${PAGE_FOLDER}/page.html" "${PAGE_FOLDER}/page.css" "${PAGE_FOLDER}/watch/page.html"

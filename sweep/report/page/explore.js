@@ -15,7 +15,7 @@ function keptRows(model) {
 function spread(variable, row) { return variable.levels.length > 0 ? 0.5 * (((row * 0.618034) % 1) - 0.5) : 0; }
 
 function variableChoices(model, more) {
-  const named = (list) => list.map((variable) => [variable.name, titled(variable)]);
+  const named = (list) => list.map((variable) => [variable.name, quantity(variable).title]);
   return (more || []).concat([["Factors", named(model.factors)], ["Responses", named(model.responses)], ["Design", named(model.places)]]);
 }
 
@@ -68,6 +68,9 @@ function explorer(model, other) {
     }
     return { sets, tones, x, y, by, across, up };
   };
+  // Of a failed case that has no value up, at the lower edge.
+  const failedPlaces = (x, y, across, up) => failedRows(model).filter((row) => Number.isFinite(x.values[row]) && (!model.keep || model.keep[row]))
+    .map((row) => Object.assign({ x: across.of(x.values[row]) + spread(x, row) }, Number.isFinite(y.values[row]) ? { y: up.of(y.values[row]) + spread(y, row) } : {}));
   const build = () => {
     const { sets, tones, x, y, by, across, up } = datasets();
     const bar = tones && !tones.levels;
@@ -78,6 +81,7 @@ function explorer(model, other) {
     return {
       type: "scatter",
       data: { datasets: sets },
+      plugins: [crossesAt(failedPlaces(x, y, across, up))],
       options: {
         layout: { padding: bar ? { right: 74, top: 20 } : {} },
         scales: { x: variableAxis(x), y: variableAxis(y) },
@@ -96,7 +100,7 @@ function explorer(model, other) {
     };
   };
   const note = el("p", { class: "says" });
-  const tell = () => { note.textContent = plural(drawn, "case") + (model.keep ? " within the filters of the table below" : "") + ". Click a point to open its case."; };
+  const tell = () => { note.textContent = plural(drawn, "case") + (model.keep ? " within the filters of the table below" : "") + ". Click a point to open its case." + (failedRows(model).length > 0 ? " Crosses: failed cases." : ""); };
   const change = (key) => (value) => { view[key] = value; self.redraw(); tell(); };
   const controls = el("div", { class: "controls" }, choice("across", variableChoices(model), view.x, change("x")), tick("logarithmic", view.logX, change("logX")),
     choice("up", variableChoices(model), view.y, change("y")), tick("logarithmic", view.logY, change("logY")),
@@ -191,16 +195,21 @@ function factorMap(model, observable) {
     const over = (ctx, boxes) => {
       ctx.textAlign = "center";
       for (const { cell, left, right, top, bottom } of boxes) {
-        if (cell.value === null || right - left < 78 || bottom - top < 34) continue;
+        if (cell.value === null || bottom - top < 34) continue;
         const error = cell.pure === null ? cell.error : cell.pure, x = (left + right) / 2, y = (top + bottom) / 2;
         ctx.fillStyle = inkOn(tones.of(cell.value));
-        ctx.font = "12px system-ui, sans-serif";
-        ctx.fillText(error === null ? show(value.of(cell.mean), 3) : withError(value.of(cell.mean), value.of(error)), x, y - 1);
-        ctx.font = "10.5px system-ui, sans-serif";
-        ctx.fillText(plural(cell.count, "case"), x, y + 13);
+        // The longest text that fits.
+        const write = (size, at, ...texts) => {
+          ctx.font = `${size}px system-ui, sans-serif`;
+          const text = texts.find((one) => ctx.measureText(one).width < right - left - 8);
+          if (text) ctx.fillText(text, x, at);
+        };
+        const short = show(value.of(cell.mean), 3);
+        write(12, y - 1, error === null ? short : withError(value.of(cell.mean), value.of(error)), short);
+        write(10.5, y + 13, plural(cell.count, "case"), String(cell.count));
       }
     };
-    const side = (factor, shown, edges, k) => `${factor.name}: ${factor.levels.length > 0 ? factor.levels[k] : `${shown.says(edges[k])} to ${shown.says(edges[k + 1])}`}`;
+    const side = (factor, shown, edges, k) => `${factor.name}: ${factor.levels.length > 0 ? shown.says(k) : `${shown.says(edges[k])} to ${shown.says(edges[k + 1])}`}`;
     const label = (cell) => [side(a, across, map.across, cell.i), side(b, up, map.up, cell.j), `mean ${value.says(cell.mean)}, ${plural(cell.count, "case")}`]
       .concat(cell.error === null ? [] : [`standard error ${value.says(cell.error)}`], cell.pure === null ? [] : [`by the pure error ${value.says(cell.pure)}`]);
     const ends = (factor, shown, edges) => (factor.levels.length > 0 ? {} : { min: shown.of(edges[0]), max: shown.of(edges[edges.length - 1]) });
@@ -210,7 +219,7 @@ function factorMap(model, observable) {
     return chart;
   };
   const change = (key) => (value) => { view[key] = value; self.redraw(); };
-  const factors = model.factors.map((factor) => [factor.name, titled(factor)]);
+  const factors = model.factors.map((factor) => [factor.name, quantity(factor).title]);
   const controls = el("div", { class: "controls" }, choice("across", factors, view.a, change("a")), choice("up", factors, view.b, change("b")), choice("shown", offered, view.shows, change("shows")));
   const says = `Cells show mean ± standard error and the number of cases. The error follows from ${observable.pure_error === null ? "the values in the cell" : "the scatter of single runs (pure error)"}.` + (failedRows(model).length > 0 ? " Crosses: failed cases." : "");
   const self = figure(`Map of ${response.name}`, says, build, { height: 420, controls });

@@ -12,7 +12,8 @@ const whiskers = {
       chart.getDatasetMeta(index).data.forEach((element, i) => {
         const at = set.data[i], value = at !== null && typeof at === "object" ? at.y : at, error = set.errors[i];
         if (value === null || error === null || error === undefined) return;
-        const low = scale.getPixelForValue(value - error), high = scale.getPixelForValue(value + error);
+        const inside = (pixel) => (across ? Math.max(chart.chartArea.left, Math.min(chart.chartArea.right, pixel)) : pixel);  // names stand at the left
+        const low = inside(scale.getPixelForValue(value - error)), high = inside(scale.getPixelForValue(value + error));
         const middle = across ? element.y : element.x;
         ctx.beginPath();
         for (const [from, a, to, b] of [[low, middle, high, middle], [low, middle - cap, low, middle + cap], [high, middle - cap, high, middle + cap]]) {
@@ -119,8 +120,10 @@ function logTicks(low, high) {
   return ticks.filter((_, i) => i % every === 0);
 }
 
-function tickText(x, log) {
-  const exponent = Math.round(Math.log10(Math.abs(x)));
+// With as many digits as tell it from the next one.
+function tickText(x, log, ticks) {
+  const exponent = Math.round(Math.log10(Math.abs(x))), step = !log && ticks.length > 1 ? Math.abs(ticks[1].value - ticks[0].value) : 0;
+  if (step > 0 && Math.abs(x) > 1000 * step) return show(x, Math.min(12, 1 + Math.ceil(Math.log10(Math.abs(x) / step))));
   return log && Math.abs(exponent) >= 4 && Math.abs(Math.abs(x) / 10 ** exponent - 1) < 1e-9 ? power(exponent) : show(x);
 }
 
@@ -128,7 +131,7 @@ function axis(title, more) {
   const log = more && more.type === "logarithmic";
   return Object.assign({
     title: { display: Boolean(title), text: title, color: colour("quiet") },
-    ticks: { color: colour("quiet"), maxTicksLimit: log ? 12 : 7, maxRotation: 0, includeBounds: false, callback: (value) => tickText(value, log) },
+    ticks: { color: colour("quiet"), maxTicksLimit: log ? 12 : 7, maxRotation: 0, includeBounds: false, callback: (value, _, ticks) => tickText(value, log, ticks) },
     grid: { color: colour("grid"), borderColor: colour("line") },
   }, log ? { afterBuildTicks(scale) { scale.ticks = logTicks(scale.min, scale.max).map((value) => ({ value })); } } : {}, more || {});
 }
@@ -136,9 +139,9 @@ function axis(title, more) {
 // The axis of a variable; its numbers are drawn multiplied by quantity(variable).factor.
 function variableAxis(variable, numbers) {
   if (variable.levels.length > 0)
-    return axis(variable.name, {
-      type: "linear", min: -0.5, max: variable.levels.length - 0.5,
-      ticks: { color: colour("quiet"), stepSize: 1, autoSkip: true, maxRotation: 40, callback: (value) => (Number.isInteger(value) ? variable.levels[value] : null) },
+    return axis(quantity(variable).title, {
+      type: "linear", min: -0.5, max: variable.levels.length - 0.5, offset: false,
+      ticks: { color: colour("quiet"), stepSize: 1, autoSkip: true, maxRotation: 40, callback: (value) => (Number.isInteger(value) ? shownLevels(variable).texts[value] : null) },
       afterBuildTicks(scale) { scale.ticks = variable.levels.map((_, value) => ({ value })); },
     });
   const shown = quantity(variable, numbers);
@@ -246,8 +249,13 @@ function showPage(build) {
   figures = [];
   const page = document.getElementById("page");
   page.replaceChildren(...build().filter(Boolean));
-  document.getElementById("sections").replaceChildren(...[...page.querySelectorAll("section[id]")].map((one) =>
-    el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, one.querySelector("h2").textContent)));
+  const sections = [...page.querySelectorAll("section[id]")], title = (one) => one.querySelector("h2").textContent;
+  const list = choice("Go to", [["", "…"], ...sections.map((one) => [one.id, title(one)])], "", (id) => {
+    sections.find((one) => one.id === id)?.scrollIntoView({ behavior: "smooth" });
+    list.control.value = "";
+  });
+  document.getElementById("sections").replaceChildren(list, ...sections.map((one) =>
+    el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, title(one))));
   setTimeout(drawTheRest, 600);  // after the figures in view
 }
 

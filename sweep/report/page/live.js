@@ -30,7 +30,7 @@ function spanText(seconds) {
   return s < 60 ? `${s} s` : s < 3600 ? `${Math.floor(s / 60)}:${two(s % 60)} min` : `${Math.floor(s / 3600)}:${two(Math.floor((s % 3600) / 60))} h`;
 }
 
-const live = { now: null, lost: false, failures: [], panel: el("section", { id: "now", "aria-live": "polite" }) };
+const live = { now: null, lost: false, failures: [], points: new Map() /* wanted, by database */, panel: el("section", { id: "now", "aria-live": "polite" }) };
 
 // Where a case stands, in words: its point and its factors.
 function placeOf(database, id) {
@@ -46,7 +46,7 @@ function runningTable(state) {
   const shown = state.run.running.slice(0, 64);
   const rows = shown.map((one) => {
     const place = placeOf(state.database, one.case);
-    const factors = place ? place.model.factors.map((f) => `${f.name} ${f.levels.length > 0 ? textOf(f, place.row) : quantity(f).says(f.values[place.row])}`).join(", ") : "";
+    const factors = place ? place.model.factors.map((f) => `${f.name} ${quantity(f).says(f.values[place.row])}`).join(", ") : "";
     const done = one.share === null ? el("span", {}, "begins") : el("progress", { max: 1, value: one.share, title: `${Math.round(100 * one.share)} %` });
     return [place ? place.model.places[0].values[place.row] : "", done, spanText(one.seconds), factors, one.attempt, one.host,
       place ? el("button", { type: "button", class: "plain", click: () => selectCase(place.model, place.row) }, one.case.slice(0, 10)) : one.case.slice(0, 10)];
@@ -56,12 +56,32 @@ function runningTable(state) {
     more > 0 ? el("p", { class: "says" }, `and ${more} more`) : null];
 }
 
+// A design that extends, and the number of points that it shall have.
+function morePoints(state, act) {
+  const campaign = data.campaigns.find((one) => one.database === state.database && one.extends_from);
+  if (!campaign) return null;
+  const wanted = live.points.get(state.database) ?? 2 * campaign.extends_from;
+  const field = el("input", { type: "number", min: 1, value: wanted, "aria-label": "points of the design", input: () => live.points.set(state.database, field.value) });
+  return el("span", { class: "choice" }, button("Extend the design to", act("more", () => ({ points: field.value }))), field, "points");
+}
+
 function steering(state) {
   if (!data.steerable) return null;
   const said = el("span", { class: "quiet" });
-  const act = (path, more) => async () => { try { await ask(path, { database: state.database, ...more }, ""); said.textContent = "asked"; } catch (error) { said.textContent = error.message; } };
+  const act = (path, more) => async () => {
+    try {
+      await ask(path, { database: state.database, ...(typeof more === "function" ? more() : more) }, "");
+      said.textContent = "asked";
+    } catch (error) { said.textContent = error.message; }
+  };
   return el("div", { class: "controls" }, state.run ? button("Stop after the running cases", act("stop")) : [button("Run", act("run")),
-    button("Run crashed cases again", act("again", { outcome: "crashed" })), button("Run timed-out cases again", act("again", { outcome: "timed_out" }))], said);
+    button("Run crashed cases again", act("again", { outcome: "crashed" })), button("Run timed-out cases again", act("again", { outcome: "timed_out" })), morePoints(state, act)], said);
+}
+
+// What the time left ends, where later cases depend on results.
+function partOf({ database, run }) {
+  const campaign = data.campaigns.find((one) => one.database === database && one.name === run.campaign);
+  return campaign && campaign.calibration ? " in this wave" : campaign && campaign.brackets ? " in this round" : "";
 }
 
 function stateOf(state) {
@@ -70,7 +90,7 @@ function stateOf(state) {
   if (!state.run) return el("div", { class: "card" }, el("p", { class: "says" }, `${name}no run is under way.`), steering(state));
   const { run } = state, share = run.questions > 0 ? run.decided / run.questions : 1, rate = run.seconds > 0 ? run.settled / run.seconds : 0;
   const facts = [`${run.decided} of ${plural(run.questions, "case")}`, rate > 0 ? (rate >= 0.5 ? `${show(rate, 3)}/s` : `${show(60 * rate, 3)}/min`) : null,
-    run.decided < run.questions ? `${spanText(run.seconds_left)} left` : null, run.failed > 0 ? `${run.failed} failed` : null].filter(Boolean).join(" · ");
+    run.decided < run.questions ? `${spanText(run.seconds_left)} left${partOf(state)}` : null, run.failed > 0 ? `${run.failed} failed` : null].filter(Boolean).join(" · ");
   return el("div", { class: "card" },
     el("div", { class: "caption" }, el("h3", {}, `${name}${run.campaign}`), el("span", { class: "quiet" }, facts)),
     el("progress", { class: "whole", max: 1, value: share, "aria-label": "share of the cases that are decided" }),
@@ -95,16 +115,24 @@ function showNow() {
 const waiting = new Map();  // results by the case's id, not drawn yet
 let drawing = 0, drawCost = 0;
 
-function take(database, results) {
-  for (const one of results) {
-    waiting.set(`${database} ${one.case}`, { database, one });
-    if (!["completed", "skipped", "abandoned"].includes(one.outcome)) live.failures.push(one);
-  }
+// Results told since the data of the page were made: newer data may not contain the last of them.
+let sinceData = [];  // {number of the event, database, results}
+const numberOf = (id) => Number(id.slice(id.lastIndexOf("-") + 1));
+
+function take(database, results, id) {
+  sinceData.push({ number: numberOf(id), database, results });
+  live.failures.push(...results.filter((one) => !["completed", "skipped", "abandoned"].includes(one.outcome)));
   live.failures.splice(0, Math.max(0, live.failures.length - 50));
+  wait(database, results);
+}
+
+function wait(database, results) {
+  for (const one of results) waiting.set(`${database} ${one.case}`, { database, one });
   if (!drawing) drawing = setTimeout(draw, Math.max(400, 5 * drawCost));
 }
 
 function draw() {
+  clearTimeout(drawing);
   drawing = 0;
   const begun = performance.now(), touched = new Set();
   for (let index = 0; index < data.campaigns.length; ++index) {
@@ -133,7 +161,14 @@ async function refresh() {
   refreshing = true;
   live.stale = false;
   try {
-    replaceData(await ask("data"));
+    const fresh = await ask("data"), covered = numberOf(fresh.event);
+    replaceData(fresh);
+    live.listDatabases();
+    sinceData = sinceData.filter((told) => told.number > covered);
+    if (sinceData.length > 0) {
+      sinceData.forEach((told) => wait(told.database, told.results));
+      draw();
+    }
   } catch (error) {
     live.stale = true;
   }
@@ -147,11 +182,18 @@ document.addEventListener("visibilitychange", () => { if (live.stale) refresh();
 function sqlConsole() {
   const text = el("textarea", { rows: 3, spellcheck: "false", "aria-label": "SQL", placeholder: "SELECT ..." });
   text.value = data.campaigns.length > 0 ? `SELECT * FROM ${data.campaigns[0].name} LIMIT 20` : "";
-  const out = el("div", {}), database = data.databases.length > 1 ? choice("database", data.databases.map((name) => [name, name]), data.databases[0], () => {}) : null;
+  const out = el("div", {}), database = choice("database", [], "", () => {}), select = database.control;
+  live.listDatabases = () => {
+    const chosenOne = data.databases.includes(select.value) ? select.value : data.databases[0];
+    select.replaceChildren(...data.databases.map((name) => el("option", { value: name }, name)));
+    select.value = chosenOne;
+    database.hidden = data.databases.length < 2;
+  };
+  live.listDatabases();
   const run = async () => {
     out.replaceChildren(el("p", { class: "says" }, "…"));
     try {
-      const answer = await work("query", database ? { database: database.querySelector("select").value } : {}, text.value);
+      const answer = await work("query", { database: select.value }, text.value);
       const rows = JSON.parse(answer.out), columns = rows.length > 0 ? Object.keys(rows[0]) : [];
       out.replaceChildren(el("p", { class: "says" }, plural(rows.length, "row") + (rows.length > 500 ? ", the first 500 shown" : "")),
         rows.length > 0 ? table(columns.map((name) => [name, typeof rows[0][name] === "number" ? "number" : ""]), rows.slice(0, 500).map((row) => columns.map((name) => row[name] ?? ""))) : "");
@@ -189,8 +231,8 @@ const consoleOfSql = sqlConsole();
 document.getElementById("page").after(el("main", { class: "beside" }, consoleOfSql));
 
 const events = new EventSource(address("events", { since: data.event }));
-const told = (kind, use) => events.addEventListener(kind, (event) => { live.lost = false; use(JSON.parse(event.data)); });
-told("results", ({ database, results }) => take(database, results));
+const told = (kind, use) => events.addEventListener(kind, (event) => { live.lost = false; use(JSON.parse(event.data), event.lastEventId); });
+told("results", ({ database, results }, id) => take(database, results, id));
 told("now", (now) => { live.now = now; showNow(); });
 told("page", refresh);
 events.addEventListener("error", () => { live.lost = true; showNow(); });

@@ -12,7 +12,7 @@ function modelSection(campaign, response) {
   if (model.refused) return section("model", "Response model", `Not available: ${model.refused}.`);
   const factors = model.factors.map((f) => Object.assign({ meaning: "", values: [f.low, f.high] }, f)), { map, middle } = model;
   const variable = { name: model.observable, unit: model.unit, levels: [] };
-  const settingText = (j) => { const f = factors[j]; return `${f.name} ${f.levels.length > 0 ? middle.texts[j] : shownOf(f).says(middle.setting[j])}`; };
+  const settingText = (j) => { const f = factors[j]; return `${f.name} ${middle.setting[j] === null ? middle.texts[j] : shownOf(f).says(middle.setting[j])}`; };
   const curves = model.order.map((j) => {
     const curve = model.curves[j], value = quantity(variable, curve.mean.concat(curve.averaged).filter((x) => x !== null));
     return bandCurve(factors[j], curve.at, curve, { title: `${model.observable} against ${factors[j].name}`, value, failed: model.failed.map((one) => one.setting[j]) });
@@ -28,6 +28,6 @@ function modelSection(campaign, response) {
     maps.push(drawn(map.averaged, rest.length > 0 ? "Average over the other factors." : "Mean response."));
     if (rest.length > 0) maps.push(drawn(map.slice, `Other factors at mid-range: ${rest.map(settingText).join(", ")}.`));
   }
-  return section("model", "Response model", "Predictions between the computed cases. Blue: other factors at mid-range, with the 95 % bands of the mean (shaded) and of a single run (dashed). Orange: average over the other factors." + failedSays(model.failed),
+  return section("model", "Response model", "Predictions between the computed cases. Blue: other factors at mid-range, with the 95 % bands of the mean (shaded) and of a single run (dashed); at levels a bar and whiskers. Orange: average over the other factors." + failedSays(model.failed),
     el("div", { class: "grid" }, curves), el("div", { class: "grid wide" }, maps.filter(Boolean)), modelShares(model.influence), el("div", { class: "card" }, model.says.trim().split("\n").map((text) => el("p", { class: "notes" }, text))));
 }

@@ -2,7 +2,7 @@
 
 // The place of a setting on the axis of a factor; of a level, its index.
 function placeOf(factor, x) { return factor.numbers.length > 0 ? factor.numbers.indexOf(x) : x; }
-function shownOf(factor) { return factor.levels.length > 0 ? { of: (x) => placeOf(factor, x), says: (x) => factor.levels[placeOf(factor, x)] } : quantity(factor); }
+function shownOf(factor) { return factor.levels.length > 0 ? { of: (x) => placeOf(factor, x), says: (x) => quantity(factor).says(placeOf(factor, x)) } : quantity(factor); }
 
 // Crosses, black on white to stand out on every colour.
 function drawCrosses(ctx, places) {
@@ -73,7 +73,7 @@ function cellMap(map, factors, values, { title, says, variable, tones, inside, s
     drawCrosses(ctx, failed.map((one) => place(one.setting)));
     if (setting && setting[map.across] !== null && setting[map.up] !== null) for (const [width, tone] of [[5, "#ffffff"], [2.5, "#000000"]]) strokedRing(ctx, ...place(setting), width, tone);
   };
-  const at = (factor, low, high, k) => `${factor.name} ${factor.levels.length > 0 ? factor.levels[k] : show((low + high) / 2)}`;
+  const at = (factor, low, high, k) => `${factor.name} ${factor.levels.length > 0 ? quantity(factor).says(k) : show((low + high) / 2)}`;
   const label = (cell) => [`${at(a, cell.x0, cell.x1, cell.i)}, ${at(b, cell.y0, cell.y1, cell.j)}`,
     `${variable.name} ${cell.value === null ? "–" : value.says(cell.value)}`].concat(more ? more(cell.k) : []);
   const build = () => cellChart({ x: variableAxis(a), y: variableAxis(b), cells, tones: tones(), gap: -0.5, over, label });
@@ -81,21 +81,28 @@ function cellMap(map, factors, values, { title, says, variable, tones, inside, s
 }
 
 // `lines.mean` against a factor with the 95 % bands of the mean (shaded) and of a single run (dashed), and
-// `lines.averaged`. `failed`: the factor's values in failed cases, crosses at the lower edge.
+// `lines.averaged`; of levels a bar, whiskers and a diamond each. `failed`: the factor's values in failed cases, crosses at
+// the lower edge.
 function bandCurve(factor, ats, lines, { title, value, limits, marker, failed }) {
   const shown = shownOf(factor), xs = ats.map((x) => shown.of(x));
   const of = (pick) => xs.map((x, i) => ({ x, y: pick(i) }));
   const build = () => {
     const tone = colour("one"), edge = { borderWidth: 0, pointRadius: 0, pointHitRadius: 0, backgroundColor: withAlpha(tone, 0.17) };
     const dashed = { borderColor: tone, borderWidth: 1, borderDash: [4, 4], pointRadius: 0, pointHitRadius: 0 };
-    const line = (numbers, name, borderColor) => ({ label: name, data: of((i) => (numbers[i] === null ? null : value.of(numbers[i]))), borderColor, backgroundColor: borderColor, borderWidth: 2,
-      pointRadius: factor.levels.length > 0 ? 3 : 0, pointHitRadius: 8 });
+    const line = (numbers, name, borderColor) => ({ label: name, data: of((i) => (numbers[i] === null ? null : value.of(numbers[i]))), borderColor, backgroundColor: borderColor, borderWidth: 2, pointRadius: 0, pointHitRadius: 8 });
     const about = (sign, width) => of((i) => (lines.mean[i] === null ? null : value.of(lines.mean[i] + sign * lines[width][i])));
-    const sets = [line(lines.mean, "slice", tone)];
+    const levels = factor.levels.length > 0, sets = [line(lines.mean, "slice", tone)];
+    if (levels && !lines.mean_half_width) Object.assign(sets[0], { type: "bar", barThickness: 32, grouped: false, borderWidth: 0 });
+    else if (levels) {
+      Object.assign(sets[0], { showLine: false, pointStyle: "line", pointRadius: 16, errorColour: tone,
+        errors: lines.run_half_width ? lines.run_half_width.map((width) => (width === null ? null : value.of(width) - value.of(0))) : undefined });
+      sets.push({ type: "bar", data: about(-1, "mean_half_width").map(({ x, y }, i) => ({ x, y: y === null ? null : [y, about(1, "mean_half_width")[i].y] })),
+        backgroundColor: withAlpha(tone, 0.3), barThickness: 32, grouped: false, order: 1 });
+    }
     for (const [width, style] of [["mean_half_width", edge], ["run_half_width", dashed]])
-      if (lines[width]) sets.push(Object.assign({ data: about(1, width) }, width === "mean_half_width" ? { fill: "+1" } : {}, style), Object.assign({ data: about(-1, width) }, style));
-    if (lines.averaged) sets.push(line(lines.averaged, "averaged", colour("two")));
-    return { type: "line", data: { datasets: sets }, plugins: [crossesAt(failed.map((x) => ({ x: shown.of(x) })))], options: { scales: { x: variableAxis(factor), y: axis(value.title, limits || {}) },
+      if (lines[width] && !levels) sets.push(Object.assign({ data: about(1, width) }, width === "mean_half_width" ? { fill: "+1" } : {}, style), Object.assign({ data: about(-1, width) }, style));
+    if (lines.averaged) sets.push(Object.assign(line(lines.averaged, "averaged", colour("two")), levels ? { showLine: false, pointStyle: "rectRot", pointRadius: 5 } : {}));
+    return { type: "line", data: { datasets: sets }, plugins: [crossesAt(failed.map((x) => ({ x: shown.of(x) })))], options: { scales: { x: variableAxis(factor), y: axis(value.title, Object.assign({ beginAtZero: false, grace: levels && !limits?.max ? "8%" : 0 }, limits)) },
       plugins: Object.assign(marker ? { marker: { at: shown.of(marker.at), label: marker.label } } : {}, { tooltip: { filter: (item) => Boolean(item.dataset.label),
         callbacks: lines.averaged ? { label: (item) => `${item.dataset.label}: ${show(item.parsed.y)}` } : {} } }) } };
   };

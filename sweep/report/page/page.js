@@ -20,7 +20,7 @@ function heading(model) {
     campaign.where ? `where ${campaign.where}` : null].filter(Boolean);
   const ranges = model.factors.map((f) => {
     const shown = quantity(f);  // in the unit of the figures
-    return f.levels.length > 0 ? [f.name, unitText(f.unit), f.levels.join(", "), f.meaning]
+    return f.levels.length > 0 ? [f.name, shown.unit, shownLevels(f).texts.join(", "), f.meaning]
       : [f.name, shown.unit, `${show(shown.of(f.low))} to ${show(shown.of(f.high))}${f.log ? ", logarithmic" : ""}`, f.meaning];
   });
   return [el("h1", {}, campaign.name), el("p", { class: "says" }, parts.join(" · ")),
@@ -50,8 +50,9 @@ function verdict(history) {
 function distributionSection(response, sample, other) {
   const { provisional } = response.history;
   const columns = [["statistic"], ["value", "number"]].concat(provisional ? [["provisional", "number provisional"]] : [], other ? [[campaignTitle(other.model.campaign), "number"]] : []);
-  const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text].concat(provisional ? [provisional.statistics[name]] : [], other ? [other.response.history.statistics[name].text] : []));
-  const says = response.meaning ? `${titled(response)}: ${response.meaning}` : titled(response);
+  const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text].concat(provisional ? [provisional.statistics[name]] : [], other ? [other.response.history.statistics[name].text] : [])
+    .map((text, k) => (k === 0 ? text : statisticOf(response, name).says(text))));
+  const { title: named } = quantityOf(response), says = response.meaning ? `${named}: ${response.meaning}` : named;
   return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, response.histogram.counts.length > 0 ? histogram(response, other && other.response) : null,
     el("div", { class: "card" }, el("h3", {}, "Moments"),
       el("p", { class: "says" }, (response.history.count > 0 ? plural(response.history.count, "value") + (sample ? " with 95 % errors." : ".") : "No value counts yet.") +
@@ -71,7 +72,7 @@ function momentsSection(campaign, response, other) {
   if (!campaign.sample || response.history.points.length === 0) return null;
   return section("convergence", "Convergence", "Moments against the number of design points, with 95 % errors. The verdict uses complete blocks of the " +
     "prefix of the design. It does not depend on the order in which cases finish.",
-  el("div", { class: "grid" }, statistics.map((statistic) => moment(campaign, response.history, other && other.response.history, statistic))));
+  el("div", { class: "grid" }, statistics.map((statistic) => moment(campaign, response, other && other.response.history, statistic))));
 }
 
 function effectsSection(model, response, other) {
@@ -86,9 +87,10 @@ const trendSigns = { rises: "↗ rises", falls: "↘ falls", bends: "∼ bends" 
 
 function influenceSection(response) {
   const { influence } = response, n = "number";
-  const columns = [["factor"], ...influence.shows.map((one) => [one.column, n]), ["trend", "sign"], ["rank correlation", n]];
-  const rows = influence.factors.map((f) => [f.name, ...influence.shows.map((one) => f[one.text]), trendSigns[f.trend] || "", f.rank_text]);
-  return section("sensitivity", "Sensitivity", influence.says, el("div", { class: "grid wide" }, influenceFigure(influence),
+  const { factor, unit } = influenceOf(response), titleOf = (column) => column + (unit ? ` (${unit})` : "");
+  const columns = [["factor"], ...influence.shows.map((one) => [titleOf(one.column), n]), ["trend", "sign"], ["rank correlation", n]];
+  const rows = influence.factors.map((f) => [f.name, ...influence.shows.map((one) => scaledText(f[one.text], factor)), trendSigns[f.trend] || "", scaledText(f.rank_text, 1)]);
+  return section("sensitivity", "Sensitivity", influence.says, el("div", { class: "grid wide" }, influenceFigure(response),
     el("div", { class: "card" }, table(columns, rows), varianceBar(influence.variance),
       influence.unexplained ? el("p", { class: "says" }, capital(influence.unexplained) + ".") : null,
       influence.notes.map((note) => el("p", { class: "says" }, note)))));
@@ -102,22 +104,29 @@ function curvesSection(model) {
   return section("curves", "Curves", says, el("div", { class: "grid wide" }, families.map((family) => curveFigure(model, family))));
 }
 
-function extremesSection(campaign, response) {
-  const n = "number";
-  const columns = [["point", n]].concat(campaign.replicates > 1 ? [["repeat", n]] : [],
-    campaign.factors.map((f) => [f.name, f.levels.length > 0 ? "" : n]), [[response.name, n], ["case"]]);
-  const rows = (list) => list.map((one) => [one.point].concat(campaign.replicates > 1 ? [one.replicate] : [], one.factors, [one.value, one.case.slice(0, 10)]));
+// Columns of the factors in the units of the figures, and what stands there for a row of the database's values.
+function factorColumns(model) {
+  const shown = model.factors.map((f) => quantity(f)), levels = model.factors.map((f) => (f.levels.length > 0 ? shownLevels(f) : null));
+  const worded = (j) => levels[j] && !levels[j].numbers;
+  return { columns: shown.map(({ title }, j) => [title, worded(j) ? "" : "number"]),
+    cells: (values) => values.map((x, j) => (worded(j) || x === null ? x : show(Number(x) * (levels[j] ? levels[j].factor : shown[j].factor)))) };
+}
+
+function extremesSection(model, response) {
+  const n = "number", { campaign } = model, factors = factorColumns(model), shown = quantityOf(response);
+  const columns = [["point", n]].concat(campaign.replicates > 1 ? [["repeat", n]] : [], factors.columns, [[shown.title, n], ["case"]]);
+  const rows = (list) => list.map((one) => [one.point].concat(campaign.replicates > 1 ? [one.replicate] : [], factors.cells(one.factors), [show(shown.of(one.value)), one.case.slice(0, 10)]));
   const part = (title, list) => el("div", { class: "card" }, el("h3", {}, title), table(columns, rows(list)));
   return section("extremes", "Extremes", "Use the id in the last column with grainsweep explain and replay.",
     el("div", { class: campaign.factors.length > 3 ? "grid full" : "grid wide" }, part(`Largest ${response.name}`, response.largest), part(`Smallest ${response.name}`, response.smallest)));
 }
 
-function failuresSection(campaign) {
-  const { count, listed } = campaign.failures;
+function failuresSection(model) {
+  const { count, listed } = model.campaign.failures, factors = factorColumns(model);
   if (count === 0) return null;
   const columns = [["point", "number"], ["outcome"], ["attempts", "number"], ["reason", "text"]]
-    .concat(campaign.factors.map((f) => [f.name, f.levels.length > 0 ? "" : "number"]), [["case"]]);
-  const rows = listed.map((one) => [one.point, one.outcome, one.attempts, one.reason].concat(one.factors, [one.case.slice(0, 10)]));
+    .concat(factors.columns, [["case"]]);
+  const rows = listed.map((one) => [one.point, one.outcome, one.attempts, one.reason].concat(factors.cells(one.factors), [one.case.slice(0, 10)]));
   const says = listed.length < count ? `The first ${listed.length} of ${count}. ` : "";
   return section("failures", "Failed cases", says + "All statistics exclude these cases.", el("div", { class: "card tail" }, table(columns, rows)));
 }
@@ -210,7 +219,7 @@ function render() {
       settled ? bracketsSection(campaign) : null, calibrationSection(campaign), answered ? distributionSection(response, campaign.sample, other) : null,
       ...(settled ? [momentsSection(campaign, response, other), effectsSection(model, response, other), influenceSection(response), modelSection(campaign, response)] : []),
       answered ? filmsSection(model) : null, ...explore.sections, settled ? againstSection(model, response) : null, curvesSection(model),
-      settled ? extremesSection(campaign, response) : null, failuresSection(campaign), provenanceSection(campaign)];
+      settled ? extremesSection(model, response) : null, failuresSection(model), provenanceSection(campaign)];
   });
   cases.paint();
 }
@@ -218,7 +227,7 @@ function render() {
 // `name`: the one to be chosen where there is such a one.
 function fillObservables(name) {
   const { campaign } = open(chosen.campaign), wanted = campaign.observables.findIndex((one) => one.name === name), select = document.getElementById("observable");
-  select.replaceChildren(...campaign.observables.map((o, i) => el("option", { value: i }, titled(o))));
+  select.replaceChildren(...open(chosen.campaign).responses.map((one, i) => el("option", { value: i }, quantity(one).title)));
   chosen.observable = wanted >= 0 ? wanted : campaign.main;
   select.value = String(chosen.observable);
 }

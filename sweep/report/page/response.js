@@ -33,10 +33,17 @@ function histogram(response, other) {
   }, { tall: true }).node;
 }
 
-function moment(campaign, history, other, [name, title]) {
-  return figure(title, history.statistics[name].text, () => {
+// How a statistic of a response is shown: mean and standard deviation in its unit, the others are numbers.
+function statisticOf(response, name) {
+  const { factor, unit } = ["mean", "sd"].includes(name) ? quantityOf(response) : { factor: 1, unit: "" };
+  return { factor, unit, says: (text) => scaledText(text, factor) + (unit ? ` ${unit}` : "") };
+}
+
+function moment(campaign, response, other, [name, title]) {
+  const { history } = response, shown = statisticOf(response, name);
+  return figure(title, shown.says(history.statistics[name].text), () => {
     const line = (of, tone) => {
-      const { values, errors } = of.statistics[name], points = of.points;
+      const [values, errors] = ["values", "errors"].map((key) => of.statistics[name][key].map((x) => (x === null ? null : x * shown.factor))), { points } = of;
       const at = (offset) => points.map((x, i) => ({ x, y: values[i] === null || errors[i] === null ? null : values[i] + offset * errors[i] }));
       const edge = { borderWidth: 0, pointRadius: 0, pointHitRadius: 0, backgroundColor: withAlpha(colour(tone), 0.17), spanGaps: false };
       return [{ data: points.map((x, i) => ({ x, y: values[i] })), errorsOf: errors, borderColor: colour(tone), backgroundColor: colour(tone), borderWidth: 2, pointRadius: points.length > 40 ? 0 : 2.5, pointHitRadius: 8 },
@@ -46,12 +53,12 @@ function moment(campaign, history, other, [name, title]) {
       type: "line",
       data: { datasets: line(history, "one").concat(other ? line(other, "two") : []) },
       options: {
-        scales: { x: axis("design points", { type: "linear", min: 0 }), y: axis("") },
+        scales: { x: axis("design points", { type: "linear", min: 0 }), y: axis(shown.unit) },
         plugins: {
           marker: { at: campaign.stopped_at !== null ? campaign.stopped_at : history.converged_at, label: campaign.stopped_at !== null ? "stopped" : "converged" },
           tooltip: { filter: (item) => item.datasetIndex % 3 === 0, callbacks: {
             title: (items) => (items.length > 0 ? plural(items[0].parsed.x, "point") : ""),
-            label: (item) => withError(item.parsed.y, item.dataset.errorsOf[item.dataIndex]) } },
+            label: (item) => withError(item.parsed.y, item.dataset.errorsOf[item.dataIndex]) + (shown.unit ? ` ${shown.unit}` : "") } },
         },
       },
     };
@@ -85,7 +92,7 @@ function effect(factor, bins, response, range, others) {
       data: { datasets: [line(bins, "one")].concat(others ? [line(others, "two")] : []) },
       options: { scales: { x: variableAxis(factor), y: axis(up.title, { min: up.of(range.low), max: up.of(range.high) }) },
         plugins: { tooltip: { callbacks: {
-          title: (items) => { const x = items[0].dataset.bins[items[0].dataIndex][0]; return factor.levels.length > 0 ? factor.levels[x] : `${factor.name} ${across.says(x)}`; },
+          title: (items) => { const x = items[0].dataset.bins[items[0].dataIndex][0]; return `${factor.name} ${across.says(x)}`; },
           label: (item) => {
             const [, mean, error, count, pure] = item.dataset.bins[item.dataIndex];
             return [(error === null ? show(up.of(mean)) : withError(up.of(mean), up.of(error))) + (up.unit ? ` ${up.unit}` : "") + `, ${plural(count, "case")}`].concat(
@@ -95,9 +102,13 @@ function effect(factor, bins, response, range, others) {
   }).node;
 }
 
-function influenceFigure(influence) {
-  const { by, shares, shows } = influence, two = shows.length > 1;
-  const factors = [...influence.factors].sort((a, b) => (b[by] || 0) - (a[by] || 0));
+// How indices are shown: shares as they are, effects in the unit of the response.
+function influenceOf(response) { return response.influence.shares ? { factor: 1, unit: "" } : quantityOf(response); }
+
+function influenceFigure(response) {
+  const { influence } = response, { by, shares, shows } = influence, two = shows.length > 1, shown = influenceOf(response);
+  const scaled = (x) => (typeof x === "number" ? x * shown.factor : x);
+  const factors = influence.factors.map((f) => Object.fromEntries(Object.entries(f).map(([key, x]) => [key, scaled(x)]))).sort((a, b) => (b[by] || 0) - (a[by] || 0));
   const most = shares ? 1 : Math.max(...factors.map((f) => (f[by] || 0) + (f[by + "_error"] || 0)));
   return figure(shares ? "Share of the variance" : "Elementary effects", "", () => {
     const bar = (label, field, tone) => ({ label, data: factors.map((f) => (f[field] === undefined ? null : f[field])), errors: factors.map((f) => f[field + "_error"]),
@@ -107,7 +118,7 @@ function influenceFigure(influence) {
       type: "bar",
       data: { labels: factors.map((f) => f.name), datasets: sets },
       options: { indexAxis: "y",
-        scales: { x: axis(shares ? "index" : "effect", { beginAtZero: true, suggestedMax: most }), y: { ticks: { color: colour("ink") }, grid: { display: false } } },
+        scales: { x: axis(shares ? "index" : `effect${shown.unit ? ` (${shown.unit})` : ""}`, { beginAtZero: true, suggestedMax: most }), y: { ticks: { color: colour("ink") }, grid: { display: false } } },
         plugins: { legend: { display: two, labels: { color: colour("ink") } }, tooltip: { callbacks: {
           label: (item) => `${item.dataset.label}: ${show(item.raw)}` + (item.dataset.errors[item.dataIndex] ? ` ± ${show(item.dataset.errors[item.dataIndex])}` : "") } } } },
     };

@@ -8,8 +8,8 @@ const sure = `${Number((100 * (1 - data.risk)).toPrecision(4))} %`;
 
 function settingText(one, j) {
   if (one.setting[j] === null) return one.texts[j];
-  const factor = factors[j], { factor: scale, unit } = factor.levels.length > 0 ? { factor: 1, unit: "" } : quantity(factor);
-  return factor.levels.length > 0 ? one.texts[j] : `${show(one.setting[j] * scale, 6)}${unit ? " " + unit : ""}`;
+  const factor = factors[j], { factor: scale, unit } = quantity(factor);
+  return factor.levels.length > 0 ? shownOf(factor).says(one.setting[j]) : `${show(one.setting[j] * scale, 6)}${unit ? " " + unit : ""}`;
 }
 function responseScale(k) { return quantity(responses[k], data.curves.flatMap((curve) => curve.responses.map((r) => r[k].mean)).filter((x) => x !== null)); }
 function withWidth(k, mean, width) { const s = responseScale(k); return withError(s.of(mean), s.of(width)) + (s.unit ? ` ${s.unit}` : ""); }
@@ -42,7 +42,7 @@ function mapSection() {
   if (!map) return null;
   const [a, b] = [factors[map.across], factors[map.up]];
   const rest = factors.map((f, j) => [f, j]).filter(([, j]) => j !== map.across && j !== map.up).map(([f, j]) => `${f.name} ${settingText(data.best, j)}`);
-  const says = `The two most influential factors at this setting.${rest.length > 0 ? ` Other factors: ${rest.join(", ")}.` : ""} Inside the line the condition holds with probability ${sure} or more. The ring marks the setting.` + failedSays(data.failed);
+  const says = `Through the setting, against the two factors that decide most whether the condition holds.${rest.length > 0 ? ` Other factors: ${rest.join(", ")}.` : ""} Inside the line the condition holds with probability ${sure} or more. The ring marks the setting.` + failedSays(data.failed);
   const probability = { name: "probability", unit: "1", levels: [] };
   const whole = () => Object.assign(colouring(probability, [0, 1]), { title: "probability" });
   const maps = [windowMap(map.probability, `Process window: ${wanted}`, `Probability of the condition against ${a.name} and ${b.name}.`, probability, whole)];

@@ -1,6 +1,9 @@
 // The page of one case: facts about it, and the player.
 function value([name, number, unit]) {
-  if (typeof number !== "number") return `${words(name)} ${number}`;
+  if (typeof number !== "number") {
+    const [, file] = /^file:[0-9a-f]+:(.+)$/.exec(number) || [];
+    return file ? [`${words(name)} `, el("span", { title: file }, file.replace(/^.*[/]/, ""))] : `${words(name)} ${number}`;
+  }
   const [digits, ...rest] = measured(number, unit, 4).split(" ");
   return [`${words(name)} `, el("b", {}, digits), ` ${rest.join(" ")}`];
 }
@@ -24,15 +27,32 @@ function facts(film) {
   ].filter(Boolean);
 }
 
+// A button that reads another page of this kind and shows its case beside this one.
+function comparison(compare) {
+  const said = el("span", { class: "watch-problem-line" });
+  const file = el("input", { type: "file", accept: ".html", hidden: true, change: async () => {
+    said.textContent = "";
+    try { await compare(await file.files[0].text()); } catch (error) { said.textContent = ` ${error.message}`; }
+    file.value = "";
+  } });
+  return el("span", { class: "watch-compare" }, button("compare with another page …", () => file.click(), { title: "shows the case of another page of --watch beside this one" }), file, said);
+}
+
 async function start() {
-  const film = await readFilm(document.getElementById("watch-film").textContent);
+  const film = await readFilm(document.getElementById("watch-film").textContent), place = document.getElementById("player");
   document.title = film.header.about.title;
-  document.getElementById("facts").replaceChildren(...facts(film));
-  const player = new Player(document.getElementById("player"), film);
+  const shown = { player: new Player(place, film) };
   const [, share] = /^#t=([0-9.]+)/.exec(location.hash) || [];  // of the film
-  if (share) player.show(Number(share) * (film.frames - 1));
-  else player.startByItself();
-  window.grainsweepWatch = { player };  // for the console
+  const begin = () => (share ? shown.player.show(Number(share) * (shown.player.film.frames - 1)) : shown.player.startByItself());
+  shown.compare = async (text) => {
+    const other = await filmOfPage(text);
+    shown.player.free();
+    shown.player = pairOf(place, film, other);
+    begin();
+  };
+  document.getElementById("facts").replaceChildren(...facts(film), comparison(shown.compare));
+  begin();
+  window.grainsweepWatch = shown;  // for the console
 }
 
 start().catch((error) => document.getElementById("player").replaceChildren(el("p", { class: "watch-problem" }, `This film cannot be shown: ${error.message}`)));

@@ -8,15 +8,15 @@ const wallColours = {
 const wallColour = (name) => wallColours[name] || [0.6, 0.63, 0.68, 0.28];
 
 class Painter {
-  constructor(canvas, film) {
+  constructor(canvas, film, extent) {
     this.canvas = canvas;
     this.film = film;
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error("this browser does not offer WebGL 2");
     this.gl = gl;
     this.programs = programs(gl);
-    this.extent = extentOf(film);
-    this.show = { frozen: true, walls: true, slice: -1, plane: 1, size: 1, cut: null, chosen: -1 };
+    this.extent = extent;
+    this.show = { frozen: true, walls: true, slice: -1, plane: 1, size: 1, cut: null, chosen: -1, colours: [0, 1] };
     if (film.spheres > 0) this.prepareSpheres();
     this.prepareWalls();
     this.prepareSlices();
@@ -171,6 +171,7 @@ class Painter {
     gl.uniform1f(at.least, 2.2 * matrices.tangent / this.canvas.height);
     gl.uniform1f(at.showFrozen, show.frozen ? 1 : 0);
     gl.uniform4fv(at.cut, show.cut ? show.cut : [0, 0, 0, 1]);
+    gl.uniform2fv(at.colours, show.colours);
     gl.uniform1i(at.chosen, show.chosen);
     gl.uniform3fv(at.frozenColour, [0.6, 0.61, 0.63]);
     gl.activeTexture(gl.TEXTURE0);

@@ -2,7 +2,8 @@
 const seconds = 9;  // duration of a film at speed 1
 
 class Player {
-  constructor(element, film) {
+  // `extent`: what is seen, where it is not that of the film alone; `lead`: the player beside which this one shows its film.
+  constructor(element, film, { extent = extentOf(film), lead = null } = {}) {
     this.film = film;
     this.moment = 0;
     this.speed = 1;
@@ -13,12 +14,16 @@ class Player {
     this.compass = el("canvas", { class: "watch-compass", "aria-hidden": true });
     this.told = el("div", { class: "watch-told", hidden: true });
     this.stage = el("div", { class: "watch-stage" }, this.canvas, this.legends, this.scaleBar, this.compass, this.told);
-    this.root = el("div", { class: "watch-player" }, this.stage);
-    element.replaceChildren(this.root);
-    this.painter = new Painter(this.canvas, film);
-    this.camera = new Camera(this.painter.box());
+    this.lead = lead || this;
+    this.stages = lead ? lead.stages : el("div", { class: "watch-stages" });
+    this.root = lead ? lead.root : el("div", { class: "watch-player" }, this.stages);
+    this.stages.append(this.stage);
+    if (!lead) element.replaceChildren(this.root);
+    this.painter = new Painter(this.canvas, film, extent);
+    this.camera = lead ? lead.camera : new Camera(this.painter.box());
     this.shadings = shadings(film);
-    this.root.append(this.bar(), this.choices());
+    this.ranges = new Map();  // of the colours, by shading
+    if (!lead) this.root.append(this.bar(), this.choices());
     this.listen();
     this.colourBy(this.shadings.length > 0 ? this.shadings[0].key : "");
     if (film.spheres === 0 || film.header.slices.length > 0) this.chooseSlice(film.header.slices.length > 0 ? this.firstSlice() : -1);
@@ -54,7 +59,8 @@ class Player {
     const { film, painter } = this, shown = [];
     if (this.shadings.length > 0) {
       this.colours = choice("Colour", this.shadings.map((s) => [s.key, s.label]), this.shadings[0].key, (key) => this.colourBy(key));
-      shown.push(this.colours);
+      this.rangeFields = rangeChoice((range) => this.setRange(range));
+      shown.push(this.colours, this.rangeFields);
     }
     if (film.header.slices.length > 0) {
       const list = film.header.slices.map((slice, k) => [String(k), sliceLabel(slice)]);
@@ -121,12 +127,26 @@ class Player {
     const shading = this.shadings.find((s) => s.key === key);
     if (!shading) return;
     this.shading = shading;
-    const { data, still } = shading.shades();
-    this.shades = data;
-    this.stillShades = still;
+    const shades = shading.shades();
+    this.shades = shades.data;
+    this.stillShades = shades.still;
+    this.usual = usualRange(this.film, shading, shades);
     this.painter.setPalette("spheres", shading.signed ? "signed" : "spheres");
-    this.painter.setShades(data, still);
+    this.painter.setShades(shades.data, shades.still);
     if (this.colours) this.colours.control.value = key;
+    if (this.beside) this.beside.colourBy(key);
+    this.setRange(this.ranges.get(key) || null);
+  }
+
+  // null: the usual one, of both films where two are shown.
+  setRange(range) {
+    const { shading, beside } = this;
+    if (range) this.ranges.set(shading.key, range); else this.ranges.delete(shading.key);
+    const both = beside && beside.shading && beside.shading.key === shading.key ? [this.usual, beside.usual] : [this.usual];
+    this.range = range || { low: Math.min(...both.map((one) => one.low)), high: Math.max(...both.map((one) => one.high)) };
+    if (both.length > 1) beside.setRange(this.range);
+    this.painter.show.colours = colourWindow(shading, this.range);
+    if (this.rangeFields) this.rangeFields.show(shading, this.range);
     this.drawLegends();
     this.draw();
   }
@@ -140,28 +160,21 @@ class Player {
     this.painter.show.slice = k;
     if (k >= 0) this.painter.setPalette("slices", this.film.header.slices[k].low < 0 ? "signed" : "slices");
     if (this.slices) this.slices.control.value = String(k);
+    if (this.beside && k < this.beside.film.header.slices.length) this.beside.chooseSlice(k);
     if (this.planes) this.planes.hidden = k < 0;
     this.drawLegends();
     this.draw();
   }
 
   drawLegends() {
-    const legend = (title, unit, low, high, clipped, kind) => {
-      const scale = scaleFor(unit, [low, high]);
-      const end = (x, mark) => mark + number(x * scale.factor);
-      return el("div", { class: "watch-legend" },
-        el("div", { class: "watch-legend-title" }, title + (scale.unit ? ` (${scale.unit})` : "")),
-        el("div", { class: "watch-gradient", style: `background: ${gradient(kind)}` }),
-        el("div", { class: "watch-ends" }, el("span", {}, end(low, clipped && low < 0 ? "≤ " : "")), el("span", {}, end((low + high) / 2, "")),
-          el("span", {}, end(high, clipped ? "≥ " : ""))));
-    };
     const shown = [];
     if (this.shading && this.film.spheres > 0) {
-      const { label, unit, low, high, clipped, signed } = this.shading;
-      shown.push(legend(label, unit, low, high, clipped, signed ? "signed" : "spheres"));
+      const { label, unit, low, high, clipped, signed } = this.shading, { range } = this;
+      const beyond = [low < range.low || clipped && signed, high > range.high || clipped];
+      shown.push(legend(label, unit, range.low, range.high, beyond, signed ? "signed" : "spheres"));
     }
     const slice = this.film.header.slices[this.painter.show.slice];
-    if (slice) shown.push(legend(`flow: ${sliceLabel(slice)}`, slice.unit, slice.low, slice.high, slice.clipped, slice.low < 0 ? "signed" : "slices"));
+    if (slice) shown.push(legend(`flow: ${sliceLabel(slice)}`, slice.unit, slice.low, slice.high, [slice.clipped && slice.low < 0, slice.clipped], slice.low < 0 ? "signed" : "slices"));
     this.legends.replaceChildren(...shown);
   }
 
@@ -175,6 +188,7 @@ class Player {
 
   // Paints at the next repaint, once for all requests before.
   draw() {
+    if (this.lead !== this) { this.lead.draw(); return; }
     if (this.asked) return;
     this.asked = requestAnimationFrame(() => { this.asked = 0; this.paint(); });
   }
@@ -183,16 +197,32 @@ class Player {
     if (!this.canvas.width || !this.canvas.height) return;
     const seen = this.painter.paint(this.moment, this.camera, this.ground);
     this.matrices = seen;
-    this.tellTime();
-    this.tellPace();
+    if (this.lead === this) {
+      this.tellTime();
+      this.tellPace();
+      if (this.beside) this.beside.follow(this);
+    }
     this.drawScale(seen);
     this.drawCompass(seen);
     if (!this.told.hidden) this.tell();
   }
 
+  // Shows the moment of the leading player, as that one shows its own.
+  follow({ painter, time }) {
+    const { chosen } = this.painter.show, { slices } = this.film.header;
+    Object.assign(this.painter.show, painter.show, { chosen, colours: this.painter.show.colours });
+    if (painter.show.slice >= slices.length) this.painter.show.slice = -1;
+    this.moment = momentAt(this.film.header, time());
+    this.paint();
+  }
+
+  time = () => {
+    const { times } = this.film.header, k = Math.floor(this.moment);
+    return times[k] + (this.moment - k) * ((times[k + 1] ?? times[k]) - times[k]);
+  };
+
   tellTime() {
-    const { times, time_unit: unit } = this.film.header, k = Math.floor(this.moment), share = this.moment - k;
-    const now = times[k] + share * ((times[k + 1] ?? times[k]) - times[k]), last = times[times.length - 1];
+    const { times, time_unit: unit } = this.film.header, now = this.time(), last = times[times.length - 1];
     const scale = scaleFor(unit, [last]), size = last * scale.factor;
     const digits = size > 0 ? Math.max(0, 2 - Math.floor(Math.log10(size))) : 0;
     this.clock.textContent = digits > 5 ? `${number(now * scale.factor)} ${scale.unit}`
@@ -270,11 +300,12 @@ class Player {
     this.theme = window.matchMedia("(prefers-color-scheme: dark)");
     this.themeChanged = () => this.resize();
     this.theme.addEventListener("change", this.themeChanged);
-    this.root.addEventListener("keydown", (event) => this.key(event));
+    if (this.lead === this) this.root.addEventListener("keydown", (event) => this.key(event));
   }
 
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
+    if (event.target.type === "number") return;
     const onSlider = event.target.tagName === "INPUT" && event.target.type === "range";
     const step = (by) => { this.pause(); this.show(Math.round(this.moment) + by); };
     const cycle = () => {
@@ -346,12 +377,14 @@ class Player {
     this.paint();  // at once: a resized canvas is empty
   }
 
+  // With the film beside it.
   savePicture() {
     this.paint();
-    this.canvas.toBlob((blob) => save(`${this.film.header.about.name || "particles"}.png`, blob));
+    saveTogether(`${this.film.header.about.name || "particles"}.png`, [...this.stages.querySelectorAll(".watch-canvas")]);
   }
 
   free() {
+    if (this.beside) this.beside.free();
     this.pause();
     this.watching.disconnect();
     this.theme.removeEventListener("change", this.themeChanged);

@@ -22,3 +22,22 @@ function measured(x, unit, digits) {
 }
 
 function words(name) { return name.replace(/_/g, " "); }
+
+// Colours with the numbers at their ends; `beyond`: whether smaller and larger values have the colours of the ends.
+function legend(title, unit, low, high, [below, above], kind) {
+  const scale = scaleFor(unit, [low, high]), end = (x, mark) => el("span", {}, mark + number(x * scale.factor));
+  return el("div", { class: "watch-legend" },
+    el("div", { class: "watch-legend-title" }, title + (scale.unit ? ` (${scale.unit})` : "")),
+    el("div", { class: "watch-gradient", style: `background: ${gradient(kind)}` }),
+    el("div", { class: "watch-ends" }, end(low, below ? "≤ " : ""), end((low + high) / 2, ""), end(high, above ? "≥ " : "")));
+}
+
+// Saves pictures as they are on the page, side by side or one above the other.
+function saveTogether(name, canvases) {
+  const places = canvases.map((one) => one.getBoundingClientRect()), ratio = canvases[0].width / places[0].width;
+  const least = (key) => Math.min(...places.map((place) => place[key])), most = (key) => Math.max(...places.map((place) => place[key]));
+  const whole = el("canvas", { width: Math.round(ratio * (most("right") - least("left"))), height: Math.round(ratio * (most("bottom") - least("top"))) });
+  const pen = whole.getContext("2d");
+  canvases.forEach((one, k) => pen.drawImage(one, ratio * (places[k].left - least("left")), ratio * (places[k].top - least("top"))));
+  whole.toBlob((blob) => save(name, blob));
+}

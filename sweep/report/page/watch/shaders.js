@@ -13,6 +13,7 @@ uniform vec3 low, scale, period;
 uniform float between, radius, least, showFrozen;
 uniform mat4 view, projection;
 uniform vec4 cut;
+uniform vec2 colours;  // where they begin in the range of the film, and how steep they are
 uniform int chosen;
 out vec3 centre, point, colour;
 out float reach;
@@ -34,7 +35,8 @@ void main() {
   vec3 up = cross(right, ahead);
   point = centre + grown * (corner.x * right + corner.y * up);
   float level = nextShade > 0.5 && shade > 0.5 ? mix(shade, nextShade, between) : shade;
-  colour = level > 0.5 ? texture(palette, vec2((level - 1.0) / 254.0 * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb : frozenColour;
+  float along = clamp(((level - 1.0) / 254.0 - colours.x) * colours.y, 0.0, 1.0);
+  colour = level > 0.5 ? texture(palette, vec2(along * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb : frozenColour;
   if (gl_InstanceID == chosen) colour = vec3(1.0, 0.25, 0.55);
   gl_Position = projection * vec4(point, 1.0);
 }`;
