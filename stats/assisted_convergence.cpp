@@ -87,9 +87,10 @@ void AssistedConvergence::take_estimates(Checkpoint& now, std::span<const std::i
             estimate.error = estimate.measure = std::numeric_limits<double>::quiet_NaN();
             continue;
         }
-        const AssistedEstimate& chosen = moments->of(statistic).chosen();
-        estimate.value = chosen.value;
-        estimate.error = chosen.half_width;
+        const AssistedStatistic& both = moments->of(statistic);
+        if (both.takes_assisted) estimate.carriers.reset();
+        estimate.value = both.chosen().value;
+        estimate.error = estimate.carriers ? std::numeric_limits<double>::quiet_NaN() : both.chosen().half_width;
         estimate.measure = measure_of(statistic, estimate.error, estimate.value);
     }
     before_ = moments == nullptr ? std::nullopt : std::optional(*moments);

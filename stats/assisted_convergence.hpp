@@ -5,9 +5,9 @@
 // (fewer are not known to give intervals that hold) and 8 (d + 1), then always the first multiple of `block` that is a
 // fifth larger. N points are checked at most 1 + log(N/104)/log(1.2) times. At a check each gate is measured as under
 // the rule `replicates` (convergence.hpp) by the half-width of the estimate its statistic takes: the assisted one where
-// that was decided beforehand, at the check before; else the plain one. It converges where every gate is below the
-// tolerance at two consecutive checks. A model that is refused decides nothing: that check does not pass, and its
-// errors are NaN.
+// that was decided beforehand, at the check before; else the plain one, whose g1 and kurtosis have no error while too
+// few values carry them (convergence.hpp). It converges where every gate is below the tolerance at two consecutive
+// checks. A model that is refused decides nothing: that check does not pass, and its errors are NaN.
 #pragma once
 
 #include "stats/assisted_moments.hpp"

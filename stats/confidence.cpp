@@ -49,6 +49,10 @@ double student_half_width(std::span<const double> values) {
     return student_factor(std::ssize(values) - 1) * std::sqrt(squared_deviations(values) / (n * (n - 1)));
 }
 
+double largest_unseen_share(std::int64_t count) {
+    return count < 1 ? 1 : -std::expm1(std::log(0.05) / static_cast<double>(count));
+}
+
 double jackknife_half_width(std::span<const double> leave_one_out) {
     if (leave_one_out.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(leave_one_out.size());

@@ -22,6 +22,11 @@ namespace grainsweep::stats {
 /// t_{R-1, 0.975} s / sqrt(R), s with divisor R - 1. NaN for fewer than two values or any NaN.
 [[nodiscard]] double student_half_width(std::span<const double> values);
 
+/// Upper end of the 95 % interval of the share of a population of which `count` independent draws have shown nothing:
+/// 1 - 0.05^(1/count), about 3/count (rule of three; Hanley & Lippman-Hand 1983, J. Am. Med. Assoc. 249, 1743). 1
+/// without a draw.
+[[nodiscard]] double largest_unseen_share(std::int64_t count);
+
 /// 95 % half-width from the delete-a-group jackknife (Shao & Wu 1989, Ann. Stat. 17, 1176): entry g is the
 /// estimate without group g of G equal groups;
 ///   se^2 = (G - 1)/G sum_g (theta_g - mean)^2,  half-width t_{G-1, 0.975} se.

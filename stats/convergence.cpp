@@ -23,6 +23,24 @@ bool differ(std::span<const double> repetitions) {
     return high - low > 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
 }
 
+/// Statistics of all values but those of one part, for each part. Medians are not known.
+std::vector<Summary> without_each(const std::vector<Moments>& parts) {
+    std::vector<Moments> after(parts.size() + 1);
+    for (std::size_t i = parts.size(); i > 0; --i) {
+        after[i - 1] = parts[i - 1];
+        after[i - 1].merge(after[i]);
+    }
+    std::vector<Summary> summaries;
+    Moments before;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Moments others = before;
+        others.merge(after[i + 1]);
+        summaries.push_back(others.summary());
+        before.merge(parts[i]);
+    }
+    return summaries;
+}
+
 /// log(measure) = a + slope log(points) over the checks of the last three quarters, and its value now.
 struct Decay {
     double slope = -1;
@@ -114,6 +132,18 @@ Middle SortedSample::middle() {
     return {sorted_[(sorted_.size() - 1) / 2], sorted_[sorted_.size() / 2]};
 }
 
+double SortedSample::carriers(double centre, double p) const {
+    if (sorted_.empty()) return 0;
+    const double farthest = std::max(std::abs(sorted_.front() - centre), std::abs(sorted_.back() - centre));
+    double sum = 0, squares = 0;
+    for (const double value : sorted_) {
+        const double one = std::pow(std::abs(value - centre) / farthest, p);
+        sum += one;
+        squares += one * one;
+    }
+    return sum * sum / squares;
+}
+
 Convergence::Convergence(ConvergenceSettings settings) : settings_(std::move(settings)) {
     if (settings_.traits().of_model)
         throw std::invalid_argument("the rule 'assisted' is judged with a model of the response");
@@ -190,6 +220,37 @@ void Convergence::find_errors(Checkpoint& now) {
         if (!differ(repetitions)) continue;
         now.estimates[s].error =
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
+    }
+    judge_shape(now, summaries);
+}
+
+void Convergence::judge_shape(Checkpoint& now, std::span<const Summary> repetitions) const {
+    std::vector<Summary> without;
+    if (!sequences_.empty()) {
+        std::vector<Moments> parts;
+        for (const auto& sequence : sequences_) parts.push_back(sequence.moments);
+        without = without_each(parts);
+    }
+    for (const Statistic statistic : {Statistic::g1, Statistic::kurtosis}) {
+        Estimate& estimate = now.estimates[static_cast<std::size_t>(statistic)];
+        if (std::isnan(estimate.error)) continue;
+        if (!without.empty()) {
+            std::vector<double> jackknifed;
+            double mean = 0;
+            for (std::size_t i = 0; i < without.size(); ++i) {
+                jackknifed.push_back(without[i].of(statistic));
+                mean += repetitions[i].of(statistic) / static_cast<double>(without.size());
+            }
+            estimate.error =
+                std::hypot(std::max(estimate.error, jackknife_half_width(jackknifed)), estimate.value - mean);
+        }
+        // Places that hold the same run are one value.
+        const double carriers =
+            pooled_.sample.carriers(now.of(Statistic::mean).value, statistic == Statistic::g1 ? 3 : 4) *
+            static_cast<double>(runs_) / static_cast<double>(places_);
+        if (carriers >= fewest_carriers(statistic)) continue;
+        estimate.carriers = carriers;
+        estimate.error = nan;
     }
 }
 

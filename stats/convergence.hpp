@@ -15,6 +15,13 @@
 // mean once each has 4 values); else a delete-a-group jackknife over 8 consecutive stretches of the points (see
 // confidence.hpp).
 //
+// The g1 and kurtosis of a short sequence are small and scatter little, whatever those of all values do. Their error is
+//
+//   error^2 = max(Student over sequences, jackknife that leaves out a sequence)^2 + (all - mean of sequences)^2
+//
+// and undefined while fewer than 30 values carry g1, or 50 the kurtosis: (sum |y - mean|^p)^2 / sum |y - mean|^2p of
+// them do, p = 3 and 4.
+//
 // What is undefined never passes, and neither does what is unknown: while all values are equal, or where the
 // repetitions of a statistic are, nothing is known of its scatter, and its error is undefined. A check without a new
 // value since the check before confirms nothing: its measures are undefined. Pearson's skewness is refused as a gate
@@ -49,7 +56,14 @@ struct Estimate {
     double value = std::numeric_limits<double>::quiet_NaN();
     double error = std::numeric_limits<double>::quiet_NaN();    ///< 95 % half-width, in the unit of the value
     double measure = std::numeric_limits<double>::quiet_NaN();  ///< what the rule compares with the tolerance
+    /// g1 and kurtosis whose error is undefined because too few values carry them: how many do.
+    std::optional<double> carriers = std::nullopt;
 };
+
+/// Fewest values that carry g1 or kurtosis where its error is defined.
+[[nodiscard]] constexpr double fewest_carriers(Statistic statistic) {
+    return statistic == Statistic::kurtosis ? 50 : 30;
+}
 
 struct Checkpoint {
     std::int64_t points = 0;    ///< design points in the prefix
@@ -92,6 +106,8 @@ class SortedSample {
 public:
     void add(double value) { fresh_.push_back(value); }
     [[nodiscard]] Middle middle();
+    /// (sum |y - centre|^p)^2 / sum |y - centre|^2p of the values of the last middle().
+    [[nodiscard]] double carriers(double centre, double p) const;
 
 private:
     std::vector<double> sorted_;
@@ -132,6 +148,7 @@ private:
 
     void check();
     void find_errors(Checkpoint& now);
+    void judge_shape(Checkpoint& now, std::span<const Summary> repetitions) const;
     void widen_errors(Checkpoint& now) const;
     void find_measures(Checkpoint& now) const;
     void judge(Checkpoint& now) const;

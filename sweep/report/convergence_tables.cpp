@@ -188,10 +188,10 @@ void say_history(Document& shown, const Responses& responses, const History& his
 }
 
 /// Both estimates of the moments, where the design allows the second one.
-void say_estimators(Document& shown, const Estimators& estimators) {
+void say_estimators(Document& shown, const History& history, const Estimators& estimators) {
     shown.say();
     if (estimators.assisted)
-        shown.say("moments with a response model beside the plain ones").show(estimators_table(estimators));
+        shown.say("moments with a response model beside the plain ones").show(estimators_table(history, estimators));
     for (const auto& line : estimator_lines(estimators)) shown.say(line);
 }
 
@@ -255,14 +255,15 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
     return value;
 }
 
-store::Table estimators_table(const Estimators& estimators) {
+store::Table estimators_table(const History& history, const Estimators& estimators) {
     store::Table table{{"statistic", "plain", "with a model"}, {}};
     const bool scatter_known = !estimators.scatter_from.empty();
     if (scatter_known) table.columns.emplace_back("without scatter");
     if (!estimators.assisted) return table;
     for (const auto statistic : stats::assisted_statistics) {
         const auto& one = estimators.assisted->of(statistic);
-        std::vector<store::Table::Cell> row = {key(statistic), with_error(one.plain.value, one.plain.half_width),
+        const auto& plain = history.all.of(statistic);
+        std::vector<store::Table::Cell> row = {key(statistic), with_error(plain.value, plain.error),
                                                shown_estimate(one, one.assisted)};
         if (scatter_known) row.emplace_back(shown_estimate(one, one.without_scatter));
         table.rows.push_back(std::move(row));
@@ -334,7 +335,7 @@ Document convergence_document(const store::Store& store, const Responses& respon
     if (format == Format::text) {
         shown.say(study_heading(responses, response)).say();
         say_history(shown, responses, history, lattices);
-        if (repeats(responses)) say_estimators(shown, estimators_of(store, responses, response));
+        if (repeats(responses)) say_estimators(shown, history, estimators_of(store, responses, response));
         if (corrected) shown.say().show(corrected_table(*corrected)).say(corrected->verdict());
     }
     return shown;

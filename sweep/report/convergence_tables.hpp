@@ -23,7 +23,7 @@ namespace grainsweep::report {
 
 /// One row per statistic that both give: plain, with the model, without scatter (where it is known). What is withdrawn
 /// is marked.
-[[nodiscard]] store::Table estimators_table(const study::Estimators& estimators);
+[[nodiscard]] store::Table estimators_table(const study::History& history, const study::Estimators& estimators);
 /// What the model rests on, and what must be said of it, in a sentence each.
 [[nodiscard]] std::vector<std::string> estimator_lines(const study::Estimators& estimators);
 /// {"plain": {"mean": {"value", "error"}, ...}, "model_assisted": {..., "taken", "withdrawn"} or null,

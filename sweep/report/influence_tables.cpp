@@ -275,6 +275,10 @@ Json model_influence_json(const ModelInfluence& influence) {
             {"refused", influence.indices ? Json() : Json(influence.refused)}};
 }
 
+Json model_influence_page(const ModelInfluence& influence) {
+    return columns_and_rows(model_influence_table(influence)).add("says", model_influence_lines(influence));
+}
+
 Document influence_document(const Responses& responses, const ResponseColumn& response, Format format) {
     const auto influence = influence_of(responses, response);
     Document shown{.rows = influence_rows(responses, response, influence)};

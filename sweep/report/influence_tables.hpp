@@ -27,6 +27,8 @@ namespace grainsweep::report {
 /// {"factors": [{"name", "first", "total", "interactions"}], "pairs": [{"factors", "value", "error"}], "scatter_share",
 /// "unexplained_share", "response_model", "refused"}; indices {"value", "error"}, shares of the variance of single runs
 [[nodiscard]] Json model_influence_json(const study::ModelInfluence& influence);
+/// {"columns", "rows", "says": lines} of the table for people, as a page shows it.
+[[nodiscard]] Json model_influence_page(const study::ModelInfluence& influence);
 
 /// What `sensitivity` shows of a campaign, with no more computed than `format` takes.
 [[nodiscard]] Document influence_document(const study::Responses& responses, const study::ResponseColumn& response,

@@ -235,7 +235,9 @@ Json models_of(const store::Store& store, const Responses& responses, const Page
         if (found == cases.observables.end()) continue;
         const auto learned = learn(cases, *found);
         if (const auto* model = std::get_if<ObservableModel>(&learned))
-            list.push_back(model_page_data(cases, *model, admission(store, cases)));
+            list.push_back(model_page_data(cases, *model, admission(store, cases))
+                               .add("influence", model_influence_page(model_influence_of(
+                                                     responses, responses.observable(name), *model))));
         else
             list.push_back({{"observable", name}, {"refused", std::get<stats::Refusal>(learned).sentence}});
     }

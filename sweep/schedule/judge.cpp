@@ -1,5 +1,7 @@
 #include "sweep/schedule/judge.hpp"
 
+#include "stats/confidence.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -100,8 +102,10 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
     const bool first_of_changes = !settings.traits().of_sequences && check.points <= settings.block;
     if (first_of_changes) return fmt::format("{} points, nothing to compare with yet", check.points);
     if (check.all_equal)
-        return fmt::format("all values are equal after {} points ({} values): their scatter is unknown", check.points,
-                           check.count);
+        return fmt::format(
+            "all values are equal after {} points ({} values): their scatter is unknown, and up to {} of "
+            "the box may have other values",
+            check.points, check.count, percent(stats::largest_unseen_share(check.runs)));
     if (check.fresh == 0)
         return fmt::format("no new value since the check before {} points: the {} different cases are known",
                            check.points, check.count);
@@ -109,6 +113,10 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
         return fmt::format("skewness cannot be judged: {} of the values are zero, so the median jumps",
                            percent(check.zero_share));
     }
+    if (const auto carriers = check.of(*check.held_back).carriers)
+        return fmt::format("{} has no error yet: it rests on {:.0f} of the {} values at {} points, {:.0f} are needed",
+                           stats::to_string(*check.held_back), *carriers, check.count, check.points,
+                           stats::fewest_carriers(*check.held_back));
     return fmt::format("{} is undefined after {} points ({} values)", measure_name(*check.held_back, settings),
                        check.points, check.count);
 }

@@ -1,5 +1,6 @@
 #include "sweep/study/history.hpp"
 
+#include "stats/confidence.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/schedule/judge.hpp"
@@ -141,7 +142,22 @@ std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, c
     return found.front();
 }
 
+/// What the values of a sample do not show yet.
+void warn_of_few(History& history, const Responses& responses) {
+    if (!responses.ordered_sample()) return;
+    if (history.all.all_equal)
+        history.warnings.push_back(
+            fmt::format("all {} values are equal: up to {:.2g} % of the box may have other values (95 %)",
+                        history.all.runs, 100 * stats::largest_unseen_share(history.all.runs)));
+    for (const auto statistic : {Statistic::g1, Statistic::kurtosis})
+        if (const auto carriers = history.all.of(statistic).carriers)
+            history.warnings.push_back(fmt::format(
+                "{} has no error yet: it rests on {:.0f} of the {} values, {:.0f} are needed",
+                stats::to_string(statistic), *carriers, history.all.count, stats::fewest_carriers(statistic)));
+}
+
 void warn(History& history, const Responses& responses, const ResponseColumn& response) {
+    warn_of_few(history, responses);
     const auto& record = responses.campaign;
     if (history.has_rule && history.settings.traits().one_gate) {
         history.warnings.emplace_back(

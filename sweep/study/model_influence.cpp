@@ -64,42 +64,49 @@ void describe_noise(ModelInfluence& found, const std::vector<ModelFactor>& facto
         found.calmest.push_back(part_of_range(factors[varied[one.factor]], one.from, one.to));
 }
 
+/// Why a campaign has no indices of a model; empty: nothing speaks against them.
+std::string reason_against_indices(const Responses& responses) {
+    if (responses.dropped() > 0)
+        return "the campaign's `where` leaves a part of the box out, and a model has no cases there";
+    if (std::ranges::find(responses.group_names, campaign::group_of_shares) != responses.group_names.end())
+        return "shares that add to one do not vary by themselves, as the indices of a model suppose";
+    return {};
+}
+
+ModelInfluence refused_indices(std::string reason) {
+    ModelInfluence none;
+    none.refused = std::move(reason);
+    return none;
+}
+
 }  // namespace
 
-ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response) {
+ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response,
+                                  const ObservableModel& model) {
+    if (auto reason = reason_against_indices(responses); !reason.empty()) return refused_indices(std::move(reason));
+    const auto* response_model = std::get_if<stats::ResponseModel>(&model.model);
+    if (response_model == nullptr)
+        return refused_indices("the values are 0 and 1 alone: the model of their probability has no indices");
     ModelInfluence found;
-    if (responses.dropped() > 0) {
-        found.refused = "the campaign's `where` leaves a part of the box out, and a model has no cases there";
-        return found;
-    }
-    if (std::ranges::find(responses.group_names, campaign::group_of_shares) != responses.group_names.end()) {
-        found.refused = "shares that add to one do not vary by themselves, as the indices of a model suppose";
-        return found;
-    }
-    std::vector<std::size_t> rows;
+    std::vector<std::size_t> rows, varied;
     const auto cases = settled_cases(responses, &rows);
-    std::vector<std::size_t> varied;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
         if (cases.factors[j].varies()) varied.push_back(j);
     for (const auto j : varied) found.factors.push_back(cases.factors[j].name);
-    auto learned = learn(cases, cases.observable(response.name));
-    if (auto* refused = std::get_if<stats::Refusal>(&learned)) {
-        found.refused = std::move(refused->sentence);
-        return found;
-    }
-    found.model = std::get<ObservableModel>(std::move(learned));
-    const auto* response_model = std::get_if<stats::ResponseModel>(&found.model->model);
-    if (response_model == nullptr) {
-        found.model.reset();
-        found.refused = "the values are 0 and 1 alone: the model of their probability has no indices";
-        return found;
-    }
+    found.model = model;
     found.without_value = responses.without_value(response);
-    found.indices =
-        stats::model_indices(*response_model, varied.size(), groups_of(responses, rows),
-                             model_map(*found.model, cases.factors, varied), roles_of(cases.factors, varied));
+    found.indices = stats::model_indices(*response_model, varied.size(), groups_of(responses, rows),
+                                         model_map(model, cases.factors, varied), roles_of(cases.factors, varied));
     if (found.indices->noise) describe_noise(found, cases.factors, varied);
     return found;
+}
+
+ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response) {
+    if (auto reason = reason_against_indices(responses); !reason.empty()) return refused_indices(std::move(reason));
+    const auto cases = settled_cases(responses);
+    auto learned = learn(cases, cases.observable(response.name));
+    if (auto* refused = std::get_if<stats::Refusal>(&learned)) return refused_indices(std::move(refused->sentence));
+    return model_influence_of(responses, response, std::get<ObservableModel>(learned));
 }
 
 }  // namespace grainsweep::study

@@ -29,5 +29,8 @@ struct ModelInfluence {
 
 /// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.
 [[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response);
+/// The same by a model that was learned of settled_cases(responses).
+[[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response,
+                                                const ObservableModel& model);
 
 }  // namespace grainsweep::study

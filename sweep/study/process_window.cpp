@@ -1,7 +1,9 @@
 #include "sweep/study/process_window.hpp"
 
+#include "stats/confidence.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/designs/design.hpp"
 
 #include <fmt/format.h>
 
@@ -147,6 +149,16 @@ void say_what_failed(Window& window, const ModelCases& cases) {
                                            chosen->answers, near_text(cases, window.answers->near(chosen->setting))));
 }
 
+/// No failed case among a sample of the box is no proof that none fails.
+void say_what_none_failed(Window& window, const ModelCases& cases) {
+    const auto* design = designs::find_design(cases.campaign.design);
+    if (!cases.failed.empty() || design == nullptr || design->beginning != designs::Beginning::sample) return;
+    const auto count = std::ssize(cases.settings);
+    window.notes.push_back(
+        fmt::format("none of {} cases failed: up to {:.2g} % of the box may fail all the same (95 %)", count,
+                    100 * stats::largest_unseen_share(count)));
+}
+
 void say_what_was_found(Window& window, const WindowRequest& request) {
     if (!window.best && window.surest)
         window.notes.push_back(fmt::format(
@@ -210,6 +222,7 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
         window.notes.push_back(fmt::format("{} cannot be set: probabilities and responses are averages over {}",
                                            campaign::listed(noise), noise.size() == 1 ? "it" : "them"));
     say_what_was_found(window, request);
+    say_what_none_failed(window, cases);
     return window;
 }
 

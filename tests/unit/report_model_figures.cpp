@@ -63,7 +63,9 @@ TEST_F(ModelFigures, MomentsWithTheModelAreSharperAndHoldTheTruth) {
     EXPECT_NEAR(sd.assisted.value, std::sqrt(variance), 2 * sd.assisted.half_width);
     EXPECT_TRUE(mean.takes_assisted);
     EXPECT_TRUE(found.scatter_from.empty());
-    EXPECT_EQ(estimators_table(found).columns.size(), 3U) << "without replicates the scatter is unknown";
+    const auto all = responses();
+    EXPECT_EQ(estimators_table(history_of(all, all.observable("")), found).columns.size(), 3U)
+        << "without replicates the scatter is unknown";
 }
 
 TEST_F(ModelFigures, ReplicatesTellTheScatterWhichIsTakenOut) {
@@ -106,9 +108,10 @@ TEST_F(ModelFigures, EveryWithdrawnEstimateIsMarkedAndThePopulationNamed) {
     ASSERT_TRUE(found.assisted) << found.refused;
     EXPECT_TRUE(found.assisted->of(stats::Statistic::mean).withdrawn);
     EXPECT_TRUE(found.assisted->of(stats::Statistic::sd).withdrawn);
-    const auto table = estimators_table(found);
     const auto all = responses();
-    const auto json = tests::parsed(estimators_json(history_of(all, all.observable("")), found));
+    const auto history = history_of(all, all.observable(""));
+    const auto table = estimators_table(history, found);
+    const auto json = tests::parsed(estimators_json(history, found));
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const auto statistic = stats::assisted_statistics[k];
         const bool withdrawn = found.assisted->of(statistic).withdrawn;

@@ -1,7 +1,9 @@
 // What the report shows of a response model: averages, slices and bands of a response that is known.
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/influence_tables.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/page.hpp"
+#include "sweep/report/table.hpp"
 #include "tests/support/study.hpp"
 #include "tests/support/written.hpp"
 
@@ -63,6 +65,22 @@ TEST_F(ModelPage, AveragesAndSlicesAreThoseOfTheResponse) {
     EXPECT_EQ(model["curves"][2]["at"], Json({0.0, 0.5, 1.0}));
     EXPECT_NEAR(model["curves"][2]["averaged"][2].get<double>() - model["curves"][2]["averaged"][0].get<double>(), 0.05,
                 0.01);
+}
+
+TEST_F(ModelPage, SharesOfTheVarianceAreThoseOfSensitivity) {
+    const auto shares = data(150)[0]["influence"];
+    EXPECT_EQ(shares["columns"], Json({"factor", "first order", "total", "interactions"}));
+    const auto all = responses();
+    const auto found = model_influence_of(all, all.observable("y"));
+    EXPECT_EQ(shares["rows"], tests::parsed(columns_and_rows(model_influence_table(found)))["rows"]);
+    EXPECT_EQ(shares["rows"].size(), 3U);
+    EXPECT_EQ(shares["says"].get<std::vector<std::string>>(), model_influence_lines(found));
+}
+
+TEST_F(ModelPage, SharesOfTheVarianceAreRefusedWhereThePointsLeaveAPartOut) {
+    const auto shares = data(150, R"(, "where": "x1 + x2 <= 1.5")")[0]["influence"];
+    EXPECT_TRUE(shares["rows"].empty());
+    EXPECT_THAT(shares["says"][0].get<std::string>(), HasSubstr("leaves a part of the box out"));
 }
 
 TEST_F(ModelPage, TheMapIsOverTheTwoFactorsThatMatterMost) {

@@ -237,12 +237,19 @@ TEST(Judge, EqualValuesAreNamed) {
     const auto placed = place(80);
     Judge judge(wanted(40), placed, sequences, std::vector<double>(80, 1.0));
     (void)judge.judge(80);
-    EXPECT_EQ(judge.verdict(), "all values are equal after 80 points (80 values): their scatter is unknown");
+    EXPECT_EQ(judge.verdict(),
+              "all values are equal after 80 points (80 values): their scatter is unknown, and up to 3.7 % of the box "
+              "may have other values");
 }
 
 TEST(Judge, NamesWhatHoldsItBackAndHowFarItIs) {
     const auto placed = place(80);
     auto rule = wanted(40, 1e-6);
+    Judge shape(rule, placed, sequences, known(placed));
+    (void)shape.judge(80);
+    EXPECT_THAT(shape.verdict(), testing::MatchesRegex("kurtosis has no error yet: it rests on [0-9]+ of the 80 values "
+                                                       "at 80 points, 50 are needed"));
+    rule.gates = {"mean", "sd"};
     Judge strict(rule, placed, sequences, known(placed));
     (void)strict.judge(80);
     EXPECT_THAT(strict.verdict(), testing::MatchesRegex(".+ [0-9.]+ % > 0\\.0001 %, about [0-9]+ more points "
