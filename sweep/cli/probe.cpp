@@ -13,7 +13,7 @@
 namespace grainsweep::cli {
 namespace {
 
-campaign::CaseResult answer_of(const campaign::Case& question, std::optional<double> limit_seconds) {
+campaign::CaseResult probed_answer(const campaign::Case& question, std::optional<double> limit_seconds) {
     if (auto program = campaign::known_program(question.scene))
         return answer_by_program(std::move(program), question, 1, limit_seconds, {}, {});
     NoArtefacts artefacts;
@@ -31,7 +31,7 @@ std::optional<Probe> probe_median_case(const campaign::Campaign& campaign, const
     const auto median = open.begin() + static_cast<std::ptrdiff_t>(open.size() / 2);
     std::ranges::nth_element(open, median, {}, [&](std::size_t i) { return std::pair(forecast.seconds[i], i); });
     const auto question = cases.question(*median);
-    const auto result = answer_of(question, campaign.limits.wall_seconds);
+    const auto result = probed_answer(question, campaign.limits.wall_seconds);
     return Probe{cases.place(*median).point,
                  question.id,
                  result.outcome,

@@ -24,6 +24,7 @@ Keys keys_of_schema() {
     add_properties(keys, "", schema);
     for (const char* section : {"convergence", "calibration", "model", "program", "limits", "execution"})
         add_properties(keys, section, schema["properties"][section]);
+    add_properties(keys, "accuracy", schema["properties"]["accuracy"]["oneOf"][1]);
     for (const auto& design : schema["properties"]["design"]["oneOf"]) add_properties(keys, "design", design);
     for (const auto& rule : schema["allOf"]) {
         const auto& factors = rule["then"]["properties"]["factors"]["items"];

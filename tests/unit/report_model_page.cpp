@@ -70,7 +70,7 @@ TEST_F(ModelPage, AveragesAndSlicesAreThoseOfTheResponse) {
 TEST_F(ModelPage, SharesOfTheVarianceAreThoseOfSensitivity) {
     const auto shares = data(150)[0]["influence"];
     EXPECT_EQ(shares["columns"], Json({"factor", "first order", "total", "interactions"}));
-    const auto all = responses();
+    const auto all = ask("c");
     const auto found = model_influence_of(all, all.observable("y"));
     EXPECT_EQ(shares["rows"], tests::parsed(columns_and_rows(model_influence_table(found)))["rows"]);
     EXPECT_EQ(shares["rows"].size(), 3U);
