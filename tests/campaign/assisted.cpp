@@ -54,7 +54,12 @@ TEST(Assisted, StopsWherePlainErrorsAreFarFromItAndTheTruthIsWithinItsErrors) {
         const double error = at_the_stop.at(std::string(name) + "_error").get<double>();
         // 1.5 half-widths: three standard errors, as it is one campaign.
         EXPECT_LE(std::abs(at_the_stop.at(name).get<double>() - value), 1.5 * error) << name;
-        EXPECT_LT(error, judged.at("statistics").at(name).at("error").get<double>()) << name;
+        const auto& plain = judged.at("statistics").at(name).at("error");
+        const bool spread = std::string(name) == "mean" || std::string(name) == "sd";
+        EXPECT_TRUE(!spread || plain.is_number()) << name;  // g1 and kurtosis wait for more points
+        if (plain.is_number()) {
+            EXPECT_LT(error, plain.get<double>()) << name;
+        }
     }
     EXPECT_NE(output(folder, {"converge", "a.db"}).find("converged at "), std::string::npos);
     EXPECT_NE(output(folder, {"report", "a.db", "-o", "a.html"}).find("a.html"), std::string::npos);

@@ -149,7 +149,7 @@ TEST_F(Campaigns, ScriptsCanTellWhetherACampaignConverged) {
 TEST_F(Campaigns, PlanAndRunWarnOfWhatMakesLittleSense) {
     folder.write("c.json", R"({"campaign": "c", "scene": "powder_spreading",
         "factors": [{"name": "gap", "levels": [0.0001, 0.004, 0.05]}], "design": {"kind": "list", "rows": [[0.0001], [0.05]]},
-        "fixed": {"width": 5, "layer_area": 2e-4, "travel": 0.03, "settle_time": 0.05},
+        "fixed": {"width": 5, "layer_area": 2e-4, "travel": 0.03, "settle_time": 0.1},
         "convergence": {"observable": "mfr", "rule": "all_change", "block": 400}})");
     const auto plan = program({"plan", "c.json"});
     EXPECT_EQ(plan.code, 0);
