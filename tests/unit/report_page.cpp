@@ -71,13 +71,14 @@ struct Page : testing::Test {
     Store store{folder / "a.db", Store::Mode::create};
 
     void answer(const std::string& name, int points, const std::string& notes = "") {
-        Json file = {{"campaign", name},
-                     {"notes", notes},
-                     {"scene", "rehearsal"},
-                     {"factors", Json::array({{{"name", "x1"}, {"between", {0, 1}}},
-                                              {{"name", "response"}, {"levels", {"sum", "ishigami"}}}})},
-                     {"design", {{"kind", "halton"}, {"sequences", 8}, {"points", points}}},
-                     {"convergence", {{"observable", "y"}, {"tolerance", 0.5}, {"block", 40}}}};
+        Json file = {
+            {"campaign", name},
+            {"notes", notes},
+            {"scene", "rehearsal"},
+            {"factors", Json::array({{{"name", "x1"}, {"between", {0, 1}}},
+                                     {{"name", "response"}, {"levels", {"sum", "ishigami"}}}})},
+            {"design", {{"kind", "halton"}, {"sequences", 8}, {"points", points}}},
+            {"convergence", {{"observable", "y"}, {"tolerance", 0.5}, {"gates", {"mean", "sd", "g1"}}, {"block", 40}}}};
         answer_by(store, file.dump(), [](const Inputs& inputs) -> std::optional<double> {
             if (input(inputs, "x1") > 0.95) return std::nullopt;
             return 1 + input(inputs, "x1");
@@ -111,7 +112,7 @@ TEST_F(Page, HoldsAllFiguresOfEveryCampaign) {
     EXPECT_EQ(y["name"], "y");
     EXPECT_EQ(y["history"]["points"], Json({40, 80, 120, 160}));
     EXPECT_EQ(y["history"]["statistics"]["mean"]["errors"].size(), 4u);
-    EXPECT_EQ(y["history"]["converged_at"], 80);
+    EXPECT_EQ(y["history"]["converged_at"], 120);  // g1 rests on 30 values from 80 points on
     EXPECT_EQ(unpacked(y["values"]).size(), 160u);
     EXPECT_EQ(y["effects"].size(), 2u);
     EXPECT_EQ(y["effects"][1].size(), 2u);
