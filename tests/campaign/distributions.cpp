@@ -1,6 +1,6 @@
 // Factors that follow a distribution or a sample, through the real program: plan, run, statistics, window, prediction,
 // and a database that needs the file of the sample no more.
-#include "tests/support/process.hpp"
+#include "tests/support/commands.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,16 +16,7 @@ namespace grainsweep::tests::distributions_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Distributions : testing::Test {
-    Folder folder;
-
-    Ended ask(const std::vector<std::string>& arguments) const { return run_program(arguments, folder.path()); }
-    std::string out(const std::vector<std::string>& arguments) const {
-        const auto ended = ask(arguments);
-        EXPECT_EQ(ended.code, 0) << ended.err;
-        return ended.out;
-    }
-};
+using Distributions = CommandsInAFolder;
 
 json campaign_of(const json& factors) {
     return {{"campaign", "c"},

@@ -1,5 +1,5 @@
 // Steps, conditions, groups and shares through the real program: plan, run, extend, predict, window, report.
-#include "tests/support/process.hpp"
+#include "tests/support/commands.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,15 +15,7 @@ namespace grainsweep::tests::factor_rules_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct FactorRules : testing::Test {
-    Folder folder;
-
-    Ended ask(const std::vector<std::string>& arguments) const { return run_program(arguments, folder.path()); }
-    std::string out(const std::vector<std::string>& arguments) const {
-        const auto ended = ask(arguments);
-        EXPECT_EQ(ended.code, 0) << ended.err;
-        return ended.out;
-    }
+struct FactorRules : CommandsInAFolder {
     std::string run(const json& campaign) const {
         folder.write("c.json", campaign.dump());
         return out({"run", "c.json", "--quiet"});

@@ -1,7 +1,7 @@
 // Powders through the real program: an instrument's export becomes sizes, a powder file a scene's parameters, and a
 // database alone explains and replays what was computed with them.
+#include "tests/support/commands.hpp"
 #include "tests/support/machines.hpp"
-#include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -53,19 +53,11 @@ json ti64() {
         "measured": [{"what": "angle of repose", "value": "34 deg", "error": "1.5 deg", "how": "ISO 4324"}]})");
 }
 
-struct Powders : testing::Test {
-    Folder folder{in_memory()};
-
+struct Powders : CommandsInAFolder {
     void SetUp() override {
         folder.write("export.csv", instrument_export);
         folder.write("blade.stl", blade_as_stl());
         folder.write("ti64.json", ti64().dump(1));
-    }
-    Ended ask(const std::vector<std::string>& arguments) const { return run_program(arguments, folder.path()); }
-    std::string out(const std::vector<std::string>& arguments) const {
-        const auto ended = ask(arguments);
-        EXPECT_EQ(ended.code, 0) << ended.err;
-        return ended.out;
     }
     void import_sizes() const { out({"powder", "import", "export.csv", "-o", "sizes.csv"}); }
     json plan(const json& campaign) const {

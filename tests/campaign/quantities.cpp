@@ -1,6 +1,6 @@
 // Numbers with units and expressions through the real program: the same cases, answers and tables as with plain
 // numbers.
-#include "tests/support/process.hpp"
+#include "tests/support/commands.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,15 +15,7 @@ namespace grainsweep::tests::quantities_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Quantities : testing::Test {
-    Folder folder;
-
-    Ended ask(const std::vector<std::string>& arguments) const { return run_program(arguments, folder.path()); }
-    std::string out(const std::vector<std::string>& arguments) const {
-        const auto ended = ask(arguments);
-        EXPECT_EQ(ended.code, 0) << ended.err;
-        return ended.out;
-    }
+struct Quantities : CommandsInAFolder {
     std::string dump_of(const std::string& name, const json& campaign) const {
         folder.write(name + ".json", campaign.dump());
         out({"run", name + ".json", "--db", name + ".db", "--quiet"});
