@@ -1,5 +1,5 @@
-// Values and columns of them to and from the bytes of a saved state, in the order they are named: as they lie in
-// memory, little-endian on every processor this program runs on; lengths of 64 bits. Every read is bounded: bytes that
+// Converts values and columns of values to and from the bytes of a saved state, in the order they are named. Values are
+// little-endian as in memory; lengths have 64 bits. Every read is bounded: bytes that
 // end too early throw std::invalid_argument before anything beyond them is touched or memory for them is taken.
 #pragma once
 

@@ -6,8 +6,8 @@
 //   V (T_j-S_j) =  E[(f(A_j) - f(A) + f(B_j) - f(B))^2]/4                               interactions; T_j: total
 //   V S_jk      =  E[(f(A_jk) - f(A_j) - f(A_k) + f(A)) (f(B_jk) - f(B_j) - f(B_k) + f(B))]/4   of two factors
 //
-// and of all noise factors N together, over the whole box and where a control factor lies in one eighth of its range
-// (at one of its levels): what noise would make of the variance if the factor were set there.
+// and of all noise factors N together, over the whole box and for a control factor in one eighth of its range (at one
+// of its levels): the variance that noise causes if the factor is set there.
 //
 //   V T_N       =  E[(f(A_N) - f(A))^2]/2
 //

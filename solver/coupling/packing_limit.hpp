@@ -1,7 +1,7 @@
 // Nowhere more particle volume than random close packing.
 //
-// phi_p is here that of a kernel one diameter wide, or of the cells where they are wider: over the four diameters of
-// the fluid's kernel a thousand particles could share one place and be taken for dilute.
+// phi_p uses a kernel one diameter wide, or the cells where they are wider. With the fluid's kernel of four diameters,
+// a thousand particles could share one place and still count as dilute.
 //
 // Where phi_p exceeds the limit the excess e = max(phi_p - limit, 0) diffuses away and takes the particles along:
 // each sweep moves the particles at a face by

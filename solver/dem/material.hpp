@@ -31,8 +31,8 @@ enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt, capillary };
 /// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
 
-/// How rolling is resisted: epsd by an elastic-plastic spring with a dashpot, epsd_liggghts by the same as LIGGGHTS 3.8
-/// turns it at walls (laws/rolling.hpp), cdt by a torque of constant size against the relative rotation
+/// Rolling resistance. epsd: elastic-plastic spring with a dashpot (laws/rolling.hpp). epsd_liggghts: the same,
+/// turned at walls as in LIGGGHTS 3.8. cdt: torque of constant size against the relative rotation
 /// (laws/constant_torque.hpp).
 enum class RollingLaw { epsd, epsd_liggghts, cdt };
 

@@ -25,8 +25,8 @@
 // A mesh does not change; copies share their triangles.
 //
 // Triangles that meet in an edge or a vertex need not know of each other: a point lies on a triangle if it is nearer
-// than `tolerance` to it. So an edge that ends on the side of another triangle (a T-junction), more than two triangles
-// at an edge, and the seam between a mesh and its periodic image need no rule of their own.
+// than `tolerance` to it. So no rule of its own is needed for an edge that ends on the side of another triangle (a
+// T-junction), for three triangles at an edge, and for the seam between a mesh and its periodic image.
 #pragma once
 
 #include "solver/geometry/closest.hpp"
@@ -62,8 +62,8 @@ public:
     /// a triangle without area or of corners that it has not, or a corner that is no number or farther than 1e9 m away.
     explicit Mesh(TriangleSurface surface, double one_contact_angle = 0);
 
-    /// The same with all of its images in a periodic domain that a sphere with its centre in the domain finds within
-    /// `margin`: it goes on across the faces, and a plate from one to the other has no edge there.
+    /// Returns the mesh with all of its periodic images that a sphere with its centre in the domain finds within
+    /// `margin`. The mesh continues across the faces: a plate from one face to the other has no edge there.
     [[nodiscard]] Mesh repeated(const Domain& domain, double margin) const;
 
     /// The same, which finds at once where spheres of radius up to `reach` touch: the triangles that they can touch are

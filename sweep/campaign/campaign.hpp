@@ -64,8 +64,8 @@ inline constexpr std::string_view group_of_shares = "simplex";
 /// Names of these groups; of a factor by itself its own.
 [[nodiscard]] std::vector<std::string> group_names(std::span<const Factor> factors);
 
-/// Whether cases that several points ask have different probabilities, so that each weighs as many points as ask it in
-/// the moments: some have a `when`, a sample, or steps of a range that is not linear. Elsewhere all are equally likely,
+/// Whether repeated cases have different probabilities, so that each has the weight of its points in the moments: true
+/// with a `when`, a sample, or steps of a range that is not linear. Elsewhere all are equally likely,
 /// and each counts once.
 [[nodiscard]] bool repeats_weigh(std::span<const Factor> factors);
 

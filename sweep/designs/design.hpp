@@ -88,9 +88,9 @@ struct DesignRequest {
     [[nodiscard]] const std::string& word(std::string_view option) const;
 };
 
-/// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions)
-/// or listed physical rows; point p belongs to sequence p mod sequences, and is asked as often as the campaign says,
-/// unless the columns `part` and `repeat` say otherwise.
+/// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions) or listed
+/// physical rows. Point p belongs to sequence p mod sequences. The campaign states its replicates, unless the columns
+/// `part` and `repeat` do.
 struct PointSet {
     std::size_t dimensions = 0;
     std::size_t sequences = 1;

@@ -137,9 +137,9 @@ public:
     enum class Mode { create, read };
     /// A network disk gets a rollback journal instead of a write-ahead log; found out by statfs(2) it is refused.
     enum class Disk { found_out, local, network };
-    /// create: makes the file and its schema where absent, takes the writer's lock (a second writer is
-    /// refused with a sentence naming the first) and brings an older schema up to date; read: changes no content and
-    /// no schema. Throws BrokenWorld, or WrongQuestion when the file is no grainsweep database.
+    /// create: makes the file and its schema where absent, takes the writer's lock and updates an older schema. A
+    /// second writer is refused with a sentence that names the first. read: changes no content and no schema. Throws
+    /// BrokenWorld, or WrongQuestion when the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
@@ -148,9 +148,9 @@ public:
     /// Records campaign and cases (idempotent; extends), makes its view, closes attempts of a dead main program as
     /// abandoned. Returns the state of each case, in the order given. Not inside group().
     ///
-    /// Another scene, revision, default, factor set, range, fixed value, condition, seed, kind of design, scramble or
-    /// first index under the same name throws WrongQuestion naming both, and so does another size of a design that
-    /// does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
+    /// Throws WrongQuestion naming both for another scene, revision, default, factor set, range, fixed value,
+    /// condition, seed, kind of design, scramble or first index under the same name. So does another size of a design
+    /// that does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
     /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). Where a factor of a lattice
     /// gains levels the points are renumbered: the new places replace the old ones, every answer is kept and stays in
     /// the view, and convergence is judged anew, as it is after another rule or more replicates. A list only grows at
