@@ -108,8 +108,8 @@ public:
     }
 
 private:
-    // The stress is divided by the fraction that the particles themselves have on a face, and spread and gathered as
-    // that was deposited: the sum over the particles is that of -grad p_s over the faces, of which nothing is lost.
+    // The stress is divided by the fraction that the particles themselves have on a face, and is spread and gathered as
+    // that fraction was deposited. So the sum over the particles equals the sum of -grad p_s over the faces.
     template <class Stencils>
     void find_stress(const Cloud& cloud, SolidsVolume& solids, const Stencils& stencils, double dt) {
         stressed_ = solids.largest_fraction() > thinnest_;

@@ -13,10 +13,10 @@
 // No contact depends on the order of the triangles.
 //
 // Where two faces meet in a concave edge both are touched, for every angle between them: that is the geometry of the
-// triangles. A drum or a cone made of facets has such places at every edge, at R/(R_drum - R) of its circumference
-// however fine the facets are, and its stiffness there is nearly twice that of the curved wall. So a fine tessellation
-// does not approach a curved wall unless one_contact_angle exceeds the angle between its facets: then one contact, with
-// the nearest facet, is left everywhere, and the force tends to that of the curved wall with the angle. It must stay
+// triangles. A drum or a cone made of facets has such places at every edge: at R/(R_drum - R) of its circumference,
+// however fine the facets. There it is nearly twice as stiff as the curved wall. So a fine tessellation does not
+// approach a curved wall unless one_contact_angle exceeds the angle between its facets. Then one contact, with the
+// nearest facet, is left everywhere, and its force tends to the force at the curved wall. It must stay
 // below the angle of every edge that is meant to be one.
 //
 // A wall has two sides: the normal points to the one where the centre is. A sphere whose centre passes a triangle is
@@ -25,8 +25,8 @@
 // A mesh does not change; copies share their triangles.
 //
 // Triangles that meet in an edge or a vertex need not know of each other: a point lies on a triangle if it is nearer
-// than `tolerance` to it. So no rule of its own is needed for an edge that ends on the side of another triangle (a
-// T-junction), for three triangles at an edge, and for the seam between a mesh and its periodic image.
+// than `tolerance` to it. So three cases need no rule: an edge that ends on the side of another triangle (a
+// T-junction), more than two triangles at an edge, and the seam between a mesh and its periodic image.
 #pragma once
 
 #include "solver/geometry/closest.hpp"

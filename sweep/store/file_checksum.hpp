@@ -2,8 +2,8 @@
 // hashes of the pages a fraction of one. The last run had found or written all of the file sound, so an unchanged file
 // is sound.
 //
-// Not counted are the page of the checksum itself and the parts of the first page that SQLite changes when it writes
-// that one: the change counter (bytes 24 to 27) and the version that goes with it (92 to 99);
+// Not counted are the page of the checksum itself, and the parts of the first page that SQLite changes with it: the
+// change counter (bytes 24 to 27) and its version (92 to 99);
 // https://www.sqlite.org/fileformat.html
 #pragma once
 

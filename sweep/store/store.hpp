@@ -151,13 +151,13 @@ public:
     /// Throws WrongQuestion naming both for another scene, revision, default, factor set, range, fixed value,
     /// condition, seed, kind of design, scramble or first index under the same name. So does another size of a design
     /// that does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
-    /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). Where a factor of a lattice
-    /// gains levels the points are renumbered: the new places replace the old ones, every answer is kept and stays in
-    /// the view, and convergence is judged anew, as it is after another rule or more replicates. A list only grows at
+    /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). If a factor of a lattice
+    /// gains levels, the points are renumbered. New places replace the old ones, and every answer is kept and stays in
+    /// the view. Convergence is judged anew, as after another rule or more replicates. A list only grows at
     /// its end.
     ///
-    /// Places beyond `at_once` new ones are left to enrol_more(), where they need only be added: a long campaign can
-    /// begin before all of it is in the file, and what is missing when the program ends is added by its next run.
+    /// Places beyond `at_once` new ones are left to enrol_more(), so that a long campaign can begin before all of it is
+    /// in the file. Places that are missing when the program ends are added by its next run.
     std::vector<CaseState> enrol(const campaign::Campaign& campaign, const campaign::Cases& cases,
                                  const Provenance& provenance,
                                  std::size_t at_once = std::numeric_limits<std::size_t>::max());

@@ -128,8 +128,8 @@ struct PieceList {
     std::uint32_t* piece;  ///< out
 };
 
-/// Load of the particles on a wall in one step: sums of their forces (to be reversed), of the torques of these forces
-/// about the pivot, and of the forces times the velocity of the wall's material.
+/// Load of the particles on a wall in one step: the sum of their forces (to be reversed), of the torques about the
+/// pivot, and of force times velocity of the wall's material.
 struct WallSums {
     double force[3], torque[3], power;
 };
