@@ -14,21 +14,21 @@
 
 namespace grainsweep::campaign {
 
-/// Where a case stands in a design. A design has less than 2^28 points.
+/// Place of a case in a design. A design has less than 2^28 points.
 struct Place {
     std::uint32_t point = 0, sequence = 0, replicate = 0;
     auto operator<=>(const Place&) const = default;
 };
 
-/// What stands at the places of a list.
+/// Makes the cases at the places of a list.
 class Questions {
 public:
     Questions() = default;
     Questions(const Questions&) = delete;
     Questions& operator=(const Questions&) = delete;
     virtual ~Questions() = default;
-    /// Makes the question that stands at place i. Inputs that `into` has from an earlier call, and that do not vary,
-    /// are left as they are.
+    /// Makes the case at place i. Inputs that `into` has from an earlier call, and that do not vary, are left as
+    /// they are.
     virtual void make(std::size_t i, const Place& place, Case& into) const = 0;
     /// Its inputs alone, in the same way.
     virtual void make_inputs(std::size_t i, const Place& place, Inputs& into) const = 0;

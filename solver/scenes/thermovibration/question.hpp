@@ -16,6 +16,7 @@
 
 namespace grainsweep::thermovibration {
 
+/// Inputs of a case as numbers.
 struct Question {
     double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
     std::int64_t particles;
