@@ -1,4 +1,4 @@
-// docs/campaign_file.md and docs/factors.md show every key of the JSON Schema in an example that is planned, and no other.
+// docs/campaign_file.md and docs/factors.md show every key of the JSON Schema in an example, and no other key.
 #include "tests/documents/page.hpp"
 
 #include <gtest/gtest.h>
