@@ -48,7 +48,7 @@ template <Plain T>
 void take_bytes(std::span<const std::byte>& from, T& value) {
     take_bytes(from, std::span<T>(&value, 1));
 }
-/// The number of values of that size that follow it, all of which must be there.
+/// Reads the number of values of that size that follow; all of them must be there.
 [[nodiscard]] inline std::size_t take_count(std::span<const std::byte>& from, std::size_t size) {
     std::uint64_t n = 0;
     take_bytes(from, n);

@@ -3,8 +3,8 @@
 // Force per volume of a sphere, besides what the fluid does:
 //   a = -(1/phi_p) grad p_s,   p_s = xi phi_p Theta (1 + 2 (1 + e) phi_p g0)                 (granular.hpp)
 // (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF), and no cell over the packing limit
-// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the
-// fraction is below that of two particles at one place far from walls there are no collisions and no stress. The
+// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the fraction is below the
+// one of two particles at one place, far from walls, there are no collisions and no stress. The
 // displacement by the stress in one step is held below a tenth of a cell.
 #pragma once
 

@@ -6,8 +6,8 @@
 // can meet something are advanced in sub-steps of a twentieth of a contact, with forces in the middle of each
 // (leapfrog). Inside a sub-step drag relaxes exponentially, with the factor of the slip at the beginning.
 //
-// Candidates: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall,
-// and those that either could then hit. All others go the free path of motion.hpp.
+// Candidates: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall, and
+// particles that either could then hit. All others go the free path of motion.hpp.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"

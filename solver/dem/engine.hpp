@@ -80,7 +80,7 @@ struct Setup {
     double deepest_in_walls = largest_sound_overlap;
 };
 
-/// How to compute it; never changes what is asked beyond the stated error of the precision.
+/// How to compute a Setup; never changes the result beyond the stated error of the precision.
 struct Method {
     enum class Precision { mixed, double_precision };
     enum class Path { best, baseline, avx2, avx512 };  ///< best: what this processor has
@@ -160,7 +160,7 @@ public:
     /// touching histories. Each wall that stays present must stand by its new motions where it stands now.
     /// Throws std::invalid_argument with one sentence on other bodies or motions that cannot be.
     virtual void change_walls(std::vector<Wall> walls) = 0;
-    /// Adds spheres: their ids follow all earlier ones, also those of particles that are gone, in order. Lists are made
+    /// Adds spheres: their ids follow all earlier ids, also of particles that are gone, in order. Lists are made
     /// anew and forces recomputed once without touching histories, so that one call for many costs less. A sphere
     /// beyond an open face is gone at once; what it overlaps pushes it. Throws std::invalid_argument with one sentence
     /// on a sphere that cannot be or that Setup::to_come does not announce. After a fault nothing is added.

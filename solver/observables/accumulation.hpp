@@ -25,11 +25,11 @@ struct Box {
 
 /// K of counts; NaN for fewer than two particles.
 [[nodiscard]] double accumulation(std::span<const int> counts);
-/// Expected K of N independent uniform particles on so many cells.
+/// Returns the expected K of N independent uniform particles on that number of cells.
 [[nodiscard]] double random_accumulation(std::size_t particles, std::size_t cells);
 /// Standard deviation of that K over clouds with the correlation of counts neglected, which overestimates it.
 [[nodiscard]] double random_accumulation_deviation(std::size_t particles, std::size_t cells);
-/// Least K that N particles can have on so many cells.
+/// Returns the least K that N particles can have on that number of cells.
 [[nodiscard]] double least_accumulation(std::size_t particles, std::size_t cells);
 
 /// Particles in each of n slabs along axis d over the mean: 1 everywhere for a uniform cloud.

@@ -56,13 +56,13 @@ public:
     void inputs(std::size_t i, Inputs& into) const { columns_->questions->make_inputs(i, place(i), into); }
     [[nodiscard]] PlacedCase operator[](std::size_t i) const;
 
-    /// The first place that asks the question of this id.
+    /// Returns the first place with the case of this id.
     [[nodiscard]] std::optional<std::size_t> find(const CaseHash& hash) const;
-    /// The next place that asks the same question as place i.
+    /// Returns the next place with the same case as place i.
     [[nodiscard]] std::optional<std::size_t> next(std::size_t i) const;
-    /// The first place that asks the same question as place i.
+    /// Returns the first place with the same case as place i.
     [[nodiscard]] std::size_t first(std::size_t i) const { return columns_->next.empty() ? i : *find(hash(i)); }
-    /// Whether no place before i asks the same question.
+    /// Whether no place before i has the same case.
     [[nodiscard]] bool is_first(std::size_t i) const { return first(i) == i; }
 
     class Iterator {

@@ -26,7 +26,7 @@ struct Study;
 /// The tool as its wall, over a level, m.
 [[nodiscard]] dem::Wall tool_wall(const Study& study, double level);
 
-/// The surface in an STL file, fitted(). Kept for the next call that asks for the same. Throws std::invalid_argument
+/// The surface in an STL file, fitted(). Kept for the next call with the same arguments. Throws std::invalid_argument
 /// with one sentence where it is no tool: larger than half a metre, with stray triangles, or not fitting.
 [[nodiscard]] geometry::Mesh tool_surface(std::string_view stl, double scale, double facet_angle, double width);
 
