@@ -36,12 +36,12 @@ public:
     /// has no such estimate.
     AssistedConvergence(ConvergenceSettings settings, ModelSpace space);
 
-    /// Points of the next check; after one of so many points.
+    /// Points of the next check, after one of that number of points.
     [[nodiscard]] std::int64_t next_check() const;
     [[nodiscard]] std::int64_t next_check(std::int64_t after) const;
     [[nodiscard]] std::size_t dimensions() const { return space_.dimensions; }
     /// Makes it: `points`, `values` (NaN: the case failed) and features of every case below next_check() points, in the
-    /// order of the design. The time is that of up to 2 (at the first check 4) fits of at most 300 cases and of models
+    /// order of the design. It takes the time of up to 2 (at the first check 4) fits of at most 300 cases and of models
     /// of at most 1,500; beyond that it grows with the number of cases.
     void check(std::span<const std::int64_t> points, std::span<const double> values, std::span<const double> features);
 

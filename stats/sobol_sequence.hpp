@@ -8,7 +8,7 @@
 
 namespace grainsweep::stats {
 
-/// Points in Gray-code order behind that of index 0, which is all zero.
+/// Points in Gray-code order behind the point of index 0, which is all zero.
 class SobolSequence {
 public:
     /// 1 to most_dimensions().

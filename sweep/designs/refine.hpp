@@ -2,8 +2,8 @@
 // with repeats.
 //
 // Both ends of the factor's range are asked first. While they lie on different sides of the threshold the middle of the
-// bracket is asked, in the factor's own scale, until the bracket is no wider than asked. A level is asked twice, then
-// in pairs up to `replicates` times, until Student's 95 % interval of its mean excludes the threshold; then its mean
+// bracket is run, in the factor's own scale, until the bracket is no wider than `width`. A level is run twice, then in
+// pairs up to `replicates` times, until Student's 95 % interval of its mean excludes the threshold; then its mean
 // decides on which side it lies. Repeated looks raise the error rate of the interval above 5 %, and an undecided level
 // counts by its mean. So a bracket where the answer scatters across the threshold is a bracket of the mean, with that
 // risk. If the answer crosses the threshold more than once, only one crossing is found.

@@ -30,7 +30,7 @@ struct Provenance {
     std::string version, commit, compiler, flags, instruction_path, processor, host;
 };
 
-/// What the archive knows of a case of the campaign.
+/// State of a case of the campaign in the archive.
 struct CaseState {
     std::int32_t attempts = 0;                 ///< highest attempt number begun
     std::int32_t failures = 0;                 ///< attempts that crashed or timed out
@@ -101,7 +101,7 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-/// What a campaign asks, and how far it has come.
+/// Content of a campaign, and how far it has come.
 struct CampaignRecord : campaign::Identity {
     std::string text;  ///< the campaign file of its last run
     std::int64_t sequences = 1, replicates = 1;
@@ -116,7 +116,7 @@ struct CampaignRecord : campaign::Identity {
     }
 };
 
-/// The places of a campaign's design, ordered by (point, replicate), and what the archive knows of their cases.
+/// The places of a campaign's design, ordered by (point, replicate), and the state of their cases in the archive.
 struct StoredPlaces {
     std::vector<campaign::Place> places;
     std::vector<campaign::CaseHash> hashes;
@@ -163,7 +163,7 @@ public:
                                  std::size_t at_once = std::numeric_limits<std::size_t>::max());
     /// Whether places of the campaign enrolled last are left.
     [[nodiscard]] bool enrols() const;
-    /// Adds up to so many of them, on disk when this returns. Not inside group().
+    /// Adds up to that number of them, on disk when this returns. Not inside group().
     void enrol_more(std::size_t places);
 
     /// What the last enrol found damaged and what it did about it, a sentence each.
@@ -198,8 +198,8 @@ public:
     /// The names of a campaign's factors in the order that fixes the dimensions of its design; empty where there is
     /// no campaign of that name.
     [[nodiscard]] std::vector<std::string> factor_order(std::string_view campaign) const;
-    /// The stored campaign of that name, none where there is none. Throws WrongQuestion where enrol() would because it
-    /// asks something else.
+    /// The stored campaign of that name, none where there is none. Throws WrongQuestion where enrol() would, because it
+    /// is another campaign.
     [[nodiscard]] std::optional<CampaignRecord> stored(const campaign::Campaign& campaign) const;
     /// How many of these cases are settled, whichever campaign asked them.
     [[nodiscard]] std::int64_t settled(const campaign::Cases& cases) const;
@@ -236,7 +236,7 @@ public:
     /// asked_points (candidates) and asked_replicates.
     [[nodiscard]] Table status() const;
     /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence, the names there are
-    /// and the nearest. Beside SQLite's own functions those of aggregates.hpp.
+    /// and the nearest. Has SQLite's own functions and the aggregates of aggregates.hpp.
     [[nodiscard]] Table query(std::string_view sql) const;
     /// The same row by row: bounded memory, whatever there is to tell.
     struct QueryLimits {

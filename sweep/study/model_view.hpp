@@ -15,7 +15,7 @@ namespace grainsweep::study {
 
 /// Features of the first `candidates` points of the campaign's design, which takes "points". Models are integrated over
 /// 8 scramblings of 2^12 Sobol points, mapped to the factors like the design's points. Only points that `filter`
-/// accepts count. No features are tried by the answers: they are those of the campaign file, else the default ones.
+/// accepts count. No features are tried by the answers: they come from the campaign file, else by default.
 /// Throws WrongQuestion at $.model.features where a feature is undefined somewhere in the ranges, and at $.where where
 /// next to nothing of the ranges is left.
 [[nodiscard]] schedule::ModelView model_view(const campaign::Campaign& campaign, std::int64_t candidates,
