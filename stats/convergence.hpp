@@ -15,7 +15,7 @@
 // mean once each has 4 values). Otherwise they are a delete-a-group jackknife over 8 consecutive stretches of the
 // points (see confidence.hpp).
 //
-// The g1 and kurtosis of a short sequence are small and scatter little, whatever all values do. Their error is
+// Short sequences have a small g1 and kurtosis with little scatter, even where all values have large ones. Their error:
 //
 //   error^2 = max(Student over sequences, jackknife that leaves out a sequence)^2 + (all - mean of sequences)^2
 //
