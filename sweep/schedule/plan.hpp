@@ -36,12 +36,12 @@ struct Rules {
     std::size_t workers = 1;                               ///< how many cases are computed at once
 };
 
-/// The questions of a plan, without repetition.
+/// The different cases of a plan: a repeated case stands here once.
 struct Questions {
     std::function<campaign::Case(std::uint32_t question)> ask;
     std::vector<History> histories;
     std::vector<double> predicted;  ///< seconds
-    /// Index of the question that each placed case asks. Empty: place i asks question i.
+    /// Index of the question of each placed case. Empty: place i has question i.
     std::vector<std::uint32_t> places;
     /// Number of the block after which the campaign may stop, growing; no case is brought forward out of a later block
     /// than the design is in. Empty: nothing stops it.

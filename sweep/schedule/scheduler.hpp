@@ -18,8 +18,9 @@
 
 namespace grainsweep::schedule {
 
+/// Why a run ended.
 enum class Ending {
-    finished,   ///< every question is settled or given up
+    finished,   ///< every case is settled or given up
     converged,  ///< the statistics were good enough
     limited,    ///< as many cases as asked for in this run
     too_many_failures,
