@@ -2,6 +2,8 @@
 
 #include "solver/own_cores.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <system_error>
 
 namespace grainsweep {
@@ -12,6 +14,7 @@ namespace {
 // the core away instead would cost the rest of a time slice wherever something else wants it; a thread that slept is
 // resumed at once.
 constexpr int patience = 20000;
+constexpr int moment = 100;  ///< looks; a few microseconds
 
 void pause_core() {
 #if defined(__x86_64__)
@@ -27,7 +30,7 @@ ThreadPool::ThreadPool(int threads)
     : size_(threads),
       spins_(threads <= own_cores()),
       parts_(std::make_unique<Part[]>(static_cast<std::size_t>(threads))),
-      orders_(std::make_unique<Order[]>(static_cast<std::size_t>(threads))) {
+      times_(std::make_unique<Times[]>(static_cast<std::size_t>(threads))) {
     threads_.reserve(static_cast<std::size_t>(threads));
     try {
         for (int k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
@@ -56,40 +59,47 @@ void ThreadPool::publish() noexcept {
     wake();
 }
 
-/// A part is begun by the thread that moves it from the round before to this one. All parts of a round are begun
-/// before the round ends: a thread that comes too late, with the number of an old round, finds none.
+/// Each begins with its own part, and looks for others' only where the round does not end soon: to look costs every
+/// thread a message from each of the others.
 void ThreadPool::work_on_parts(int first, unsigned round) noexcept {
-    for (int k = 0; k < size_; ++k) {
-        const int part = (first + k) % size_;
-        unsigned before = round - 1;
-        if (!parts_[static_cast<std::size_t>(part)].begun.compare_exchange_strong(before, round)) continue;
-        const bool compared = compared_ && k == 0;
-        work_(of_, part);
-        const int ended_before = ended_.fetch_add(1);
-        if (ended_before + 1 == size_ && first != 0) wake();
-        if (compared) {
-            Order& order = orders_[static_cast<std::size_t>(part)];
-            order.rounds.fetch_add(1, std::memory_order_relaxed);
-            order.ended_before.fetch_add(ended_before, std::memory_order_relaxed);
-        }
-    }
+    const auto over = [&] { return first == 0 ? all_ended() : round_.load() != round; };
+    work_on(first, first, round);
+    for (int k = 0; spins_ && k < moment && !over(); ++k) pause_core();
+    for (int k = 1; k < size_ && !over(); ++k) work_on((first + k) % size_, first, round);
 }
 
-std::vector<double> ThreadPool::lateness(int rounds) {
-    const auto all = static_cast<std::size_t>(size_);
-    for (std::size_t k = 0; k < all; ++k)
-        if (orders_[k].rounds.load(std::memory_order_relaxed) < rounds) return {};
-    std::vector<double> late(all);
-    for (std::size_t k = 0; k < all; ++k) {
-        const auto counted = static_cast<double>(orders_[k].rounds.exchange(0, std::memory_order_relaxed));
-        const auto before = static_cast<double>(orders_[k].ended_before.exchange(0, std::memory_order_relaxed));
-        late[k] = all > 1 ? 2 * before / (counted * static_cast<double>(all - 1)) - 1 : 0;
+/// A part is begun by the thread that moves it from the round before to this one. All parts of a round are begun
+/// before the round ends: a thread that comes too late, with the number of an old round, finds none.
+void ThreadPool::work_on(int part, int thread, unsigned round) noexcept {
+    auto& begun = parts_[static_cast<std::size_t>(part)].begun;
+    unsigned before = round - 1;
+    if (begun.load() != before || !begun.compare_exchange_strong(before, round)) return;
+    work_(of_, part);
+    if (timed_ && part == thread) {
+        Times& times = times_[static_cast<std::size_t>(part)];
+        ++times.rounds;
+        times.logarithms += std::log(std::max(std::chrono::duration<double>(Clock::now() - begun_at_).count(), 1e-9));
     }
-    return late;
+    if (ended_.fetch_add(1) + 1 == size_ && thread != 0) wake();
+}
+
+std::vector<double> ThreadPool::seconds(std::int64_t rounds) const {
+    std::vector<double> seconds;
+    for (int k = 0; k < size_; ++k) {
+        const Times& times = times_[static_cast<std::size_t>(k)];
+        if (times.rounds < std::max<std::int64_t>(rounds, 1)) return {};
+        seconds.push_back(std::exp(times.logarithms / static_cast<double>(times.rounds)));
+    }
+    return seconds;
+}
+
+void ThreadPool::forget_times() {
+    timed_rounds_ = 0;
+    for (int k = 0; k < size_; ++k) times_[static_cast<std::size_t>(k)] = {};
 }
 
 void ThreadPool::wait_for_the_rest() noexcept {
-    wait_until([&] { return ended_.load() == size_; });
+    wait_until([this] { return all_ended(); });
 }
 
 /// Conditions change by sequentially consistent writes, after which wake() is called: it sees a thread that sleeps,

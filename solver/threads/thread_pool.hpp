@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -29,31 +30,36 @@ public:
     void run(const Work& work) noexcept {
         begin_and_end(work, false);
     }
-    /// As run(), for parts that should end at the same time: see lateness().
+    /// As run(), for parts that should end at the same time: see seconds().
     template <class Work>
-    void run_compared(const Work& work) noexcept {
+    void run_timed(const Work& work) noexcept {
+        begun_at_ = Clock::now();
+        ++timed_rounds_;
         begin_and_end(work, true);
     }
-    /// How late each part ended in the rounds of run_compared() since this was called last: 1 always as the last one,
-    /// -1 always as the first. Counts rounds in which a part was done by the thread whose own it is. Empty where some
-    /// part has fewer than `rounds` of them, which then go on counting.
-    [[nodiscard]] std::vector<double> lateness(int rounds);
+    /// Seconds from the beginning of a round of run_timed() to the end of each part: the geometric mean, on which a
+    /// round that the system interrupts has little weight, of the rounds in which the thread whose own the part is did
+    /// it. Empty where some part has fewer than `rounds` of them.
+    [[nodiscard]] std::vector<double> seconds(std::int64_t rounds) const;
+    /// Rounds of run_timed() since forget_times().
+    [[nodiscard]] std::int64_t timed_rounds() const { return timed_rounds_; }
+    void forget_times();
 
 private:
     /// The round in which a part was last begun, on a cache line of its own.
     struct alignas(64) Part {
         std::atomic<unsigned> begun = 0;
     };
-    /// Of compared rounds; written by the part's own thread alone, and by the caller between rounds. A thread may still
-    /// be writing when its round has ended.
-    struct alignas(64) Order {
-        std::atomic<std::int64_t> rounds = 0;
-        std::atomic<std::int64_t> ended_before = 0;  ///< parts, summed over them
+    /// Of timed rounds; written by the part's own thread during a round, and by the caller between rounds.
+    struct alignas(64) Times {
+        std::int64_t rounds = 0;
+        double logarithms = 0;  ///< of seconds, their sum
     };
+    using Clock = std::chrono::steady_clock;
 
     template <class Work>
-    void begin_and_end(const Work& work, bool compared) noexcept {
-        compared_ = compared;
+    void begin_and_end(const Work& work, bool timed) noexcept {
+        timed_ = timed;
         work_ = [](const void* of, int part) { (*static_cast<const Work*>(of))(part); };
         of_ = &work;
         publish();
@@ -64,7 +70,9 @@ private:
     void serve(int thread) noexcept;
     void publish() noexcept;
     void work_on_parts(int first, unsigned round) noexcept;
+    void work_on(int part, int thread, unsigned round) noexcept;
     void wait_for_the_rest() noexcept;
+    [[nodiscard]] bool all_ended() const noexcept { return ended_.load() == size_; }
     template <class Condition>
     void wait_until(const Condition& holds) noexcept;
     void wake() noexcept;
@@ -73,10 +81,12 @@ private:
     bool spins_;  ///< not where threads share cores
     void (*work_)(const void*, int) = nullptr;
     const void* of_ = nullptr;
-    bool compared_ = false;
+    bool timed_ = false;
+    Clock::time_point begun_at_;
+    std::int64_t timed_rounds_ = 0;
     std::atomic<bool> ends_ = false;
     std::unique_ptr<Part[]> parts_;
-    std::unique_ptr<Order[]> orders_;
+    std::unique_ptr<Times[]> times_;
     alignas(64) std::atomic<unsigned> round_ = 0;
     alignas(64) std::atomic<int> ended_ = 0;   ///< parts of this round
     alignas(64) std::atomic<int> asleep_ = 0;  ///< threads

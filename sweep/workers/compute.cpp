@@ -1,6 +1,7 @@
 #include "sweep/workers/compute.hpp"
 
 #include "sweep/campaign/file_contents.hpp"
+#include "sweep/workers/thread_choice.hpp"
 
 #include <fmt/format.h>
 #include <time.h>
@@ -33,6 +34,8 @@ double processor_seconds() {
 constexpr double slice_seconds = 0.1;
 // In the scene's time, whose scale is unknown: shorter than any step, then it adapts to the clock.
 constexpr double first_slice = 1e-9;
+// Shorter slices do not tell how fast threads are.
+constexpr double least_timed_seconds = 0.02;
 
 /// When the next picture is due.
 class Shutter {
@@ -87,38 +90,6 @@ private:
     double shot_ = 0;
 };
 
-/// All the threads that are allowed, unless one is faster: where other programs keep the cores busy, threads wait for
-/// one another. Both are timed anew now and then; no bit of the answer depends on the choice.
-class ThreadChoice {
-public:
-    [[nodiscard]] int next() const {
-        const int allowed = allowed_threads();
-        if (timed_ < trials) return allowed;
-        if (timed_ < 2 * trials) return 1;
-        return one_is_faster_ ? 1 : allowed;
-    }
-    /// After a slice: the particle steps in it and its seconds.
-    void note(double work, double seconds) {
-        if (allowed_threads() == 1 || seconds < least_seconds) return;
-        if (timed_ < 2 * trials) {
-            auto& rate = timed_ < trials ? rate_of_all_ : rate_of_one_;
-            rate += work / seconds / trials;
-        }
-        ++timed_;
-        one_is_faster_ = rate_of_one_ > 1.05 * rate_of_all_;
-        if (timed_ < period) return;
-        timed_ = 0;
-        rate_of_all_ = rate_of_one_ = 0;
-    }
-
-private:
-    static constexpr int trials = 2, period = 64;  // slices
-    static constexpr double least_seconds = 0.02;
-    int timed_ = 0;
-    double rate_of_all_ = 0, rate_of_one_ = 0;
-    bool one_is_faster_ = false;
-};
-
 /// Of something over time.
 class Mean {
 public:
@@ -142,11 +113,11 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera, Mean& used) {
     while (!scene.finished() && scene.health().stable()) {
         const auto start = Clock::now();
         const bool cut = shutter.next() < scene.time() + slice;
-        const int count = scene.use_threads(threads.next());
+        const int count = scene.use_threads(threads.next(allowed_threads()));
         const double work = scene.particle_steps();
         scene.advance(cut ? shutter.next() : scene.time() + slice);
         const double took = std::max(seconds_since(start), 1e-6);
-        threads.note(scene.particle_steps() - work, took);
+        if (took >= least_timed_seconds) threads.note(scene.particle_steps() - work, took);
         used.add(count, took);
         if (!cut) slice *= std::clamp(slice_seconds / took, 0.25, 4.0);
         shutter.look(scene);

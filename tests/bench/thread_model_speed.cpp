@@ -8,8 +8,8 @@
 // of one core here, by the triad a = b + s c of McCalpin's STREAM (1995); B_max: of a socket, 205 GB/s (eight channels
 // DDR4-3200) and 461 GB/s (twelve of DDR5-4800), by their data sheets. w(n) is measured here for every n: processor
 // time of n threads on the cores there are, over that of one, which holds the pairs that two threads compute both.
-// Threads have 4000 particles at least. What the model leaves out: the wait at the two barriers of a step, about 1 us
-// where cores share a cache, caches that grow with the number of cores, and sockets that are not alike.
+// Threads have Threads::least_particles at least. What the model leaves out: the wait at the two barriers of a step,
+// about 1 us where cores share a cache, caches that grow with the number of cores, and sockets that are not alike.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -111,7 +111,7 @@ Scene measure(const std::string& name, const dem::Setup& setup) {
             scene.cost = elapsed / (static_cast<double>(window) * scene.particles);
         }
         const double one = scene.cost * static_cast<double>(window) * scene.particles;
-        const int used = std::clamp(static_cast<int>(scene.particles / 4000), 1, n);
+        const int used = std::clamp(static_cast<int>(scene.particles / dem::fast::Threads{}.least_particles), 1, n);
         if (used < n) break;
         scene.counts.push_back({n, processor / processor_of_one, n <= cores ? one / elapsed : 0});
     }

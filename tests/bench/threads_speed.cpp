@@ -1,15 +1,16 @@
 // One case on several threads beside the same case on one: one JSON line per scene.
 //
-//   bench_threads [--scene NAME] [--threads N] [--windows N] [--large] [--pin]
+//   bench_threads [--scene NAME] [--threads N] [--windows N] [--least N] [--large] [--pin]
 //
 // Two engines of the same case, one thread and N (2), take turns window by window. `speedup` is the ratio of their
 // cheapest windows, `speedup_mean` that of all, lists made anew included, in elapsed time: on a machine that does
 // something else besides, both are too small. `same`: both end with the same checkpoint. `round_trip_ns`: how long a
 // word takes from one core to another and back, the farthest of those that --pin binds the threads to, just before and
 // after the windows, the longer one: cores that share a cache hand particles over several times as fast as others, and
-// a small case shows it. Bytes per particle: what the process grew by with each engine. --large adds the full-size
-// Schwarz-P cell of configs/gupta_full_cells.json without cohesion, as its powder begins to fall, and a bed of a
-// million spheres; --scene full_cell or settled_1M runs one.
+// a small case shows it. `round_ns`: how long all threads take to begin and end a round in which they do nothing.
+// --least: particles for each thread. Bytes per particle: what the process grew by with each engine. --large adds the
+// full-size Schwarz-P cell of configs/gupta_full_cells.json without cohesion, as its powder begins to fall, and a bed
+// of a million spheres; --scene full_cell or settled_1M runs one.
 #include <sched.h>
 #include <unistd.h>
 
@@ -31,6 +32,7 @@
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/particles/packing.hpp"
 #include "solver/particles/tpms_filling.hpp"
+#include "solver/threads/thread_pool.hpp"
 #include "tests/support/granular_beds.hpp"
 #include "tests/support/tpms_cells.hpp"
 
@@ -42,6 +44,7 @@ namespace {
 struct Options {
     std::string scene;
     int threads = 2, windows = 20;
+    std::int32_t least = dem::fast::Threads{}.least_particles;
     bool large = false, pin = false;
 };
 
@@ -102,6 +105,19 @@ double farthest_round_trip(int threads) {
     return most;
 }
 
+/// Nanoseconds of an empty round of so many threads, the cheapest of 50 rows of a hundred.
+double empty_round(int threads) {
+    constexpr int rows = 50, row = 100;
+    ThreadPool pool(threads);
+    double least = 1e300;
+    for (int r = 0; r < rows; ++r) {
+        const double start = seconds();
+        for (int q = 0; q < row; ++q) pool.run([](int) {});
+        least = std::min(least, seconds() - start);
+    }
+    return 1e9 * least / row;
+}
+
 /// Of this process, bytes.
 double resident() {
     std::ifstream in("/proc/self/statm");
@@ -136,7 +152,7 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
     one.engine = make_mixed_engine(setup, dem::Method::Path::best);
     one.engine->run(2 * window);
     memory[1] = resident();
-    several.engine = make_mixed_engine(setup, dem::Method::Path::best, 0, 0, {.most = o.threads});
+    several.engine = make_mixed_engine(setup, dem::Method::Path::best, 0, 0, {o.threads, o.least});
     several.engine->run(2 * window);
     memory[2] = resident();
     if (o.pin) pin_threads();
@@ -152,11 +168,11 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
     std::printf(
         "{\"bench\": \"threads\", \"scene\": \"%s\", \"particles\": %.0f, \"threads\": %d, \"steps\": %.0f, "
         "\"ns_one\": %.2f, \"ns_several\": %.2f, \"speedup\": %.3f, \"speedup_mean\": %.3f, "
-        "%s\"steps_per_s\": %.1f, \"rebuilds_per_1000\": %.1f, \"bytes_per_particle_one\": %.0f, "
+        "%s\"round_ns\": %.0f, \"steps_per_s\": %.1f, \"rebuilds_per_1000\": %.1f, \"bytes_per_particle_one\": %.0f, "
         "\"bytes_per_particle_several\": %.0f, \"same\": %s, \"fault\": \"%s\"}\n",
         scene.c_str(), particles, o.threads, steps, scale * one.least / static_cast<double>(window),
         scale * several.least / static_cast<double>(window), one.least / several.least, one.total / several.total,
-        hand_over.c_str(), static_cast<double>(window) / several.least,
+        hand_over.c_str(), empty_round(o.threads), static_cast<double>(window) / several.least,
         1000 * static_cast<double>(one.engine->work().rebuilds - rebuilds) / steps, (memory[1] - memory[0]) / particles,
         (memory[2] - memory[1]) / particles, one.bytes() == several.bytes() ? "true" : "false",
         one.engine->fault().c_str());
@@ -182,13 +198,15 @@ Options read_options(int argc, char** argv) {
             o.threads = std::atoi(value());
         else if (name == "--windows")
             o.windows = std::max(1, std::atoi(value()));
+        else if (name == "--least")
+            o.least = std::atoi(value());
         else if (name == "--large")
             o.large = true;
         else if (name == "--pin")
             o.pin = true;
         else
             throw std::invalid_argument("no option '" + name +
-                                        "': there are --scene, --threads, --windows, --large, --pin");
+                                        "': there are --scene, --threads, --windows, --least, --large, --pin");
     }
     return o;
 }

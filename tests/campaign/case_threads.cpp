@@ -17,14 +17,14 @@ namespace grainsweep::tests::case_threads_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Particles enough for two threads; the last case takes several times as long as the others.
+// Particles enough for three threads; the last case takes several times as long as the others.
 json drum(const json& execution) {
     return {{"campaign", "drum"},
             {"scene", "rotating_drum"},
             {"factors", {{{"name", "turning_time"}, {"levels", {0.002, 0.004, 0.2}}}}},
             {"fixed",
-             {{"particles", 8200},
-              {"drum_diameter", 0.2},
+             {{"particles", 3000},
+              {"drum_diameter", 0.12},
               {"length", 0.08},
               {"measured_time", 0.002},
               {"frame_interval", 0.002}}},

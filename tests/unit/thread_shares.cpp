@@ -1,4 +1,4 @@
-// Threads on cores that are not alike: which of them end late, and the shares of the work that let all end together.
+// Threads on cores that are not alike: how long their parts take, and the shares of the work that let all end together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,20 +19,13 @@ namespace grainsweep::tests::thread_shares_test {
 /// Rounds of a pool whose threads do `speed` of the work in a unit of time, within 2 % more or less each time.
 class Rounds {
 public:
-    [[nodiscard]] std::vector<double> lateness(const Shares& shares, const std::vector<double>& speed, int rounds) {
-        const std::size_t n = speed.size();
-        std::vector<double> late(n, 0), end(n);
-        std::vector<std::size_t> order(n);
-        for (int k = 0; k < rounds; ++k) {
-            for (std::size_t part = 0; part < n; ++part)
-                end[part] =
-                    shares.of(static_cast<int>(part)) / speed[part] * (0.98 + 0.04 * noise_.uniform(counter_++));
-            std::iota(order.begin(), order.end(), std::size_t{0});
-            std::ranges::sort(order, {}, [&](std::size_t part) { return end[part]; });
-            for (std::size_t place = 0; place < n; ++place)
-                late[order[place]] += (2 * static_cast<double>(place) / static_cast<double>(n - 1) - 1) / rounds;
-        }
-        return late;
+    [[nodiscard]] std::vector<double> seconds(const Shares& shares, const std::vector<double>& speed, int rounds) {
+        std::vector<double> mean(speed.size(), 0);
+        for (int k = 0; k < rounds; ++k)
+            for (std::size_t part = 0; part < speed.size(); ++part)
+                mean[part] += shares.of(static_cast<int>(part)) / speed[part] *
+                              (0.98 + 0.04 * noise_.uniform(counter_++)) / rounds;
+        return mean;
     }
 
 private:
@@ -53,7 +46,7 @@ TEST(ThreadShares, AreEqualAtFirstAndStaySoOnCoresThatAreAlike) {
     for (int part = 0; part < 3; ++part) EXPECT_EQ(shares.of(part), 1.0 / 3);
     Rounds rounds;
     for (int k = 0; k < 200; ++k) {
-        shares.move(rounds.lateness(shares, {1, 1, 1}, 100));
+        shares.move(rounds.seconds(shares, {1, 1, 1}, 100));
         EXPECT_LT(excess(shares, {1, 1, 1}), 0.015) << "move " << k;
     }
 }
@@ -64,9 +57,9 @@ TEST(ThreadShares, LetCoresThatAreNotAlikeEndTogether) {
         Shares shares(static_cast<int>(speed.size()));
         Rounds rounds;
         EXPECT_GT(excess(shares, speed), 0.1) << "before they move";
-        for (int k = 0; k < 12; ++k) shares.move(rounds.lateness(shares, speed, 100));
+        for (int k = 0; k < 3; ++k) shares.move(rounds.seconds(shares, speed, 100));
         for (int k = 0; k < 100; ++k) {
-            shares.move(rounds.lateness(shares, speed, 100));
+            shares.move(rounds.seconds(shares, speed, 100));
             EXPECT_LT(excess(shares, speed), 0.02) << speed.size() << " parts, move " << k;
         }
     }
@@ -76,14 +69,14 @@ TEST(ThreadShares, FollowACoreThatIsDisturbedForAWhile) {
     Shares shares(2);
     Rounds rounds;
     for (const double speed : {1.0, 0.7, 1.0}) {
-        for (int k = 0; k < 15; ++k) shares.move(rounds.lateness(shares, {1, speed}, 100));
+        for (int k = 0; k < 4; ++k) shares.move(rounds.seconds(shares, {1, speed}, 100));
         EXPECT_LT(excess(shares, {1, speed}), 0.01) << speed;
     }
 }
 
 TEST(ThreadShares, StayWithinBoundsAndAddUpToOne) {
     Shares shares(2);
-    for (int k = 0; k < 100; ++k) shares.move(std::vector<double>{-1, 1});
+    for (int k = 0; k < 100; ++k) shares.move(std::vector<double>{1, 100});
     EXPECT_NEAR(shares.of(0) + shares.of(1), 1, 1e-15);
     EXPECT_GE(shares.of(1), 0.2);
     EXPECT_LE(shares.of(0), 0.8);
@@ -92,26 +85,40 @@ TEST(ThreadShares, StayWithinBoundsAndAddUpToOne) {
     EXPECT_EQ(shares.of(0), before);
 }
 
-TEST(ThreadPool, KnowsWhichPartsEndLate) {
+TEST(ThreadShares, SixteenOfUnequalCoresAndCostsEndTogetherAfterTwoMoves) {
+    std::vector<double> speed;
+    for (int k = 0; k < 16; ++k) speed.push_back(0.7 + 0.04 * k);
+    Shares shares(16);
+    Rounds rounds;
+    EXPECT_GT(excess(shares, speed), 0.4) << "before they move";
+    for (int k = 0; k < 2; ++k) shares.move(rounds.seconds(shares, speed, 64));
+    EXPECT_LT(excess(shares, speed), 0.05);
+}
+
+TEST(ThreadPool, TimesPartsFromTheBeginningOfARound) {
     ThreadPool pool(2);
-    EXPECT_TRUE(pool.lateness(1).empty());
+    EXPECT_TRUE(pool.seconds(1).empty());
     pool.run([](int) {});
-    EXPECT_TRUE(pool.lateness(1).empty()) << "a round that is not compared";
-    // Each part waits for the other, so that two threads do them; the second goes on for longer than a busy machine
-    // keeps the first one waiting.
-    for (int round = 0; round < 25; ++round) {
-        std::atomic<bool> first_goes = false, second_goes = false;
-        pool.run_compared([&](int part) {
-            (part == 0 ? first_goes : second_goes) = true;
-            while (!first_goes || !second_goes) std::this_thread::yield();
+    EXPECT_TRUE(pool.seconds(1).empty()) << "a round that is not timed";
+    // Each part waits for the other, so that two threads do them; the second goes on when the first has ended.
+    constexpr int rounds = 25;
+    for (int round = 0; round < rounds; ++round) {
+        std::atomic<bool> first_ends = false, second_goes = false;
+        pool.run_timed([&](int part) {
+            if (part == 1) second_goes = true;
+            while (part == 0 ? !second_goes : !first_ends) std::this_thread::yield();
+            if (part == 0) first_ends = true;
             if (part == 1) std::this_thread::sleep_for(std::chrono::milliseconds(20));
         });
     }
-    const std::vector<double> late = pool.lateness(20);  // of the last round a thread may still be counting
-    ASSERT_EQ(late.size(), 2U);
-    EXPECT_LT(late[0], -0.5);
-    EXPECT_GT(late[1], 0.5);
-    EXPECT_TRUE(pool.lateness(20).empty()) << "counted twice";
+    EXPECT_EQ(pool.timed_rounds(), rounds);
+    const std::vector<double> seconds = pool.seconds(rounds);
+    ASSERT_EQ(seconds.size(), 2U);
+    EXPECT_GE(seconds[1], 0.02);
+    EXPECT_LT(seconds[0], seconds[1]);
+    EXPECT_TRUE(pool.seconds(rounds + 1).empty());
+    pool.forget_times();
+    EXPECT_TRUE(pool.seconds(1).empty());
 }
 
 }  // namespace grainsweep::tests::thread_shares_test

@@ -64,6 +64,12 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     const bool rebuilt =
         !(drift_.outer < static_cast<double>(space_.skin)) || (needs_.resting && drift_.steps >= rest_interval);
     if (!rebuilt && drift_.inner < static_cast<double>(inner_skin_)) return;
+    const bool cut_anew = !rebuilt && subdomains_.uneven();
+    if (cut_anew) {
+        join_lists();
+        subdomains_.mark_touching(field_, columns_);
+        subdomains_.cut_up(field_, columns_, false);
+    }
     if (rebuilt) {
         const double per_step = drift_.steps > 0 ? drift_.outer / static_cast<double>(drift_.steps) : 0.003;
         if (adapts_skin_)
@@ -98,7 +104,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     inner_skin_ = static_cast<float>(
         std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(space_.skin)));
     if (subdomains_.cut()) {
-        refresh_ = Refresh{inner_skin_, rebuilt};
+        refresh_ = Refresh{inner_skin_, rebuilt || cut_anew};
     } else {
         refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
         field_.fetch_ahead = distance_to_fetch(field_);

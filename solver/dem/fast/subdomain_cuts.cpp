@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <bit>
+#include <chrono>
+#include <numeric>
 #include <span>
 
 #include "solver/dem/fast/listed_pairs.hpp"
@@ -16,6 +18,9 @@ constexpr double cost_of_particle = 4, cost_of_contact = 5, cost_of_pair = 0.3, 
 // Fewer say more of chance than of cores.
 constexpr int sweeps_that_tell = 64;
 
+// Most of the first cut's time goes into taking memory.
+constexpr double share_without_memory = 0.2;
+
 }  // namespace
 
 std::int32_t Subdomains::contacts_before(const Field& whole, std::int32_t pair) const {
@@ -23,6 +28,22 @@ std::int32_t Subdomains::contacts_before(const Field& whole, std::int32_t pair) 
     const auto vector = static_cast<std::size_t>(pair / width);
     const unsigned before = rest == 0 ? 0 : whole.outer_touching[vector] & ((1U << static_cast<unsigned>(rest)) - 1);
     return contacts_before_[vector] + std::popcount(before);
+}
+
+bool Subdomains::uneven() const {
+    if (!cut()) return false;
+    const std::vector<double> seconds = pool_->seconds(sweeps_that_tell);
+    if (seconds.empty()) return false;
+    const double mean = std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(seconds.size());
+    const double waited = std::ranges::max(seconds) - mean;
+    return static_cast<double>(pool_->timed_rounds()) * waited > 2 * cut_seconds_;  // lists are joined before
+}
+
+void Subdomains::mark_touching(const Field& whole, Columns& columns) const {
+    const std::int32_t width = kernels_->width;
+    columns.outer_touching.clear(static_cast<std::size_t>(whole.outer_count / width) + 2);
+    for (std::int32_t k = 0; k < whole.inner_count; ++k)
+        if (bit_at(whole.touching, k, width)) set_bit(whole.outer_touching, whole.inner_source[k], width);
 }
 
 void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
@@ -35,19 +56,18 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     subdomains_.resize(static_cast<std::size_t>(parts));  // those there are keep their memory
     for (auto& subdomain : subdomains_)
         if (subdomain == nullptr) subdomain = std::make_unique<Subdomain>();
-    if (pool_ == nullptr || pool_->size() != parts) {
+    const bool first = pool_ == nullptr || pool_->size() != parts;
+    if (first) {
         pool_ = std::make_unique<ThreadPool>(parts);
         shares_ = Shares(parts);
     } else {
-        shares_.move(pool_->lateness(sweeps_that_tell));
+        shares_.move(pool_->seconds(sweeps_that_tell));
+        pool_->forget_times();
     }
+    const auto start = std::chrono::steady_clock::now();
     const std::int32_t width = kernels_->width;
     const std::int32_t vectors = whole.outer_count / width + 1;
-    if (listed) {
-        columns.outer_touching.clear(static_cast<std::size_t>(vectors) + 1);
-        for (std::int32_t k = 0; k < whole.inner_count; ++k)
-            if (bit_at(whole.touching, k, width)) set_bit(whole.outer_touching, whole.inner_source[k], width);
-    }
+    if (listed) mark_touching(whole, columns);
     contacts_before_.resize(static_cast<std::size_t>(vectors) + 1);
     std::int32_t contacts = 0;
     for (std::int32_t b = 0; b <= vectors; ++b) {
@@ -76,6 +96,8 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     });
     if (listed) pool_->run([this](int part) { find_what_to_send(part); });
     joined_ = true;
+    cut_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (first) cut_seconds_ *= share_without_memory;
 }
 
 /// Ranges that take about the same time. Pairs across subdomains are computed in both: what a subdomain computes of the

@@ -219,7 +219,7 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_o
         pool_->run([&](int part) {
             subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, whole.kind, renewal.has_value());
         });
-    pool_->run_compared([&](int part) {
+    pool_->run_timed([&](int part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         if (received) receive(whole, part);
         Field f = d.view(whole);

@@ -104,6 +104,11 @@ public:
     /// Cuts the whole lists into as many parts as wanted. `listed`: the inner list, too; otherwise a refresh follows,
     /// and columns.outer_touching says which pairs touch.
     void cut_up(Field& whole, Columns& columns, bool listed);
+    /// Writes to columns.outer_touching which pairs of the whole inner list touch.
+    void mark_touching(const Field& whole, Columns& columns) const;
+    /// Whether other cuts would soon save what it costs to make them: since the last cut, threads have waited for
+    /// longer than that for those that ended later.
+    [[nodiscard]] bool uneven() const;
     /// The whole lists are used from here on; they must have been joined.
     void drop() { subdomains_.clear(); }
     /// For what is no sweep, while the lists of the subdomains are not needed: after they were joined, until they are
@@ -139,6 +144,7 @@ private:
     std::vector<std::unique_ptr<Subdomain>> subdomains_;
     int turn_ = 0;                               ///< of Subdomain::sent, that which the next sweep reads
     std::vector<std::int32_t> contacts_before_;  ///< vectors of the whole outer list
+    double cut_seconds_ = 0;                     ///< that the last cut took
     mutable bool joined_ = true;
 };
 
