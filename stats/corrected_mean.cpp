@@ -119,7 +119,7 @@ std::optional<PairPrediction> model_of_difference(const Sample& sample) {
 }
 
 /// t sd/sqrt(n) of residuals whose trend had so many coefficients.
-double half_width_by_cases(const Eigen::VectorXd& residuals, Eigen::Index coefficients) {
+double corrected_half_width(const Eigen::VectorXd& residuals, Eigen::Index coefficients) {
     const auto n = static_cast<double>(residuals.size());
     const double freedom = n - static_cast<double>(std::max<Eigen::Index>(coefficients, 1));
     if (freedom < 1) return not_known;
@@ -147,7 +147,7 @@ std::vector<PairPrediction> predictions_of(const Sample& sample) {
 PairPrediction best_prediction(const Sample& sample) {
     auto all = predictions_of(sample);
     return *std::ranges::min_element(all, {}, [&](const PairPrediction& one) {
-        const double half_width = half_width_by_cases(residuals_of(sample, one), one.coefficients);
+        const double half_width = corrected_half_width(residuals_of(sample, one), one.coefficients);
         return std::isnan(half_width) ? std::numeric_limits<double>::infinity() : half_width;
     });
 }
@@ -178,14 +178,14 @@ double both(double a, double b, std::ptrdiff_t pairs) {
 }
 
 /// What a linear trend over the factors leaves of g, as a half-width of its mean.
-double scatter_of(const Sample& sample, const Eigen::VectorXd& g) {
+double corrected_scatter(const Sample& sample, const Eigen::VectorXd& g) {
     const auto width = static_cast<Eigen::Index>(sample.dimensions);
     Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(sample.size(), 1 + width);
     terms.rightCols(width) = sample.factors;
-    if (sample.size() < 2 * terms.cols()) return half_width_by_cases(g, 1);
+    if (sample.size() < 2 * terms.cols()) return corrected_half_width(g, 1);
     const Eigen::VectorXd residuals = g - terms * terms.colPivHouseholderQr().solve(g).eval();
     const auto n = static_cast<double>(sample.size()), freedom = n - static_cast<double>(terms.cols());
-    return half_width_by_cases(residuals, terms.cols()) * std::sqrt((n - 1) / freedom);
+    return corrected_half_width(residuals, terms.cols()) * std::sqrt((n - 1) / freedom);
 }
 
 }  // namespace
@@ -206,7 +206,7 @@ CorrectedMean corrected_mean(const PairedValues& values) {
     found.by = prediction.by;
     found.value = prediction.g.mean();
     found.statistics = over_sequences(s);
-    found.scatter = scatter_of(sample, prediction.g);
+    found.scatter = corrected_scatter(sample, prediction.g);
     found.numerics = 0;
     found.together = found.statistics;
     if (!paired) return found;
@@ -216,7 +216,7 @@ CorrectedMean corrected_mean(const PairedValues& values) {
     std::vector<double> t;
     for (std::size_t k = 0; k < s.size(); ++k) t.push_back(s[k] + d[k]);
     const bool equal = sample.expensive(sample.pairs) == sample.cheap(sample.pairs);
-    const double by_cases = half_width_by_cases(residuals, prediction.coefficients);
+    const double by_cases = corrected_half_width(residuals, prediction.coefficients);
     found.value += residuals.mean();
     found.numerics = equal ? not_known : both(student_half_width(d), by_cases, std::ssize(sample.pairs));
     const double parts = std::hypot(found.statistics, found.numerics), whole = over_sequences(t);
