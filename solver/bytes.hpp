@@ -1,5 +1,5 @@
-// Values and columns of them to and from the bytes of a saved state, in the order they are named: as they lie in
-// memory, little-endian on every processor this program runs on; lengths of 64 bits. Every read is bounded: bytes that
+// Converts values and columns of values to and from the bytes of a saved state, in the order they are named. Values are
+// little-endian as in memory; lengths have 64 bits. Every read is bounded: bytes that
 // end too early throw std::invalid_argument before anything beyond them is touched or memory for them is taken.
 #pragma once
 
@@ -48,7 +48,7 @@ template <Plain T>
 void take_bytes(std::span<const std::byte>& from, T& value) {
     take_bytes(from, std::span<T>(&value, 1));
 }
-/// The number of values of that size that follow it, all of which must be there.
+/// Reads the number of values of that size that follow; all of them must be there.
 [[nodiscard]] inline std::size_t take_count(std::span<const std::byte>& from, std::size_t size) {
     std::uint64_t n = 0;
     take_bytes(from, n);

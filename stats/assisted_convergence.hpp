@@ -1,12 +1,12 @@
 // The rule `assisted`: when enough points have been asked for moments that take a model of the response as control
 // variate (assisted_moments.hpp).
 //
-// Checks are at growing sizes, because each fits models: the first multiple of `block` that has 104 points or more
-// (fewer are not known to give intervals that hold) and 8 (d + 1), then always the first multiple of `block` that is a
-// fifth larger. N points are checked at most 1 + log(N/104)/log(1.2) times. At a check each gate is measured as under
-// the rule `replicates` (convergence.hpp) by the half-width of the estimate its statistic takes: the assisted one where
-// that was decided beforehand, at the check before; else the plain one, whose g1 and kurtosis have no error while too
-// few values carry them (convergence.hpp). It converges where every gate is below the tolerance at two consecutive
+// Checks are at growing sizes, because each fits models. The first is the first multiple of `block` with at least 104
+// points and 8 (d + 1); fewer points are not known to give intervals that hold. Each next one is the first multiple of
+// `block` that is a fifth larger. N points are checked at most 1 + log(N/104)/log(1.2) times. Each gate is measured as
+// under `replicates` (convergence.hpp), by the half-width of the estimate its statistic takes: the assisted one where
+// that was chosen at the check before, else the plain one. Its g1 and kurtosis have no error while too few values carry
+// them (convergence.hpp). It converges where every gate is below the tolerance at two consecutive
 // checks. A model that is refused decides nothing: that check does not pass, and its errors are NaN.
 #pragma once
 
@@ -31,17 +31,17 @@ struct ModelSpace {
 
 class AssistedConvergence {
 public:
-    /// Throws std::invalid_argument: another rule than `assisted`, a design of fewer than 4 sequences, no gate,
-    /// Pearson's skewness as a gate (a median has no such estimate), a block below 1, a tolerance that is not positive,
-    /// a space without dimensions.
+    /// Throws std::invalid_argument for another rule than `assisted`, fewer than 4 sequences, no gate, a block below 1,
+    /// a tolerance that is not positive, or a space without dimensions. Also for Pearson's skewness as a gate: a median
+    /// has no such estimate.
     AssistedConvergence(ConvergenceSettings settings, ModelSpace space);
 
-    /// Points of the next check; after one of so many points.
+    /// Points of the next check, after one of that number of points.
     [[nodiscard]] std::int64_t next_check() const;
     [[nodiscard]] std::int64_t next_check(std::int64_t after) const;
     [[nodiscard]] std::size_t dimensions() const { return space_.dimensions; }
     /// Makes it: `points`, `values` (NaN: the case failed) and features of every case below next_check() points, in the
-    /// order of the design. The time is that of up to 2 (at the first check 4) fits of at most 300 cases and of models
+    /// order of the design. It takes the time of up to 2 (at the first check 4) fits of at most 300 cases and of models
     /// of at most 1,500; beyond that it grows with the number of cases.
     void check(std::span<const std::int64_t> points, std::span<const double> values, std::span<const double> features);
 

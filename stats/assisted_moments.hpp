@@ -8,9 +8,9 @@
 //   g_p(m_s(x_i))) mean, sd, g1, kurtosis = T(M_1 ... M_4)
 //
 // (cross-fitting as in Chernozhukov et al. 2018, Econometrics J. 21, C1; regression estimation: Saerndal, Swensson &
-// Wretman 1992, chapter 6). A sequence never decides the model that it is corrected with: hyperparameters are fitted on
-// at most 300 cases of the even sequences for the odd ones and the other way round, weights without the sequence follow
-// in closed form (response/kriging.hpp). A bad model costs accuracy, not truth. v is one value for each half, so that
+// Wretman 1992, chapter 6). A sequence never decides the model that corrects it. Hyperparameters for the odd sequences
+// are fitted on at most 300 cases of the even ones, and the other way round. Weights without the sequence follow in
+// closed form (response/kriging.hpp). A bad model costs accuracy, not truth. v is one value for each half, so that
 // it rests on no case of the sequence either; where it is at the bound of the fit (1e-8) it counts as 0 and g_p = m^p.
 //
 // 95 % half-width of a statistic, from (a) Student t over the S values of grad T . M^(s), (b) t with n_eff - 1 degrees
@@ -19,9 +19,9 @@
 // T)_p (m_i + s e)^p])/n with s the rms of z_i - m_s(x_i): what decides g1 and kurtosis are tails that few cases may
 // not show, and by (a) and (b) alone those samples understate their error (90 % of 95 % half-widths reached the
 // kurtosis of 104 normal values). Below 200 cases, and where the models err by half an sd or more, the largest of the
-// three. Otherwise (a) and the larger of (b) and (c) are two estimates of one variance, each with its factor for 95 %,
-// and the root of the mean of their squares is taken: the larger one reached the truth in 97.4 % of campaigns of 400
-// cases, this one in 96.4. In quadrature the error of Q from its independent scramblings (Student t over their means).
+// three. Otherwise (a) and the larger of (b) and (c) are two estimates of one variance, each with its factor for 95 %.
+// The root of the mean of their squares is taken: it reached the truth in 96.4 % of campaigns of 400 cases, the larger
+// one in 97.4 %. In quadrature the error of Q from its independent scramblings (Student t over their means).
 //
 // Two targets. With scatter: moments of single runs, what the plain estimate says. Without: of the mean response. By
 // the law of total cumulance, with noise of variance v_i that is symmetric about the mean,
@@ -29,9 +29,9 @@
 // (E m and E m^2 from M, covariances of v with m and m^2 over the cases). v_i is the square of the standard error a
 // scene states, or one value from replicates.
 //
-// Which estimate a statistic takes is decided before it is looked at: assisted where the error of the model on left-out
-// sequences is below 0.6 sd and, at the previous check, the assisted half-width was below the plain one (taking the
-// shorter one each time costs 3 to 10 % of coverage). Where both differ by more than twice their joint half-width the
+// The estimate of a statistic is chosen beforehand: assisted where the model errs by less than 0.6 sd on left-out
+// sequences and the assisted half-width was below the plain one at the previous check. Taking the shorter one each time
+// would cost 3 to 10 % of coverage. Where both differ by more than twice their joint half-width the
 // model has gone wrong and the plain estimate stands, with a sentence.
 //
 // Cases without a value: the plain estimate is of the cases that answer. The assisted one integrates over the whole box
@@ -114,8 +114,8 @@ struct AssistedMoments {
 
 /// `previous`: the check before, with fewer cases of the same campaign; none: the first half of the rows is that check,
 /// and where it is too small for one the model's error alone decides. Rows in the order of the design's points.
-/// Refuses: fewer than 4 sequences, fewer than 2 max(12, 4 (d + 1)) cases, a constant response, and
-/// rare events: more than half of the responses equal and fewer than 30 others (plain errors do not hold there either).
+/// Refuses fewer than 4 sequences, fewer than 2 max(12, 4 (d + 1)) cases, a constant response, and rare events: more
+/// than half of the responses equal and fewer than 30 others. Plain errors do not hold there either.
 /// Throws std::invalid_argument where sizes do not match.
 [[nodiscard]] std::variant<AssistedMoments, Refusal> assisted_moments(const AssistedInput& input,
                                                                       const AssistedSettings& settings = {},

@@ -3,11 +3,11 @@
 //   I^2(x) = (z - mean(x))^2 / (var_model(x) + var_measured + var_discrepancy + var_run(x)/replicates)
 //
 // (Vernon, Goldstein & Bower 2010, Bayesian Analysis 5, 619, eq. 7; the scatter of runs: Andrianakis et al. 2015, PLoS
-// Comput. Biol. 11, e1003968.) What has I > 3 for some target is ruled out (Pukelsheim's three sigma rule); with more
-// than five targets the second largest decides, so that one bad model does not rule out the truth.
+// Comput. Biol. 11, e1003968.) A setting with I > 3 for some target is ruled out (Pukelsheim's three sigma rule). With
+// more than five targets the second largest I decides, so that one bad model does not rule out the truth.
 //
-// Predictions of n degrees of freedom are Student's, of variance n/(n - 2) times that of their errors: both var_model and
-// var_run are multiplied by it (n = 8 for a model of some ten cases in reach: 1.33).
+// Predictions of n degrees of freedom follow Student's t, whose variance is n/(n - 2) times the squared error. So both
+// var_model and var_run are multiplied by it (n = 8 for a model of some ten cases in reach: 1.33).
 //
 //   log p(z | x) = -1/2 r^T V^-1 r - 1/2 log|V|,   V = diag(var_model(x) + var_run(x)/replicates) + C,  r = z - mean(x)
 //

@@ -22,7 +22,7 @@ namespace grainsweep::stats {
 /// t_{R-1, 0.975} s / sqrt(R), s with divisor R - 1. NaN for fewer than two values or any NaN.
 [[nodiscard]] double student_half_width(std::span<const double> values);
 
-/// Upper end of the 95 % interval of the share of a population of which `count` independent draws have shown nothing:
+/// Upper end of the 95 % interval of the share of a population that `count` independent draws have not shown:
 /// 1 - 0.05^(1/count), about 3/count (rule of three; Hanley & Lippman-Hand 1983, J. Am. Med. Assoc. 249, 1743). 1
 /// without a draw.
 [[nodiscard]] double largest_unseen_share(std::int64_t count);

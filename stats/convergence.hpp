@@ -11,11 +11,11 @@
 //               program began with; it stops too early in about half of all sweeps.
 //   all_change  the same, every gate below the tolerance.
 //   assisted    e = 95 % half-width with a model of the response as control variate: assisted_convergence.hpp.
-// The errors shown beside the values are the Student-t half-width where there are at least 4 sequences (of all but the
-// mean once each has 4 values); else a delete-a-group jackknife over 8 consecutive stretches of the points (see
-// confidence.hpp).
+// The errors shown beside the values are Student-t half-widths where there are at least 4 sequences (of all but the
+// mean once each has 4 values). Otherwise they are a delete-a-group jackknife over 8 consecutive stretches of the
+// points (see confidence.hpp).
 //
-// The g1 and kurtosis of a short sequence are small and scatter little, whatever those of all values do. Their error is
+// Short sequences have a small g1 and kurtosis with little scatter, even where all values have large ones. Their error:
 //
 //   error^2 = max(Student over sequences, jackknife that leaves out a sequence)^2 + (all - mean of sequences)^2
 //

@@ -16,7 +16,7 @@ enum class ConvergenceRule { replicates, assisted, any_change, all_change };
 struct RuleInfo {
     ConvergenceRule rule = ConvergenceRule::replicates;
     std::string_view name;
-    /// The error is that of independent sequences of the design, at least 4, and two checks in a row must pass. Else it
+    /// The error comes from independent sequences of the design, at least 4, and two checks in a row must pass. Else it
     /// is the change since the check before.
     bool of_sequences = false;
     bool of_model = false;  ///< with a model of the response: checks are fewer, and a median has no estimate

@@ -6,8 +6,8 @@
 //   V (T_j-S_j) =  E[(f(A_j) - f(A) + f(B_j) - f(B))^2]/4                               interactions; T_j: total
 //   V S_jk      =  E[(f(A_jk) - f(A_j) - f(A_k) + f(A)) (f(B_jk) - f(B_j) - f(B_k) + f(B))]/4   of two factors
 //
-// and of all noise factors N together, over the whole box and where a control factor lies in one eighth of its range
-// (at one of its levels): what noise would make of the variance if the factor were set there.
+// and of all noise factors N together, over the whole box, and with a control factor in one eighth of its range (at one
+// of its levels): the variance by noise if the factor is set there.
 //
 //   V T_N       =  E[(f(A_N) - f(A))^2]/2
 //
@@ -17,11 +17,11 @@
 // additive f, interactions are 0 at every single point, not only on average. Points: 8 independent scramblings of 1,024
 // points of a Sobol sequence of twice the dimensions.
 //
-// Half-widths, in quadrature:
-//   jackknife over models each without one group of cases (hyperparameters kept, response/kriging.hpp),
-//   the bias that the jackknife estimates, (G - 1) (mean of these models - the whole one),
-//   Student t over the scramblings,
-//   what the model does not see: leave-one-out error^2 less the share of scatter (any index may lack as much).
+// Half-widths, in quadrature: jackknife over models each without one group of cases
+// (hyperparameters kept, response/kriging.hpp); the bias that the jackknife
+// estimates, (G - 1) (mean of these models - the whole one); Student t over the
+// scramblings; and the part that the model misses, leave-one-out error^2 less the
+// share of scatter.
 #pragma once
 
 #include "stats/response_model.hpp"

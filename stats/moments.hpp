@@ -4,9 +4,9 @@
 //   sd = sqrt(m2)      (divides by n)            g1 = m3 / m2^(3/2)      kurtosis = m4 / m2^2 (3 for a normal)
 //   skewness = 3 (mean - median) / sd            (Pearson's second)
 //
-// Updates and merges: Welford (1962); Pebay (2008), Sandia report SAND2008-6212, eq. 1.5-1.6, 2.1. Two measures
-// keep the error near machine precision whatever the length and offset of the data: the first finite value
-// is subtracted from all, and values are gathered in chunks of 1000 that are merged, not added one by one.
+// Updates and merges: Welford (1962); Pebay (2008), Sandia report SAND2008-6212, eq. 1.5-1.6, 2.1. Two measures keep
+// the error near machine precision for any length and offset of the data. The first finite value is subtracted from
+// all, and values are gathered in chunks of 1000 that are merged, not added one by one.
 #pragma once
 
 #include <array>

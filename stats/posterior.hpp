@@ -55,7 +55,7 @@ struct PosteriorShape {
     std::vector<double> directions;   ///< one direction (unit length) a row, widest first
 };
 
-/// Of at least two rows. A width near 0.29, that of the whole box, along a direction says that it is not identified.
+/// Of at least two rows. A width near 0.29, as of the whole box, along a direction means that it is not identified.
 [[nodiscard]] PosteriorShape posterior_shape(Rows sample);
 
 }  // namespace grainsweep::stats

@@ -12,8 +12,8 @@
 // 687) and, where the noise is not the same everywhere, widened or narrowed by the size of those residuals nearby:
 // response/local_noise.hpp.
 //
-// Where it is asked for, the logarithm of a positive response takes the response's place if that lowers the error: its
-// scatter is then a share of its size. Means, errors and covariances are those of the log-normal response; what is said
+// On request, the logarithm of a positive response takes the response's place if that lowers the error: its scatter is
+// then a share of its size. Means, errors and covariances are those of the log-normal response; what is said
 // of it is in its own unit, and intervals are symmetric about the mean as everywhere.
 //
 // Between 12 and 4,000 cases; of more, a subset that fills the space (greedy maximin) is what the model rests on.

@@ -35,8 +35,8 @@ struct GivenDataIndices {
 };
 
 /// First-order indices from points of any design: n rows of d coordinates, row-major, and n values.
-/// Bins hold equal counts of the rows sorted by x_j (sizes differ by one at most, the first ones larger);
-/// a factor with no more distinct values than bins has one bin per value, in which nothing varies. Scatter within the
+/// Bins hold equal counts of the rows sorted by x_j (sizes differ by one at most, the first ones larger). A factor with
+/// no more distinct values than bins has one bin per value, in which nothing varies. Scatter within the
 /// bins adds about (bins - 1)(1 - S)/n for independent points, less on low-discrepancy ones. Half-widths: jackknife and
 /// second term in quadrature, plus the bias that the jackknife estimates, which is that of scatter. `groups` labels the
 /// rows 0 ... G-1, e.g. by sequence; empty: 8 consecutive stretches. NaN where there are fewer than two rows per bin or

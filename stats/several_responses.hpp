@@ -13,8 +13,8 @@ namespace grainsweep::stats {
 /// How many threads fit_responses() takes at most; at the start 1.
 void allow_fits_at_once(std::size_t count);
 
-/// fit_response() of every row of `values`, in their order, several at once. A fit knows
-/// nothing of the others: the same bits as one after another. Throws what fit_response() throws.
+/// fit_response() of every row of `values`, in their order, several at once. Fits are independent of one another: the
+/// same bits as one after another. Throws what fit_response() throws.
 [[nodiscard]] std::vector<std::variant<ResponseModel, Refusal>> fit_responses(
     Rows points, std::span<const std::vector<double>> values, const ResponseModelOptions& options = {});
 

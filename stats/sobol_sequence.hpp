@@ -8,7 +8,7 @@
 
 namespace grainsweep::stats {
 
-/// Points in Gray-code order behind that of index 0, which is all zero.
+/// Points in Gray-code order behind the point of index 0, which is all zero.
 class SobolSequence {
 public:
     /// 1 to most_dimensions().
@@ -32,8 +32,8 @@ private:
 /// Binary digits of a scrambled fraction.
 inline constexpr unsigned scrambled_digits = 53;
 
-/// Owen's (1995) nested uniform scrambling of a fraction of 53 binary digits: digit l is flipped by a random bit
-/// addressed by the key and the digits before it, so that other keys give independent scramblings.
+/// Applies Owen's (1995) nested uniform scrambling to a fraction of 53 binary digits. Digit l is flipped by a random
+/// bit addressed by the key and the digits before it, so other keys give independent scramblings.
 [[nodiscard]] std::uint64_t owen_scrambled(std::uint64_t fraction, std::uint64_t key);
 /// The same as a number in [0, 1).
 [[nodiscard]] inline double scrambled_unit(std::uint64_t fraction, std::uint64_t key) {

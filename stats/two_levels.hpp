@@ -1,16 +1,12 @@
-// Moments of an expensive response from many values of a cheap one and some pairs: two-level Monte Carlo (Giles 2015,
-// Acta Numerica 24, 259) over independently randomised sequences.
+// Moments of an expensive response from many values of a cheap one and some pairs, and how many of both to run.
 //
-//   T = S + D,   S = statistic of the cheap values at points 0 ... n1 - 1
-//                D = statistic of the expensive values - statistic of the cheap ones, both at points 0 ... n2 - 1
+//   mean  T of the values (corrected_mean.hpp)
+//   sd    sqrt(T2), T2 = T of the squares (e - T)^2 and (c - mean c)^2; half-widths divided by 2 sd
 //
-// T estimates the statistic of the expensive response, whatever the bias of the cheap one is. Point p belongs to
-// sequence p mod R. Each sequence gives S_r, D_r and T_r = S_r + D_r; half-widths are Student's t over the R of them:
-//   statistics  of S      numerics  of D      together  of T, not below sqrt(statistics^2 + numerics^2)
-// The second bound guards a rule that stops early: one of R = 8 variances alone is often too small by chance.
-// Undefined is what is unknown: fewer than 2 values in a sequence, or R equal repetitions.
+// Undefined is what is unknown: a sequence without a pair, R equal repetitions, or pairs that are all equal.
 #pragma once
 
+#include "stats/corrected_mean.hpp"
 #include "stats/moments.hpp"
 
 #include <cstddef>
@@ -20,24 +16,27 @@
 
 namespace grainsweep::stats {
 
-/// Values by point, NaN where there is none. `expensive` is a beginning; empty: the cheap response is the one wanted.
-struct TwoLevelValues {
-    std::span<const double> cheap, expensive;
-    std::int64_t sequences = 8;
-};
-
 struct TwoLevelMoment {
     Statistic statistic = Statistic::mean;
-    double value = 0;  ///< T
-    double cheap = 0;  ///< S
+    double value = 0;  ///< corrected
+    double cheap = 0;  ///< of the cheap values alone
     double numerics = 0, statistics = 0, together = 0;
+    double scatter = 0;  ///< CorrectedMean::scatter
+    PairPredictor by = PairPredictor::none;
 
-    /// One of the three divided by |T|.
+    /// One of the half-widths divided by |value|.
     [[nodiscard]] double relative(double half_width) const;
 };
 
 /// Returns mean or sd of the expensive response. NaN: undefined.
-[[nodiscard]] TwoLevelMoment two_level_moment(Statistic statistic, const TwoLevelValues& values);
+[[nodiscard]] TwoLevelMoment two_level_moment(Statistic statistic, const PairedValues& values);
+
+/// Points and pairs of the first check: two pairs of each sequence, which the pilot has; eight points, or four where
+/// the expensive response runs alone.
+struct TwoLevelSizes {
+    std::int64_t points = 0, pairs = 0;
+};
+[[nodiscard]] TwoLevelSizes first_sizes(std::int64_t sequences, bool paired);
 
 struct TwoLevelRule {
     std::vector<Statistic> gates = {Statistic::mean, Statistic::sd};
@@ -57,18 +56,27 @@ struct TwoLevelCheck {
 };
 
 /// Judges a pair of sizes and proposes the next. Where a gate is not within the tolerance, the sizes that would bring
-/// it there at least cost, n2/n1 = sqrt(V2 c1 / (V1 c2)) with V = half-width^2 n, but at most twice the present ones;
-/// where all are, an eighth more, which may confirm it.
-[[nodiscard]] TwoLevelCheck two_level_check(const TwoLevelRule& rule, const TwoLevelValues& values);
+/// it there at least cost, n2/n1 = sqrt(V2 c1 / (V1 c2)) with V = half-width^2 n, but at most twice the present ones.
+/// Where all are, an eighth more, which may confirm it; no more pairs where half the tolerance holds the numerics.
+[[nodiscard]] TwoLevelCheck two_level_check(const TwoLevelRule& rule, const PairedValues& values);
 
 /// A setting at the points of a pilot.
 struct PilotLevel {
     std::span<const double> values;
     double cost = 0;  ///< of a value
 };
-/// Returns the setting whose many values, corrected by pairs with the last, meet a tolerance of every gate at least
-/// cost: (sqrt(V1 c1) + sqrt(V2 c2))^2, with the variances of the influence functions y and ((y - m)^2 - s^2)/(2 s) and
-/// of their differences; the last alone costs V c. All are as for independent points.
-[[nodiscard]] std::size_t cheapest_level(std::span<const Statistic> gates, std::span<const PilotLevel> levels);
+struct Pilot {
+    std::vector<PilotLevel> levels;  ///< the last is the measure
+    std::size_t sequences = 8;
+    Rows points = {};  ///< PairedValues::points
+};
+/// Returns the setting whose many values, corrected by pairs with the last, are predicted to meet the tolerance of
+/// every gate at least cost; the last without pairs. V of the cheap values is from what a trend over the factors
+/// leaves, for evenly spread points integrate the trend. What the pilot has run costs nothing more.
+[[nodiscard]] std::size_t cheapest_level(const TwoLevelRule& rule, const Pilot& pilot);
+
+/// Returns how many values of the expensive response alone would bring every gate within the tolerance, no fewer than
+/// the first check has.
+[[nodiscard]] double cases_alone(const TwoLevelRule& rule, const PairedValues& expensive);
 
 }  // namespace grainsweep::stats

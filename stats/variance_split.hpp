@@ -4,20 +4,20 @@
 //
 // sigma^2, the pure error, comes from replicates: runs of one design point that differ by nothing but their random
 // numbers (Draper & Smith 1998, section 2.1). V_main comes from a least-squares fit of an additive model (Hastie &
-// Tibshirani 1990, section 5.2) to the means of the P points over their r replicates: one mean per value of a factor
-// with levels, one continuous piecewise linear function of every other. Of the residual sum of squares RSS of a model
-// with p coefficients
+// Tibshirani 1990, section 5.2) to the means of the P points over their r replicates. The model has one mean per value
+// of a factor with levels, and one continuous piecewise linear function of every other. Of the residual sum of squares
+// RSS of a model with p coefficients
 //
 //   sampled points     E[RSS/(P - p)] = V_int + sigma^2 mean(1/r)
 //   all points there   E[RSS/P]       = V_int + sigma^2 mean(1/r) (P - p)/P     (a lattice: V is over its own points)
 //
-// so that with replicates interactions and scatter are told apart. Without, a second model that adds products of the
-// factors two by two (Legendre polynomials up to a total degree of 3 to 10, as far as three points per coefficient
-// allow) shows how much of the rest is interactions of two factors; what then remains is scatter, higher interactions
-// and what the products do not follow.
+// so that with replicates interactions and scatter are told apart. Without, a second model adds products of two factors
+// (Legendre polynomials up to a total degree of 3 to 10, as far as three points per coefficient allow). It shows how
+// much of the rest is interactions of two factors. The remainder is scatter, higher interactions and the error of the
+// products.
 //
-// Half-widths of a sample: jackknife; in quadrature the change of a share when the models have half of the pieces and
-// two degrees less, for what finer models would find; and for parts with interactions their share times p/P on top: on
+// Half-widths of a sample, in quadrature: jackknife, and the change of a share when the models have half of the pieces
+// and two degrees less, for what finer models would find. Parts with interactions get their share times p/P on top: on
 // points more even than random ones the coefficients take less from RSS than p/P of it.
 #pragma once
 
@@ -67,8 +67,8 @@ struct VarianceSplit {
 
 /// Rows with a value that is not finite are left out. `points` as in pure_error(). `groups` labels the rows 0 ... G-1,
 /// rows of one point alike: parts of the sample that are left out in turn for the half-widths (jackknife, NaN below
-/// four parts). `all_points`: the points are no sample but all there are; half-widths then need replicates and are
-/// those of normal scatter. All shares are NaN where there are fewer than two points per coefficient (all_points: no
+/// four parts). `all_points`: the points are all there are, no sample. Half-widths then need replicates and assume
+/// normal scatter. All shares are NaN where there are fewer than two points per coefficient (all_points: no
 /// more points than coefficients) or no variance.
 [[nodiscard]] VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<const SplitFactor> factors,
                                            std::span<const double> values, std::span<const std::size_t> groups,

@@ -7,8 +7,8 @@
 //
 // Interaction is what the level adds: SolidsPressure<AlgebraicTemperature> (ddpm),
 // SolidsPressure<TransportedTemperature> (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem).
-// Terms that hold phi_p and dV_p/dt lag by one step and make the scheme one of first order in the step, with phi_p as a
-// factor; with phi_p -> 0 it is that of suspension.hpp with TwoWay<ForceForm>.
+// Terms with phi_p and dV_p/dt lag by one step and make the scheme first order in the step, with phi_p as a factor. For
+// phi_p -> 0 it is the scheme of suspension.hpp with TwoWay<ForceForm>.
 #pragma once
 
 #include "solver/coupling/levels.hpp"

@@ -65,7 +65,7 @@ public:
     TransportedTemperature(const flow::Grid& grid, const Granular& grains, const TemperatureBounds& bounds);
     /// Threads that compute from now on; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
-    /// From the fraction before to that of `solids`, whose flux joins them.
+    /// From the fraction before to the fraction of `solids`, whose flux joins them.
     void advance(const SolidsVolume& solids, const Straining& straining, double dt);
     /// A step in which no cell has collisions.
     void rest(const SolidsVolume& solids);

@@ -1,7 +1,7 @@
 // Values at a particle from values on staggered faces, and the transpose: a particle's force onto the faces.
 //
-// Trilinear: linear between faces along the component's own axis, between cell centres across it; on a no-slip wall
-// the value is that of the wall.
+// Trilinear: linear between faces along the component's own axis, between cell centres across it; on a no-slip wall the
+// value is the wall's.
 //
 // Solenoidal: with s the smooth grid coordinate (faces at integers), the volume fluxes F = U h_j h_k are interpolated
 // by a quadratic B-spline along their own axis and linearly across it, and u = F/(y'(s) z'(s)). Differentiated, the
@@ -181,8 +181,8 @@ public:
     static void clear(flow::FaceVectors& faces, const Slabs& slabs = {});
     /// Extensive deposit, ghosts included -> per volume of each face's control volume.
     void spread(flow::FaceVectors& faces);
-    /// A field on the faces spread as deposits are, ghosts filled as its transpose folds them: what particles gather
-    /// from it is what they would have deposited on it.
+    /// A field on the faces spread as deposits are, ghosts filled as its transpose folds them: particles gather from it
+    /// exactly what they would have deposited on it.
     void spread_transposed(flow::FaceVectors& faces);
 
 private:

@@ -9,8 +9,8 @@
 // (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756, for a Boussinesq fluid: the vibrational
 // buoyancy of the cloud is part of it and dominates; k is the kernel of spreading.hpp). Written through the balance
 // instead of the drag law it has no stiffness: the large term is known exactly, dV_p/dt is that of the step before.
-// That term is a share xi phi_p of the whole and lags by a step to a step and a half, so the force is of first order in
-// the step with that share as its factor, and stable below a share of about 1.
+// That term is a share xi phi_p of the whole and lags by a step to a step and a half. So the force is of first order in
+// the step, with that share as its factor. It is stable below a share of about 1.
 //
 // Two-way, equation 9 of Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3) as printed:
 //     s_m = -(1/fluid fraction) sum k v_p xi dV_p/dt.
@@ -35,8 +35,8 @@ struct OneWay {
     static constexpr bool mirrored = false;
 };
 
-/// One-way in a fluid that is its own mirror image in x: only the half x < 0 of the flow exists, closed by a plane of
-/// symmetry (FreeSlip), and particles beyond it take the mirrored values.
+/// One-way coupling in a fluid that is its own mirror image in x. Only the half x < 0 of the flow exists, closed by a
+/// plane of symmetry (FreeSlip). Particles beyond it take the mirrored values.
 struct OneWayMirrored {
     static constexpr bool acts_on_fluid = false;
     static constexpr bool mirrored = true;

@@ -1,5 +1,5 @@
-// A cloud moved through one time step, a block of particles at a time: the place of each on the grid is found first,
-// then the fluid there is gathered, and the equation of motion is solved for the block in vectors (motion.hpp). Blocks
+// Moves a cloud through one time step, a block of particles at a time. It finds the cell of each particle, gathers the
+// fluid there, and solves the equation of motion for the block in vectors (motion.hpp). Blocks
 // change no bit: the same as one by one.
 #pragma once
 

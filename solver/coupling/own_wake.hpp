@@ -9,8 +9,8 @@
 // 10.1016/j.jcp.2020.109591). As x^(-3/2) = 2/sqrt(pi) times the integral of sqrt(k) exp(-k x) over k, G is a sum of
 // exponentials, and the integral a few numbers per particle, each decaying at its rate nu k and fed by F.
 //
-// A no-slip wall at distance z takes from the steady u what it takes from a point force, F/(6 pi nu z) times 9/16 along
-// the wall and 9/8 across it (Happel & Brenner 1983, ch. 7). The additional decay nu (9/16 m/z)^2 of every number does
+// A no-slip wall at distance z reduces the steady u as for a point force: by F/(6 pi nu z) times 9/16 along the wall
+// and 9/8 across it (Happel & Brenner 1983, ch. 7). The additional decay nu (9/16 m/z)^2 of every number does
 // so to first order in s/z, m = 1 along and 2 across, and leaves nothing of u at the wall. Decays of several walls add.
 #pragma once
 

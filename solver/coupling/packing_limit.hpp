@@ -1,10 +1,10 @@
 // Nowhere more particle volume than random close packing.
 //
-// phi_p is here that of a kernel one diameter wide, or of the cells where they are wider: over the four diameters of
-// the fluid's kernel a thousand particles could share one place and be taken for dilute.
+// phi_p uses a kernel one diameter wide, or the cells where they are wider. With the fluid's kernel of four diameters,
+// a thousand particles could share one place and still count as dilute.
 //
 // Where phi_p exceeds the limit the excess e = max(phi_p - limit, 0) diffuses away and takes the particles along:
-// each sweep moves the particles at a face by
+// each pass over the faces moves the particles there by
 //   x += h (e_below - e_above)/(6 phi_p),
 // gathered between the faces; no excess, no motion. Its end is the state with phi_p <= limit that is nearest to the
 // given one in the sense of an unstable sandpile. Only positions change, so momentum is untouched; walls are kept.

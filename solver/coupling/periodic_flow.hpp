@@ -1,7 +1,7 @@
 // A flow that repeats every period, stored as its mean and two harmonics, and particles carried by it:
 //   V(x, t) = V0 + Vc1 cos wt + Vs1 sin wt + Vc2 cos 2wt + Vs2 sin 2wt,  and the same for the acceleration DV/Dt.
 //
-// One-way particles do not change the flow, so one periodic flow serves every case that asks for the same fluid. Each
+// One-way particles do not change the flow, so one periodic flow serves every case with the same fluid. Each
 // node keeps its ten numbers side by side; a particle gathers the amplitudes once per step and evaluates them at the
 // phase of the step, whose cost does not depend on the grid. Fetching them is what it costs, so they are kept in
 // single precision: an error of 6e-8 beside the percent of the grid's.

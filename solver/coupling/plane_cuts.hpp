@@ -1,6 +1,6 @@
-// Many particles add to the same field at once, and every value gets what it gets in the order of the particles,
-// however many threads there are: each owns some planes of the field, goes through all particles and adds what falls on
-// its own. The planes are cut so that about as many particles fall to each.
+// Adds the contributions of many particles to one field. Each thread owns some planes of the field, visits all
+// particles and adds what falls on its own planes. So every value is summed in the order of the particles, with any
+// number of threads. The planes are cut so that about as many particles fall to each.
 #pragma once
 
 #include "solver/coupling/each.hpp"

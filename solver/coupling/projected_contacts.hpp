@@ -1,9 +1,9 @@
 // Four-way coupling without springs: in a viscous fluid a contact only stops the approach of two spheres.
 //
-// Collision Stokes numbers far below 10 allow no rebound (Joseph et al. 2001, doi 10.1017/S0022112001003470), so after
-// each step overlaps are removed by sweeps over the pairs, half by each partner and wholly at walls, and the velocity
-// changes by that displacement over the step (position-based dynamics, Mueller et al. 2007,
-// doi 10.1016/j.jvcir.2007.01.005). The momentum that a particle needs over the step to
+// Collision Stokes numbers far below 10 allow no rebound (Joseph et al. 2001, doi 10.1017/S0022112001003470). So after
+// each step, passes through the pairs remove overlaps, half by each partner and wholly at walls. The velocity changes
+// by that displacement divided by the step (position-based dynamics, Mueller et al. 2007, doi
+// 10.1016/j.jvcir.2007.01.005). The momentum that a particle needs over the step to
 // end dx further and dx/dt faster, against its inertia and its drag, whose integral knows the displacement alone,
 //   f dt = (xi + 1/2) dx/dt + (xi + 1/2)/tau dx   per volume,   tau that of its step (motion.hpp),
 // is a contact's, not the fluid's, and is left out of what the fluid gets: what rests on a wall gives it nothing. Two

@@ -3,8 +3,8 @@
 // Force per volume of a sphere, besides what the fluid does:
 //   a = -(1/phi_p) grad p_s,   p_s = xi phi_p Theta (1 + 2 (1 + e) phi_p g0)                 (granular.hpp)
 // (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF), and no cell over the packing limit
-// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the
-// fraction is below that of two particles at one place far from walls there are no collisions and no stress. The
+// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the fraction is below the
+// one of two particles at one place, far from walls, there are no collisions and no stress. The
 // displacement by the stress in one step is held below a tenth of a cell.
 #pragma once
 
@@ -108,8 +108,8 @@ public:
     }
 
 private:
-    // The stress is divided by the fraction that the particles themselves have on a face, and spread and gathered as
-    // that was deposited: the sum over the particles is that of -grad p_s over the faces, of which nothing is lost.
+    // The stress is divided by the fraction that the particles themselves have on a face, and is spread and gathered as
+    // that fraction was deposited. So the sum over the particles equals the sum of -grad p_s over the faces.
     template <class Stencils>
     void find_stress(const Cloud& cloud, SolidsVolume& solids, const Stencils& stencils, double dt) {
         stressed_ = solids.largest_fraction() > thinnest_;

@@ -15,8 +15,8 @@
 
 namespace grainsweep::coupling {
 
-/// The fraction that a particle alone makes at its place, far from walls: v_p/(2 pi w^2)^(3/2), with the width of a
-/// linear deposit in a mean cell where that is wider; no less than spread over the whole box.
+/// Returns the fraction that a lone particle makes at its place, far from walls: v_p/(2 pi w^2)^(3/2). The width is at
+/// least that of a linear deposit in a mean cell; the result is at least v_p over the box.
 [[nodiscard]] double lone_fraction(const flow::Grid& grid, double particle_volume, double kernel_width);
 
 class SolidsVolume {

@@ -9,8 +9,8 @@
 // that of the cell beyond. Conservative, positive, and its own transpose between deposits and densities, to the
 // round-off of the exponential: 1e-15 at w of a cell, 1e-10 where w is hundred thin cells.
 //
-// Linear weights between the centres of unequal cells sum to 1, but a uniform density leaves (h_{i-1} + 2 h_i +
-// h_{i+1})/4 on cell i, (3 h_1 + h_2)/4 on that at a wall, not its width: a cloud would seem 7 % denser beside the
+// Linear weights between the centres of unequal cells sum to 1. But a uniform density leaves (h_{i-1} + 2 h_i +
+// h_{i+1})/4 on cell i and (3 h_1 + h_2)/4 on the cell at a wall, not its width. A cloud would seem 7 % denser at the
 // walls of 20 cells clustered by 1.5. Before anything else, what is too much below a face, (h_i - h_{i-1})/4, is moved
 // over it as a share of the cell that has it. Sums stay, a uniform density leaves the widths, a deposit moves by h^2 at
 // most.
@@ -43,8 +43,8 @@ enum class Hats {
     metric   ///< weights scaled with the widths: the widths already
 };
 
-/// The n x n matrix that levels linear deposits: on cells as said above, columns sum to 1; on fluxes what that carries
-/// through faces, so that the divergence of a levelled flux is the levelled divergence; on faces nothing.
+/// Returns the n x n matrix that levels linear deposits. On cells, columns sum to 1 (see above). On fluxes it is what
+/// levelling carries through faces, so the divergence of a levelled flux is the levelled divergence.
 [[nodiscard]] Eigen::MatrixXd levelling_matrix(const flow::Axis& axis, bool periodic, Nodes nodes);
 
 /// The kernel of a field on the grid.

@@ -2,12 +2,12 @@
 //
 // Contacts are hysteretic springs with friction (hysteretic_spring.hpp) that act besides the fluid:
 //   (xi + 1/2) dV/dt = ... + F/v_p,   (2/5) xi v_p R^2 dw/dt = T - 8 pi Pr R^3 (w - rot u/2)
-// (Stokes torque: Happel & Brenner 1965, ch. 5-9). They are short against the fluid's step, so the particles that
-// can meet something in it, and only those, are advanced in sub-steps of a twentieth of a contact, forces taken in
-// the middle of each (leapfrog), drag relaxing exponentially inside with the factor of the slip at the beginning.
+// (Stokes torque: Happel & Brenner 1965, ch. 5-9). They are short against the fluid's step. So only the particles that
+// can meet something are advanced in sub-steps of a twentieth of a contact, with forces in the middle of each
+// (leapfrog). Inside a sub-step drag relaxes exponentially, with the factor of the slip at the beginning.
 //
-// Candidates: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall,
-// and those that either could then hit. All others go the free path of motion.hpp.
+// Candidates: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall, and
+// particles that either could then hit. All others go the free path of motion.hpp.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"

@@ -6,9 +6,9 @@
 // B_low is the lowest balance of this window of energy_window steps and the one before; checks that are further apart
 // have a window each. A is the largest energy in motion and in contacts until B_low was reached: the motion of one
 // moment vanishes at the top of a bounce. W is the work of the walls. An unstable integration multiplies its energy
-// within tens of steps. Sound steps create energy, too, but slowly: errors of many elastic bounces add up at random,
-// strong cohesion at a restitution of 0.1 gains 0.4 A, and rolling springs that are not turned with their contact
-// (laws/rolling.hpp) spin small clusters up, whatever the step, by up to 7 A within a window.
+// within tens of steps. Sound steps create energy, too, but slowly. Errors of many elastic bounces add up at random.
+// Strong cohesion at a restitution of 0.1 gains 0.4 A. Rolling springs that are not turned with their contact
+// (laws/rolling.hpp) spin small clusters up at any step, by up to 7 A within a window.
 #pragma once
 
 #include <cstdint>

@@ -80,7 +80,7 @@ struct Setup {
     double deepest_in_walls = largest_sound_overlap;
 };
 
-/// How to compute it; never changes what is asked beyond the stated error of the precision.
+/// How to compute a Setup; never changes the result beyond the stated error of the precision.
 struct Method {
     enum class Precision { mixed, double_precision };
     enum class Path { best, baseline, avx2, avx512 };  ///< best: what this processor has
@@ -119,9 +119,9 @@ struct ContactForce {
     double normal_power = 0, tangential_power = 0;
 };
 
-/// What the particles do to a wall, as of the last step of a run (after a fault: of walls that move): the reaction to
-/// their forces, moments and torques, so that momentum and angular momentum are conserved. The work is that of the
-/// force on the material of the wall at the closest point, with the velocity that the laws see.
+/// Load on a wall by the particles in the last step of a run (after a fault: of walls that move): the reaction to their
+/// forces, moments and torques. It conserves momentum and angular momentum. The work is that of
+/// the force on the material of the wall at the closest point, with the velocity that the laws see.
 struct WallLoad {
     Vec3 force{};     ///< on the wall, N
     Vec3 torque{};    ///< on the wall about the point asked for, N m
@@ -155,12 +155,12 @@ public:
     /// recomputed once without touching histories. Throws std::invalid_argument with one sentence on walls that cannot
     /// be, or whose surface has friction or rolling friction where nothing in the Setup had.
     virtual void set_walls(std::vector<Wall> walls) = 0;
-    /// The same bodies (shapes, surfaces and materials) with other motions and presence: wall time goes on, and so do
-    /// the work of each wall and the histories of contacts with walls that stay present; forces are recomputed once
-    /// without touching histories. Each wall that stays present must stand by its new motions where it stands now.
+    /// Gives the same bodies (shapes, surfaces and materials) other motions and presence. Wall time, the work of each
+    /// wall, and the histories of contacts with walls that stay present continue. Forces are recomputed once without
+    /// touching histories. Each wall that stays present must stand by its new motions where it stands now.
     /// Throws std::invalid_argument with one sentence on other bodies or motions that cannot be.
     virtual void change_walls(std::vector<Wall> walls) = 0;
-    /// Adds spheres: their ids follow all earlier ones, also those of particles that are gone, in order. Lists are made
+    /// Adds spheres: their ids follow all earlier ids, also of particles that are gone, in order. Lists are made
     /// anew and forces recomputed once without touching histories, so that one call for many costs less. A sphere
     /// beyond an open face is gone at once; what it overlaps pushes it. Throws std::invalid_argument with one sentence
     /// on a sphere that cannot be or that Setup::to_come does not announce. After a fault nothing is added.
@@ -179,9 +179,9 @@ public:
     /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
     /// The same with the forces of the last step, which the laws computed at the velocities of the half step before.
-    /// Times the time step, the powers are what the step took out of the motion: kinetic energy at half steps changes
-    /// by them, the work of the walls and that of body forces: to rounding in double precision, to 1e-3 in mixed
-    /// precision, where it is judged anew whether springs yield. After a step only.
+    /// Times the time step, the powers are the loss of a step: kinetic energy at half steps changes by them, by the
+    /// work of the walls and by the work of body forces. This holds to rounding in double precision, and to 1e-3 in
+    /// mixed precision, which judges anew whether springs yield. After a step only.
     virtual void step_contacts(std::vector<ContactForce>& into) const = 0;
     /// The wall with this number as it is, with way and speed of its free motions.
     [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;

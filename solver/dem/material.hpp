@@ -23,16 +23,16 @@ inline constexpr unsigned kinds_at_most = 8;
 /// stiffness (laws/linear.hpp). All contacts of a case have the same.
 enum class NormalLaw { hertz, linear };
 
-/// How touching bodies attract each other. By cohesion energy density times a contact area, overlap d, first order in
-/// d for equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
+/// How touching bodies attract each other. Cohesion energy density times a contact area of overlap d, to first order in
+/// d for equal spheres. sjkr: pi R d (LIGGGHTS 3.8 `sjkr`); sjkr2: 2 pi R d; paper: pi R d/4 (Gupta, eq. 15).
 /// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp). By liquid bridges: capillary (laws/capillary.hpp).
 enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt, capillary };
 
 /// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
 
-/// How rolling is resisted: epsd by an elastic-plastic spring with a dashpot, epsd_liggghts by the same as LIGGGHTS 3.8
-/// turns it at walls (laws/rolling.hpp), cdt by a torque of constant size against the relative rotation
+/// Rolling resistance. epsd: elastic-plastic spring with a dashpot (laws/rolling.hpp). epsd_liggghts: the same,
+/// turned at walls as in LIGGGHTS 3.8. cdt: torque of constant size against the relative rotation
 /// (laws/constant_torque.hpp).
 enum class RollingLaw { epsd, epsd_liggghts, cdt };
 

@@ -1,5 +1,5 @@
-// How a contact of the present state is read: its touch, at the velocities that the laws see and at those of the full
-// step, and the response of the laws.
+// Reading of a contact of the present state: its touch, at the velocities that the laws see and at full-step
+// velocities, and the response of the laws.
 #pragma once
 
 #include "solver/dem/engine.hpp"

@@ -1,8 +1,8 @@
 // Convection and diffusion on the staggered grid, second order.
 //
-// Convection in divergence form. The advected value on a face of its control volume is the plain average of its two
-// neighbours and the advecting flux is the exact flux through that face, so that in a divergence-free field
-// convection neither makes nor destroys kinetic energy or temperature variance, on any tensor grid
+// Convection in divergence form. The advected value on a face is the plain average of its two neighbours, and the
+// advecting flux is the exact flux through that face. So convection in a divergence-free field neither makes nor
+// destroys kinetic energy or temperature variance, on any tensor grid
 // (Harlow & Welch 1965, doi 10.1063/1.1761178; Verstappen & Veldman 2003, doi 10.1016/S0021-9991(03)00126-8).
 #pragma once
 

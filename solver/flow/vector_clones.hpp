@@ -1,8 +1,8 @@
 // The same function compiled for wider vectors, chosen by the loader.
 //
-// The kernels marked with this work element by element, with additions, products, quotients, square roots and bits,
-// which round the same way everywhere: no sum is reordered and nothing is fused (-ffp-contract=off, and AVX2 here is
-// without FMA), so every clone returns the same bits.
+// The kernels marked with this work element by element. They use additions, products, quotients, square roots and bits,
+// which round the same way everywhere. No sum is reordered and nothing is fused (-ffp-contract=off, AVX2 without FMA),
+// so every clone returns the same bits.
 #pragma once
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \

@@ -2,10 +2,10 @@
 //
 // A contact is a place on the sphere, known by its normal, and not a triangle: between two steps the normal of a
 // contact turns by the distance moved over the radius. So pairs are formed by the least angle between normals, the
-// least first, each contact at most once, up to largest_turn. On a flat square cut by a diagonal the normal stays the
-// same and the memory passes from one triangle to the other; over a convex edge the normal turns step by step and the
-// memory stays; in a concave edge the new contact starts empty beside the old one; over a shallow concave edge that is
-// passed within one step the memory goes on, turned. From a floor to a wall it does not.
+// least first, each contact at most once, up to largest_turn. On a flat square cut by a diagonal the normal stays, and
+// the memory passes from one triangle to the other. Over a convex edge the normal turns step by step and the memory
+// stays. In a concave edge the new contact starts empty beside the old one. Over a shallow concave edge that is passed
+// within one step the memory continues, turned. From a floor to a wall it does not.
 #pragma once
 
 #include "solver/geometry/vector.hpp"

@@ -1,7 +1,7 @@
 // The surface f = 0 inside a box as triangles, for pictures.
 //
-// Surface nets (Gibson 1998, doi 10.1007/BFb0056277): a corner for every cell of a grid in which f changes sign, at the
-// mean of the places where the cell's edges cross the surface, and a quadrilateral around every such edge. On the
+// Surface nets (Gibson 1998, doi 10.1007/BFb0056277). Every cell of a grid in which f changes sign has a corner, at the
+// mean of the places where its edges cross the surface. Every such edge has a quadrilateral around it. On the
 // faces of the box the cells are flat, so that the surface ends there and its rim lies in them. Corners are off the
 // surface by O(h^2). Where two sheets pass through one cell they share its corner.
 #pragma once

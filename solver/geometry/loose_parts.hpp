@@ -29,8 +29,8 @@ struct LooseTriangles {
     double beyond = 0;  ///< reach beyond all others, m
 };
 
-/// Loose parts that reach beyond all others at an end, the first of several, and have at most `share` of the area
-/// together. width: the axis along which profiles are open at their ends and lips run.
+/// Returns the first of the loose parts that reach beyond all others at an end and have at most `share` of the area
+/// together. width: axis along which profiles are open at their ends and lips run.
 [[nodiscard]] std::optional<LooseTriangles> loose_triangles(const Mesh& mesh, std::size_t width,
                                                             std::span<const End> ends, double share);
 

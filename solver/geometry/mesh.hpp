@@ -13,10 +13,10 @@
 // No contact depends on the order of the triangles.
 //
 // Where two faces meet in a concave edge both are touched, for every angle between them: that is the geometry of the
-// triangles. A drum or a cone made of facets has such places at every edge, at R/(R_drum - R) of its circumference
-// however fine the facets are, and its stiffness there is nearly twice that of the curved wall. So a fine tessellation
-// does not approach a curved wall unless one_contact_angle exceeds the angle between its facets: then one contact, with
-// the nearest facet, is left everywhere, and the force tends to that of the curved wall with the angle. It must stay
+// triangles. A drum or a cone made of facets has such places at every edge: at R/(R_drum - R) of its circumference,
+// however fine the facets. There it is nearly twice as stiff as the curved wall. So a fine tessellation does not
+// approach a curved wall unless one_contact_angle exceeds the angle between its facets. Then one contact, with the
+// nearest facet, is left everywhere, and its force tends to the force at the curved wall. It must stay
 // below the angle of every edge that is meant to be one.
 //
 // A wall has two sides: the normal points to the one where the centre is. A sphere whose centre passes a triangle is
@@ -25,8 +25,8 @@
 // A mesh does not change; copies share their triangles.
 //
 // Triangles that meet in an edge or a vertex need not know of each other: a point lies on a triangle if it is nearer
-// than `tolerance` to it. So an edge that ends on the side of another triangle (a T-junction), more than two triangles
-// at an edge, and the seam between a mesh and its periodic image need no rule of their own.
+// than `tolerance` to it. So three cases need no rule: an edge that ends on the side of another triangle (a
+// T-junction), more than two triangles at an edge, and the seam between a mesh and its periodic image.
 #pragma once
 
 #include "solver/geometry/closest.hpp"
@@ -62,8 +62,8 @@ public:
     /// a triangle without area or of corners that it has not, or a corner that is no number or farther than 1e9 m away.
     explicit Mesh(TriangleSurface surface, double one_contact_angle = 0);
 
-    /// The same with all of its images in a periodic domain that a sphere with its centre in the domain finds within
-    /// `margin`: it goes on across the faces, and a plate from one to the other has no edge there.
+    /// Returns the mesh with all of its periodic images that a sphere with its centre in the domain finds within
+    /// `margin`. The mesh continues across the faces: a plate from one face to the other has no edge there.
     [[nodiscard]] Mesh repeated(const Domain& domain, double margin) const;
 
     /// The same, which finds at once where spheres of radius up to `reach` touch: the triangles that they can touch are

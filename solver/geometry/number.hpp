@@ -1,5 +1,5 @@
-// What the closest points of curved shapes are written in, so that one text serves a number and vectors of numbers: a
-// type R with + - * /, and fma, sqrt, min, max, where_less and like, found beside it. Here for a single double.
+// Number type R of the closest points of curved shapes, so that one text serves a number and vectors of numbers. R has
+// + - * /, and beside it fma, sqrt, min, max, where_less and like. Here for a single double.
 #pragma once
 
 #include <cmath>

@@ -1,10 +1,10 @@
-// Closest point of a body of revolution whose meridian is a straight line between two flat ends: the frustum of a cone,
-// a cylinder, from outside, or the bore of that shape in a plate, from inside.
+// Closest point of a body of revolution whose meridian is a straight line between two flat ends: the frustum of a cone
+// or a cylinder from outside, or a bore of that shape in a plate.
 //
 // With rho, s the distance from the axis and the place along it, the solid is { g (rho - r(s)) >= 0, 0 <= s <= length
-// }, g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point it is convex, its boundary a
-// segment and two rays; the closest of their closest points is the closest of all, for turning a boundary point into
-// the half plane of x brings it nearer. The normal points from there to x, or from x to there where x is in the solid.
+// }, g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point it is convex; its boundary is a
+// segment and two rays. The closest of their closest points is the closest of all, because turning a boundary point
+// into the half plane of x brings it nearer. The normal points from there to x, or back where x is in the solid.
 #pragma once
 
 #include "solver/geometry/number.hpp"

@@ -15,9 +15,9 @@
 // user's choice, numbers(centre, unit, origin), which gives them and what positions are then relative to, and
 // near(numbers, x, y, z).
 //
-// One with touching is made of pieces, each known by a number from 0 on, so that a user who keeps those near a centre
-// need not look for them again: pieces(), near(x, reach, into), which lists those nearer than the reach, and
-// touching(x, reach, of, into), by some of them, which must be those nearer than the reach at least. For vectors of
+// A shape with touching consists of pieces, numbered from 0 on, so that a caller can keep the pieces near a centre. It
+// has pieces(); near(x, reach, into), which lists the pieces nearer than the reach; and touching(x, reach, of, into),
+// whose pieces `of` must include at least all of these. For vectors of
 // positions: PieceNumbers, plain doubles, piece(number, unit), and near_piece(numbers, x, y, z).
 //
 // All have: unchanged_by_shift, unchanged_by_turn (motions that leave its surface where it is), extent, flaw, and

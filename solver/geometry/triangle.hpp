@@ -20,8 +20,8 @@ struct Nearest {
     std::uint8_t number = 0;  ///< of a side (from corner 0 to 1, 1 to 2, 0 to 2) or of a corner
 };
 
-/// Its corners ascend in x, y, z: two triangles with a side in common compute the same bits for a point on it, and no
-/// result depends on the order in which a file names them.
+/// Its corners ascend in x, y, z. So two triangles with a common side compute the same bits for a point on it, and no
+/// result depends on the order of corners in a file.
 struct Triangle {
     std::array<Vec3, 3> corner{};
     Vec3 normal{};  ///< unit; either side of the triangle is a wall

@@ -2,8 +2,8 @@
 //
 // Corners are welded where they are equal, and where they are nearer than weld_tolerance times the extent (the diagonal
 // of the box around all corners): a binary STL file rounds to 6e-8 of a coordinate. Chains of near corners become one,
-// the first of them in the order of x, y, z: the result depends on neither the order of the triangles nor that of their
-// corners. A triangle less high than that distance has no area and is dropped.
+// the first of them in the order of x, y, z: the result depends neither on the order of the triangles nor on the order
+// of their corners. A triangle less high than that distance has no area and is dropped.
 #pragma once
 
 #include "solver/geometry/triangle_surface.hpp"

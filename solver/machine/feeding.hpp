@@ -23,7 +23,7 @@ public:
     void require_room() const;
     /// Adds `seconds` of its rate to what it owes; less than none where a phase ends before its time.
     void owe(double seconds) { owed_ += feed().rate * seconds; }
-    /// Returns the particles that find a place among those of the state, among walls as they stand at a time, and
+    /// Returns the particles that find a place among the present particles, among walls as they stand at a time, and
     /// before one another.
     [[nodiscard]] Filled batch(const dem::State& state, const std::vector<dem::Wall>& walls, double time);
     [[nodiscard]] double fed() const { return fed_; }              ///< kg

@@ -42,7 +42,7 @@ double mean_volume(const Spec& spec, const Mix& mix) {
 double duration_of(const Spec& spec, const Phases& during) {
     double seconds = 0;
     for (std::size_t p = 0; p < spec.phases.size(); ++p)
-        if (holds(during, p)) seconds += spec.phases[p].duration * (spec.phases[p].until.empty() ? 1 : early);
+        if (holds(during, p)) seconds += length_of(spec.phases[p]);
     return seconds;
 }
 
@@ -216,6 +216,11 @@ double cost_of_meshes(const Spec& spec) {
 }
 
 }  // namespace
+
+double length_of(const Phase& phase) {
+    if (phase.until.empty()) return phase.duration;
+    return std::min(phase.duration, phase.expected.value_or(early * phase.duration));
+}
 
 CostEstimate cost_of(const Spec& spec) {
     require_places(spec);

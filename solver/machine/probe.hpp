@@ -1,6 +1,6 @@
 // A probe looks at the particles at a moment and gives one value, or a profile of values.
 //
-// A probe is one file in solver/machine/probes/ and one line in its catalogue: what it is asked with, and how it looks.
+// A probe is one file in solver/machine/probes/ and one line in its catalogue: its options, and how it looks.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -46,7 +46,7 @@ struct Sight {
     [[nodiscard]] double mass(std::size_t i) const { return density[id(i)] * volume(i); }
 };
 
-/// What a probe is asked with: the values of its options.
+/// Values of the options of a probe.
 using OptionValue = std::variant<double, Vec3, Region, std::vector<std::size_t>, std::string>;
 
 class Options {

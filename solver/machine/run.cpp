@@ -1,5 +1,6 @@
 #include "solver/machine/run.hpp"
 
+#include "solver/machine/plan.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/kit/slices.hpp"
@@ -282,10 +283,10 @@ double Run::progress() const {
     if (finished()) return 1;
     double all = 0, done = 0;
     for (std::size_t p = 0; p < spec_.phases.size(); ++p) {
-        all += spec_.phases[p].duration;
-        if (p < phase_) done += spec_.phases[p].duration;
+        all += length_of(spec_.phases[p]);
+        if (p < phase_) done += length_of(spec_.phases[p]);
     }
-    done += phase().duration * static_cast<double>(step_ - phase_begin_) / static_cast<double>(phase_steps());
+    done += std::min(length_of(phase()), static_cast<double>(step_ - phase_begin_) * spec_.time_step);
     return all > 0 ? std::min(done / all, 1 - 1e-9) : 0;
 }
 

@@ -106,10 +106,11 @@ using Until = std::variant<AtRest, Empty, FlowStops, Passes>;
 
 struct Phase {
     std::string name;
-    double duration = 0;          ///< s, at most; 0: one step
-    std::vector<Until> until;     ///< whatever holds first
-    std::int64_t frames = 100;    ///< intervals between measurements
-    bool ends_at_frames = false;  ///< its conditions are looked at where probes look, and at no other time
+    double duration = 0;             ///< s, at most; 0: one step
+    std::optional<double> expected;  ///< s, where it may end sooner; for predictions of cost alone
+    std::vector<Until> until;        ///< whatever holds first
+    std::int64_t frames = 100;       ///< intervals between measurements
+    bool ends_at_frames = false;     ///< its conditions are looked at where probes look, and at no other time
 };
 
 /// Only at frames at which another measurement lies within bounds.

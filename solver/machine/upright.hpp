@@ -26,7 +26,7 @@ public:
           from_(options.vector("from", {})),
           along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
 
-    /// Returns places from "from" and velocities of those that count.
+    /// Returns places from "from" and velocities of the particles that count.
     [[nodiscard]] dem::State state_of(const Sight& sight) const {
         using geometry::cross;
         const Vec3 up = up_of(sight, along_);

@@ -25,23 +25,23 @@ struct Box {
 
 /// K of counts; NaN for fewer than two particles.
 [[nodiscard]] double accumulation(std::span<const int> counts);
-/// Expected K of N independent uniform particles on so many cells.
+/// Returns the expected K of N independent uniform particles on that number of cells.
 [[nodiscard]] double random_accumulation(std::size_t particles, std::size_t cells);
 /// Standard deviation of that K over clouds with the correlation of counts neglected, which overestimates it.
 [[nodiscard]] double random_accumulation_deviation(std::size_t particles, std::size_t cells);
-/// Least K that N particles can have on so many cells.
+/// Returns the least K that N particles can have on that number of cells.
 [[nodiscard]] double least_accumulation(std::size_t particles, std::size_t cells);
 
 /// Particles in each of n slabs along axis d over the mean: 1 everywhere for a uniform cloud.
 [[nodiscard]] std::vector<double> density_profile(std::span<const Vec3> positions, const Box& box, int n, int d);
 
-/// Groups of neighbouring cells (sharing a face) that each hold more than twice the mean, counted when the group
-/// holds at least a twentieth of all particles: 0 for a random cloud, 2 for the two classical structures. NaN where
+/// Counts groups of neighbouring cells (sharing a face) with more than twice the mean each. A group counts if it holds
+/// at least a twentieth of all particles: 0 for a random cloud, 2 for the two classical structures. NaN where
 /// twice the mean is less than one particle: every particle would be a dense cell.
 [[nodiscard]] double structures(std::span<const int> counts, int n);
 
-/// The first time from which a series stays near its last value: within a tenth of its rise from its first, or within
-/// 3 `scatter`, its standard deviation from sample to sample, where that is more. NaN where the rise is no more than 5
+/// Returns the first time from which a series stays near its last value: within a tenth of its rise, or within 3
+/// `scatter`, its standard deviation from sample to sample, where that is more. NaN where the rise is no more than 5
 /// `scatter`, and where that time lies in the last tenth of all, as that of a steady rise does: not formed yet.
 [[nodiscard]] double formation_time(std::span<const double> times, std::span<const double> values, double scatter);
 

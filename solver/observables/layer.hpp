@@ -82,9 +82,9 @@ struct VelocityProfile {
     void add(const dem::State& state, double from, double to, double bottom, double thickness);
 };
 
-/// How far a profile is from a straight line between neighbouring layers: the root mean square of its second
-/// differences v(k - 1) - 2 v(k) + v(k + 1) over all k where the three values exist (NaN: none there). 0 for
-/// a straight profile, sqrt(6) times the noise of independent values; NaN where no three neighbours have values.
+/// Returns the root mean square of the second differences v(k - 1) - 2 v(k) + v(k + 1) of a profile, where all three
+/// values exist (NaN: nowhere). It is 0 for a straight profile, sqrt(6) times the noise of independent values; NaN
+/// where no three neighbours have values.
 [[nodiscard]] double unevenness(std::span<const double> profile);
 
 /// Standard error of the mean of a correlated series from the spread of `blocks` means of consecutive, equally long

@@ -1,7 +1,7 @@
 // Cells that sort particles so that neighbours in space are neighbours in memory.
 //
-// Particles fall into levels by size, the radii of one level within a factor of two; each level has its own
-// grid whose cells are at least as wide as the reach of a pair whose larger partner belongs to the level:
+// Particles are sorted into levels by size; the radii of a level differ by less than a factor of two. Each level has
+// its own grid. Its cells are at least as wide as the reach of a pair whose larger partner belongs to the level:
 //     edge >= 2 R_max(level) + skin.
 // The partners of that level are therefore within 27 cells of a particle, whatever its own size. The sorted
 // order is (level from small to large, cell, previous order); equal spheres make one level.

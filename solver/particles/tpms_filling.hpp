@@ -1,5 +1,5 @@
-// A TPMS cell cut out of a packing: the spheres of the shell are frozen as its wall, those of the kept side
-// are mobile, those of the other side are gone. Centres decide.
+// A TPMS cell cut out of a packing: spheres of the shell are frozen as its wall, spheres of the kept side are mobile,
+// the others are gone. Centres decide.
 #pragma once
 
 #include "solver/geometry/tpms.hpp"

@@ -13,9 +13,9 @@ namespace grainsweep {
 /// contact force, N, coordination, velocity, m/s, angular velocity, rad/s, and the sum of contact forces, N.
 [[nodiscard]] Snapshot picture_of(const dem::Engine& engine);
 
-/// A wall as it stands `time` after the walls were set, as far as it is in the box: a plane as the polygon it cuts out
-/// of the box, a blade from its lower edge to the top of the box, across its whole width, cylinders, cones, tubes and
-/// meshes whole. No triangles: it is outside.
+/// Returns a wall `time` after the walls were set. A plane is the polygon that it cuts out of the box. A blade reaches
+/// from its lower edge to the top of the box, across its whole width. Cylinders, cones, tubes and meshes are whole. No
+/// triangles: it is outside.
 [[nodiscard]] WallSurface surface_of(const dem::Wall& wall, std::string name, const geometry::Vec3& low,
                                      const geometry::Vec3& high, double time);
 

@@ -135,7 +135,7 @@ const SceneInfo& enter_scene(SceneInfo scene);
 
 /// Instruction set of the solver's inner loops in this process: "x86-64-v2", "avx2", "avx512"; elsewhere "baseline".
 [[nodiscard]] std::string_view instruction_path();
-/// Words that choose_instruction_path knows: "baseline" (x86-64-v2, NEON), "avx2", "avx512".
+/// Words of choose_instruction_path: "baseline" (x86-64-v2, NEON), "avx2", "avx512".
 [[nodiscard]] std::span<const std::string_view> instruction_path_words();
 /// Makes the particle loops of this process run with a narrower instruction set than the widest there is, for tests
 /// and benchmarks; to be called before a scene is made. False, and nothing changes: this processor lacks it.

@@ -21,7 +21,7 @@ namespace grainsweep {
 /// A parameter's value: a real number, a count, or a word.
 using Value = std::variant<double, std::int64_t, std::string>;
 
-/// What a case is asked: parameter name -> value, sorted by name, SI.
+/// Inputs of a case: parameter name -> value, sorted by name, SI.
 using Inputs = std::map<std::string, Value, std::less<>>;
 
 /// Allowed numbers: low <= x <= high, an end excluded where it is open.

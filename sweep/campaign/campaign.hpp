@@ -64,8 +64,8 @@ inline constexpr std::string_view group_of_shares = "simplex";
 /// Names of these groups; of a factor by itself its own.
 [[nodiscard]] std::vector<std::string> group_names(std::span<const Factor> factors);
 
-/// Whether cases that several points ask have different probabilities, so that each weighs as many points as ask it in
-/// the moments: some have a `when`, a sample, or steps of a range that is not linear. Elsewhere all are equally likely,
+/// Whether repeated cases have different probabilities, so that each has the weight of its points in the moments: true
+/// with a `when`, a sample, or steps of a range that is not linear. Elsewhere all are equally likely,
 /// and each counts once.
 [[nodiscard]] bool repeats_weigh(std::span<const Factor> factors);
 
@@ -176,8 +176,8 @@ struct Campaign {
 bool reorder_factors(Campaign& campaign, std::span<const std::string> order);
 /// "a, b, c".
 [[nodiscard]] std::string factor_list(const ParameterSpace& space);
-/// Points the design numbers, those that `where` leaves out included. Throws std::invalid_argument where the design's
-/// options are impossible together.
+/// Number of points of the design, including points that `where` leaves out. Throws std::invalid_argument where
+/// options of the design are impossible together.
 [[nodiscard]] std::int64_t candidates_of(const Campaign& campaign);
 /// Why the campaign can never be found to have converged, however its answers turn out; empty: it can, or it gives no
 /// rule.
@@ -200,7 +200,7 @@ void check_design(const Campaign& campaign);
 /// Throws WrongQuestion for a parameter the scene has not.
 [[nodiscard]] Case make_case(const SceneInfo& scene, const Inputs& inputs, std::uint64_t seed);
 
-/// The seed of the campaign's case with these inputs: it depends on what is asked and on nothing else.
+/// Returns the seed of the campaign's case with these inputs. It depends on the arguments and on nothing else.
 [[nodiscard]] std::uint64_t case_seed(const Campaign& campaign, const Inputs& inputs, std::int64_t replicate);
 
 /// A value in the type of `like`: a whole number as a real one and back where it is exact, -0 as 0.

@@ -91,7 +91,7 @@ struct CaseResult {
     std::optional<ProgramFacts> program = {};  ///< none: the scene is of the solver
 };
 
-/// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
+/// Time of an attempt that brought no answer, as the main program measures it; its cost is unknown.
 [[nodiscard]] CaseResult unanswered(const Attempt& attempt, Outcome outcome, std::string reason, double seconds);
 /// An observable that is not among those declared, or has another shape there.
 [[nodiscard]] std::optional<std::string> undeclared(const Observations& observations,

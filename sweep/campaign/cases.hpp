@@ -14,21 +14,21 @@
 
 namespace grainsweep::campaign {
 
-/// Where a case stands in a design. A design has less than 2^28 points.
+/// Place of a case in a design. A design has less than 2^28 points.
 struct Place {
     std::uint32_t point = 0, sequence = 0, replicate = 0;
     auto operator<=>(const Place&) const = default;
 };
 
-/// What stands at the places of a list.
+/// Makes the cases at the places of a list.
 class Questions {
 public:
     Questions() = default;
     Questions(const Questions&) = delete;
     Questions& operator=(const Questions&) = delete;
     virtual ~Questions() = default;
-    /// Makes the question that stands at place i. Inputs that `into` has from an earlier call, and that do not vary,
-    /// are left as they are.
+    /// Makes the case at place i. Inputs that `into` has from an earlier call, and that do not vary, are left as
+    /// they are.
     virtual void make(std::size_t i, const Place& place, Case& into) const = 0;
     /// Its inputs alone, in the same way.
     virtual void make_inputs(std::size_t i, const Place& place, Inputs& into) const = 0;
@@ -56,13 +56,13 @@ public:
     void inputs(std::size_t i, Inputs& into) const { columns_->questions->make_inputs(i, place(i), into); }
     [[nodiscard]] PlacedCase operator[](std::size_t i) const;
 
-    /// The first place that asks the question of this id.
+    /// Returns the first place with the case of this id.
     [[nodiscard]] std::optional<std::size_t> find(const CaseHash& hash) const;
-    /// The next place that asks the same question as place i.
+    /// Returns the next place with the same case as place i.
     [[nodiscard]] std::optional<std::size_t> next(std::size_t i) const;
-    /// The first place that asks the same question as place i.
+    /// Returns the first place with the same case as place i.
     [[nodiscard]] std::size_t first(std::size_t i) const { return columns_->next.empty() ? i : *find(hash(i)); }
-    /// Whether no place before i asks the same question.
+    /// Whether no place before i has the same case.
     [[nodiscard]] bool is_first(std::size_t i) const { return first(i) == i; }
 
     class Iterator {

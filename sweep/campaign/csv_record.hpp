@@ -1,4 +1,4 @@
-// CSV as RFC 4180 has it, record by record.
+// CSV by RFC 4180, record by record.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@ namespace grainsweep::campaign {
 
 /// The campaign that runs another experiment of the same calibration.
 [[nodiscard]] std::string name_beside(const Identity& identity, std::string_view experiment);
-/// The name of the campaign file: that of the campaign without its experiment.
+/// Returns the name in the campaign file: the campaign's without its experiment.
 [[nodiscard]] std::string name_in_file(const Identity& identity);
 /// The experiments whose targets are calibrated to, each once, in the order of the targets; empty: one campaign alone.
 [[nodiscard]] std::vector<std::string> experiments_of(const Identity& identity);

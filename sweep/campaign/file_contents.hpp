@@ -1,4 +1,4 @@
-// Contents of files that a process knows by their hash: made by the program, or taken from an archive. They stand
+// Contents of files by their hash: made by the program, or taken from an archive. They stand
 // before what lies at the path of a file.
 #pragma once
 

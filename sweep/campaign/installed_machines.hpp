@@ -22,7 +22,7 @@ struct InstalledFile {
 };
 [[nodiscard]] std::span<const InstalledFile> installed_files();
 
-/// Names of the machines, sorted, those of a kind behind the others.
+/// Names of the machines, sorted; machines of a kind stand behind the others.
 [[nodiscard]] std::vector<std::string> installed_machines();
 /// "laboratory" or another kind of an installed machine; empty where it has none.
 [[nodiscard]] std::string_view kind_of_installed(std::string_view name);

@@ -11,8 +11,8 @@ namespace grainsweep::campaign {
 
 using Json = nlohmann::json;
 
-/// Throws WrongQuestion: at "line L, column C" where the text is no JSON, at the JSON path where it is JSON
-/// but a key is there twice, a text contains NUL or the nesting is deeper than 32. A UTF-8 byte-order mark is
+/// Throws WrongQuestion: at "line L, column C" where the text is no JSON; at the JSON path of a repeated key, of a text
+/// with NUL, or of nesting deeper than 32. A UTF-8 byte-order mark is
 /// skipped.
 [[nodiscard]] Json parse_json(std::string_view text);
 

@@ -1,7 +1,7 @@
-// JSON as this program writes it: a text put together from values and shorter texts. Its bytes are those of nlohmann's
-// dump() without spaces, without the time that its headers take to compile. Keys stand in the order in which they are
-// given; a double has a point or an exponent and reads back as the same double; what is not finite is null; bytes that
-// are no UTF-8 are replaced by U+FFFD.
+// JSON as this program writes it: a text put together from values and shorter texts. It writes the same bytes as
+// nlohmann's dump() without spaces, and compiles faster. Keys stand in the order in which they are
+// given. A double has a point or an exponent and reads back as the same double; infinities and NaN are null. Bytes that
+// are no UTF-8 become U+FFFD.
 #pragma once
 
 #include <concepts>

@@ -202,6 +202,10 @@ void read_phases(const Section& top, MachineReading& reading) {
         if (until && until->json().is_array())
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
         if (until && phase.until.empty()) until->refuse("must name a condition");
+        if (const auto expected = section.find("expected")) {
+            if (!until) expected->refuse("it belongs to \"until\"");
+            phase.expected = reading.scope.number(*expected, "s", no_negative_number);
+        }
         phase.ends_at_frames = section.flag("ends_at_frames", false);
         if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");

@@ -218,6 +218,8 @@ constexpr auto phase_keys = std::to_array<Key>({
     {"for", MachineKey::value, "how long it lasts, s"},
     {"until", MachineKey::value, "what ends it; of a list whatever holds first"},
     {"at_most", MachineKey::value, "with until: how long it lasts at most, s"},
+    {"expected", MachineKey::value,
+     "with until: how long it will last, s; changes only predictions of cost, half of at_most by default"},
     {"frames", MachineKey::value, "it is measured at its beginning and after each of so many equal intervals", "100"},
     {"ends_at_frames", MachineKey::flag, "true: its conditions are looked at when it is measured, and not in between",
      "false"},

@@ -11,7 +11,7 @@
 
 namespace grainsweep::campaign {
 
-/// Parameters of the machine, and those that every machine has.
+/// Parameters of the machine, and the parameters of every machine.
 [[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);
 /// What expressions may name, for complete inputs: parameters in SI units, NAME_UNIT, NAME_is_WORD, and "let", whose
 /// expressions may use one another in any order; what needs numbers of species is still missing. Refuses a circle.

@@ -87,7 +87,7 @@ std::optional<double> read_time_limit(const Section& section, std::string_view k
 }
 
 /// Points of a sequence at the first check.
-constexpr std::int64_t fewest_rounds = 8;
+constexpr std::int64_t fewest_rounds = 4;
 
 AccuracyGoal read_goal(const Cursor& place, const SceneInfo& scene, const std::vector<std::string>& offered) {
     const Section section(place, accuracy_keys());

@@ -25,9 +25,9 @@ struct Remarks {
 /// Of a campaign file that was read and stored by this program or an older one; empty where it is none.
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);
 
-/// A campaign file that asks further points of what another asks: its scene, factors, fixed values, condition,
+/// Writes a campaign file with further points of another campaign: its scene, factors, fixed values, condition,
 /// accuracy, features, limits and execution, with a design of kind `list`. One row per point, one value per factor in
-/// the order of the file. Its seed is that of the other plus `number`, so that a setting asked again is a new run.
+/// the order of the file. Its seed is the other's plus `number`, so that a repeated setting is a new run.
 /// Paths of files stay as they were written. Throws std::invalid_argument for a text that is no campaign file.
 [[nodiscard]] std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
                                          std::span<const std::vector<Value>> rows, std::uint64_t number);
@@ -39,8 +39,8 @@ struct OtherNumerics {
     Inputs fixed = {};                   ///< of those alone that the file does not vary
     std::vector<std::string> numerical;  ///< inputs that change no seed
 };
-/// A campaign file that asks these points of another in that way, with a design of kind `list`, the seed of the other,
-/// and one replicate. Throws std::invalid_argument for a text that is no campaign file.
+/// Writes a campaign file with these points of another in that way: a design of kind `list`, the seed of the other, one
+/// replicate. Throws std::invalid_argument for a text that is no campaign file.
 [[nodiscard]] std::string with_other_numerics(std::string_view campaign_file, const OtherNumerics& numerics,
                                               std::span<const std::vector<Value>> rows);
 

@@ -1,5 +1,5 @@
-// Words of the field, of other programs and of other languages for what has another name here. No spelling is near:
-// the search for the nearest word asks this table first.
+// Words of the field, of other programs and of other languages for what has another name here. No spelling is near: the
+// search for the nearest word reads this table first.
 #pragma once
 
 #include "sweep/campaign/wrong_question.hpp"

@@ -47,8 +47,8 @@ template <class Things>
 /// The names, separated by commas; "none" where there are none.
 [[nodiscard]] std::string listed(const WordList& names);
 
-/// What to suggest for `word`: the candidate it is a synonym of (synonyms.hpp), else the one with the smallest edit
-/// distance, else the only one that has `word` between its underscores; empty where none is near.
+/// Returns a suggestion for `word`: the candidate it is a synonym of (synonyms.hpp), else the one with the smallest
+/// edit distance, else the only one with `word` between its underscores. Empty where none is near.
 [[nodiscard]] std::string nearest_word(std::string_view word, const WordList& candidates);
 
 }  // namespace grainsweep::campaign

@@ -64,7 +64,8 @@ int status(const Arguments& asked, Format format) {
             row.add("converged", converged).add("verdict", converged ? Json(verdict) : Json());
             if (now && now->campaign == records[k].name)
                 row.add("running", report::to_json(running_cases(archive, *now, now->running.size())))
-                    .add("expected_seconds", now->seconds_left);
+                    .add("expected_seconds", now->seconds_left)
+                    .add("expected_at_most", now->at_most);
             rows.push_back(row);
         }
         report::write(std::cout, rows);

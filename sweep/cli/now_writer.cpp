@@ -33,6 +33,7 @@ void NowWriter::update(const schedule::Progress& progress) {
     now_.settled = static_cast<std::int64_t>(progress.durable);
     now_.seconds = progress.seconds;
     now_.seconds_left = seconds_left(progress, cores_);
+    now_.at_most = progress.at_most;
     now_.judgement = progress.judgement;
     now_.running.clear();
     for (const auto& [id, one] : progress.under_way)

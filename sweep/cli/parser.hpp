@@ -41,9 +41,9 @@ private:
     CLI::Option* option_;
 };
 
-/// Declares arguments: "DB" is a place, "[NAME]" one that may be empty, "-o,--output FILE" an option with two names and
-/// the word that stands for its value in --help. `into` is written when the command line is read and must still be
-/// there then.
+/// Declares arguments: "DB" is a place, "[NAME]" one that may be empty, "-o,--output FILE" an option with two
+/// names and the word for its value in --help. `into` is written when the command line is read and must still
+/// exist then.
 class Parser {
 public:
     explicit Parser(CLI::App& app) : app_(&app) {}

@@ -11,9 +11,9 @@
 
 namespace grainsweep::cli {
 
-/// Compiles the conditions of the factors. Where a program answers the cases: refuses one that is not here (unless
-/// workers start elsewhere) and asks for its version, which is part of every case's identity; nothing else is started.
-/// `config` is named in refusals.
+/// Compiles the conditions of the factors. Checks the program of a campaign: refuses a missing one (unless workers
+/// start elsewhere) and runs its version command, because the version is part of every case's identity. Messages name
+/// `config`.
 [[nodiscard]] campaign::Campaign with_program(campaign::Campaign campaign, const std::filesystem::path& config);
 /// Reads a campaign file so; `experiment` chooses one of a calibration over several.
 [[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config,

@@ -70,7 +70,7 @@ std::string duration(double seconds) {
 }
 
 double seconds_left(const schedule::Progress& progress, std::size_t cores) {
-    const double to_go = progress.predicted_to_go, done = progress.predicted_done;
+    const double to_go = progress.to_compute, done = progress.computed;
     const bool telling = done > 0.02 * (done + to_go);
     return to_go * (telling ? progress.seconds / done : 1 / static_cast<double>(std::max<std::size_t>(cores, 1)));
 }
@@ -151,7 +151,8 @@ std::string ProgressLine::describe(const schedule::Progress& progress) const {
         text += rate >= 0.5 ? fmt::format(", {:.3g}/s", rate) : fmt::format(", {:.3g}/min", 60 * rate);
     }
     if (tally.decided < tally.questions)
-        text += fmt::format(", {} left{}{}", duration(left), end_.empty() ? "" : " ", end_);
+        text += fmt::format(", {}{} left{}{}", progress.at_most ? "at most " : "", duration(left),
+                            end_.empty() ? "" : " ", end_);
     if (tally.failed > 0) text += fmt::format(", {} failed", tally.failed);
     if (!progress.judgement.empty()) text += "; " + progress.judgement;
     return text;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t pilot_rounds = 2, first_rounds = 8, first_pair_rounds = 4;  // points of each sequence
+constexpr std::int64_t pilot_rounds = 2;  // points of each sequence
 
 /// A setting and what a case costs there, predicted: measured time would make the course depend on the machine.
 struct CostedSetting {
@@ -97,12 +97,14 @@ private:
             if (!compute(text_at(setting.name, points, false))) return false;
         const store::Store store(request_.database, store::Store::Mode::read);
         std::vector<std::vector<double>> values;
-        std::vector<stats::PilotLevel> levels;
+        const auto measure = study::name_at(asked_.name, campaign::AccuracyGoal::measure);
+        const auto factors = study::first_factors(store, measure, points);
+        stats::Pilot pilot{{}, static_cast<std::size_t>(sequences_), factors.view()};
         for (const auto& setting : settings_)
             values.push_back(
                 study::first_values(store, study::name_at(asked_.name, setting.name), goal_.observable, points).values);
-        for (std::size_t k = 0; k < settings_.size(); ++k) levels.push_back({values[k], settings_[k].seconds});
-        goal_.setting = settings_[stats::cheapest_level(study::gates_of(goal_), levels)].name;
+        for (std::size_t k = 0; k < settings_.size(); ++k) pilot.levels.push_back({values[k], settings_[k].seconds});
+        goal_.setting = settings_[stats::cheapest_level(rule(), pilot)].name;
         say(fmt::format("most cases run at {}", *goal_.setting));
         return true;
     }
@@ -110,8 +112,9 @@ private:
     bool advance() {
         const std::string measure(campaign::AccuracyGoal::measure);
         if (points_ == 0) {
-            points_ = first_rounds * sequences_;
-            pairs_ = goal_.setting == measure ? 0 : first_pair_rounds * sequences_;
+            const auto first = stats::first_sizes(sequences_, goal_.setting != measure);
+            points_ = std::min(first.points, most_);
+            pairs_ = first.pairs;
         }
         if (pairs_ > 0 && !compute(text_at(measure, pairs_, false))) return false;
         if (!compute(text_at(*goal_.setting, points_, true))) return false;
@@ -122,8 +125,9 @@ private:
         if (pairs_ > 0)
             expensive =
                 study::first_values(store, study::name_at(asked_.name, measure), goal_.observable, pairs_).values;
-        const auto check = stats::two_level_check({study::gates_of(goal_), goal_.tolerance, most_, cost_ratio()},
-                                                  {cheap.values, expensive, sequences_});
+        const auto factors = study::first_factors(store, asked_.name, points_);
+        const auto check = stats::two_level_check(
+            rule(), {cheap.values, expensive, static_cast<std::size_t>(sequences_), factors.view()});
         const bool within = passed_ && check.passes;
         store.group([&] { store.record(asked_.name, study::row_of(check, goal_, cheap.without_value, within)); });
         store.remember_file();
@@ -133,6 +137,9 @@ private:
         pairs_ = check.next_pairs;
         say(fmt::format("next check at {} cases and {} pairs", points_, pairs_));
         return true;
+    }
+    [[nodiscard]] stats::TwoLevelRule rule() const {
+        return {study::gates_of(goal_), goal_.tolerance, most_, goal_.setting ? cost_ratio() : 1};
     }
     [[nodiscard]] double cost_ratio() const {
         const auto chosen = std::ranges::find(settings_, *goal_.setting, &CostedSetting::name);

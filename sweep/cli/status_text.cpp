@@ -104,10 +104,10 @@ store::Table running_cases(const store::Store& archive, const live::Now& now, st
 
 void write_now(std::ostream& out, const store::Store& archive, const live::Now& now) {
     constexpr std::size_t most_shown = 32;
-    out << fmt::format("\na run of {} is under way on {} (process {}): {} of {} cases{}, {} left{}\n", now.campaign,
+    out << fmt::format("\na run of {} is under way on {} (process {}): {} of {} cases{}, {}{} left{}\n", now.campaign,
                        now.host, now.process, now.decided, now.questions,
-                       now.failed > 0 ? fmt::format(", {} failed", now.failed) : "", duration(now.seconds_left),
-                       now.judgement.empty() ? "" : "; " + now.judgement);
+                       now.failed > 0 ? fmt::format(", {} failed", now.failed) : "", now.at_most ? "at most " : "",
+                       duration(now.seconds_left), now.judgement.empty() ? "" : "; " + now.judgement);
     if (now.running.empty()) return;
     auto table = running_cases(archive, now, most_shown);
     for (auto& row : table.rows) row[0] = std::get<std::string>(row[0]).substr(0, 12);

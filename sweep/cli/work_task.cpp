@@ -144,8 +144,8 @@ WorkReport work_on(const WorkRequest& request) {
         progress.tally.decided = tally.answered;
         progress.tally.settled_now = progress.durable = tally.computed;
         progress.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-        progress.predicted_done = static_cast<double>(tally.computed);  // cases: the others are as long on average
-        progress.predicted_to_go = static_cast<double>(tally.cases - tally.answered);
+        progress.computed = static_cast<double>(tally.computed);  // cases: the others are as long on average
+        progress.to_compute = static_cast<double>(tally.cases - tally.answered);
         line.update(progress);
     };
     watchers.note = [&](const std::string& text) { line.note(text); };

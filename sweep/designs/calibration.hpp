@@ -1,11 +1,11 @@
 // Calibration: waves of points that close in on the settings which reproduce what was measured.
 //
 // Bayesian history matching (Vernon, Goldstein & Bower 2010, Bayesian Analysis 5, 619). The first wave fills the box of
-// the factors. Then, wave by wave, a response model of each target is made from all cases so far; a setting is kept
-// where no target is further off than 3 standard deviations of model, measurement, discrepancy and scatter together
-// (stats/calibration.hpp); the next wave fills what is kept. It ends after the last wave; or when the models are surer
-// than everything else everywhere kept, so that more cases could not rule out more; or when a wave has ruled out less
-// than a share `shrink` of what was kept. Settings drawn from the posterior are then run: the predictive check.
+// the factors. Then, wave by wave, a response model of each target learns all cases so far. A setting is kept if no
+// target is further off than 3 standard deviations of model, measurement, discrepancy and scatter together
+// (stats/calibration.hpp). The next wave fills the kept settings. It ends after the last wave; or when the models are
+// more certain than all other errors at every kept setting; or when a wave has ruled out less than a share `shrink` of
+// the kept settings. Settings drawn from the posterior are then run: the predictive check.
 //
 // Where more than 5 % of the settings gave no answer to some target, those count as ruled out of whose five nearest
 // neighbours most failed.

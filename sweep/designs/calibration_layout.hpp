@@ -12,7 +12,7 @@
 
 namespace grainsweep::designs {
 
-/// The factors that are calibrated, and those that state the conditions of targets. Every setting is run in every
+/// The calibrated factors, and the factors that state the conditions of targets. Every setting is run in every
 /// experiment under each condition of its targets: in an experiment of c conditions point p is setting p div c under
 /// the condition p mod c.
 struct CalibrationLayout {

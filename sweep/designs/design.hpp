@@ -1,4 +1,4 @@
-// A design: which points of the unit cube [0, 1]^d (or which listed rows) a campaign asks about.
+// A design: the points of the unit cube [0, 1]^d (or the listed rows) of a campaign.
 //
 // Point numbers are for ever: sample(request with more points) begins with the same points whenever
 // `extends` is true, so a campaign grows without renumbering.
@@ -30,7 +30,7 @@ using OptionValue = std::variant<std::int64_t, std::string, std::vector<std::int
 /// and the JSON schema print it.
 struct OptionSpec {
     /// counts: one whole number, or one per factor; number: a real one; factor: the name of one that varies between two
-    /// values; observable: that of a scalar of the scene.
+    /// values; observable: name of a scalar of the scene.
     enum class Kind { count, word, counts, rows, number, factor, observable };
     std::string name;
     std::string meaning;
@@ -88,9 +88,9 @@ struct DesignRequest {
     [[nodiscard]] const std::string& word(std::string_view option) const;
 };
 
-/// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions)
-/// or listed physical rows; point p belongs to sequence p mod sequences, and is asked as often as the campaign says,
-/// unless the columns `part` and `repeat` say otherwise.
+/// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions) or listed
+/// physical rows. Point p belongs to sequence p mod sequences. The campaign states its replicates, unless the columns
+/// `part` and `repeat` do.
 struct PointSet {
     std::size_t dimensions = 0;
     std::size_t sequences = 1;
@@ -140,8 +140,8 @@ struct DesignInfo {
     Purpose purpose = Purpose::statistics;
     /// How many points the request numbers, without forming them: the size of sample(request). Throws as that does.
     std::function<std::int64_t(const DesignRequest&)> size;
-    /// Points that belong together, one after the other, with so many groups of factors that move together: 1 where
-    /// each stands by itself.
+    /// Number of points that belong together, one after the other, with this number of groups of factors; 1 where each
+    /// stands by itself.
     std::function<std::size_t(std::size_t groups)> block = [](std::size_t) { return std::size_t{1}; };
     /// Throws std::invalid_argument with one sentence where options are impossible together.
     std::function<PointSet(const DesignRequest&)> sample;
@@ -149,7 +149,7 @@ struct DesignInfo {
 
 /// Those that a campaign may name under "design".
 [[nodiscard]] std::span<const DesignInfo> design_catalogue();
-/// One of these, or a design that another section of the campaign file asks for.
+/// One of these, or a design that follows from another section of the campaign file.
 [[nodiscard]] const DesignInfo* find_design(std::string_view name);
 /// The same for a name that is known to exist. Throws std::logic_error for any other.
 [[nodiscard]] const DesignInfo& design_named(std::string_view name);

@@ -43,9 +43,9 @@ struct LargestMiss {
 /// Fresh runs that miss by more standard deviations do not reproduce a measurement.
 inline constexpr double largest_miss_allowed = 2;
 
-/// Covariance of measurement and discrepancy, row-major: errors are independent; along a curve discrepancies are off
-/// together, with the correlation exp(-|x - x'|/L), L a quarter of the curve's length: what the simulation leaves out
-/// does not change from one point of a curve to the next.
+/// Covariance of measurement and discrepancy, row-major. Errors are independent. Discrepancies along a curve have the
+/// correlation exp(-|x - x'|/L), L a quarter of the curve's length, because the simulation errs alike at neighbouring
+/// points of a curve.
 [[nodiscard]] std::vector<double> covariance_of(std::span<const MeasuredTarget> targets);
 
 /// Targets as one line of text, as the option "targets" holds them, and back.

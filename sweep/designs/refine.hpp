@@ -2,11 +2,11 @@
 // with repeats.
 //
 // Both ends of the factor's range are asked first. While they lie on different sides of the threshold the middle of the
-// bracket is asked, in the factor's own scale, until the bracket is no wider than asked. A level is asked twice, then
-// in pairs up to `replicates` times, until Student's 95 % interval of its mean excludes the threshold; then its mean
-// decides on which side it lies. (Looking more than once, the interval errs more often than 1 in 20, and a level that
-// remains undecided counts by its mean: a bracket where the answer scatters across the threshold is a bracket of the
-// mean, found with that risk.) Where the answer passes the threshold several times one of the passages is found.
+// bracket is run, in the factor's own scale, until the bracket is no wider than `width`. A level is run twice, then in
+// pairs up to `replicates` times, until Student's 95 % interval of its mean excludes the threshold; then its mean
+// decides on which side it lies. Repeated looks raise the error rate of the interval above 5 %, and an undecided level
+// counts by its mean. So a bracket where the answer scatters across the threshold is a bracket of the mean, with that
+// risk. If the answer crosses the threshold more than once, only one crossing is found.
 //
 // A round, one question or pair of each combination that is not done, depends on the answers to the rounds before and
 // on nothing else: not on the number of workers, nor on interruptions.

@@ -67,9 +67,9 @@ fs::path now_file(const fs::path& database) {
 std::string text_of(const Now& now) {
     std::string text = fmt::format(
         "{}\ncampaign {}\nhost {}\nprocess {}\nquestions {}\ndecided {}\nfailed {}\nsettled {}\nseconds {:.3f}\n"
-        "seconds_left {:.3f}\njudgement {}\n",
+        "seconds_left {:.3f}\nat_most {:d}\njudgement {}\n",
         first_line, now.campaign, on_one_line(now.host), now.process, now.questions, now.decided, now.failed,
-        now.settled, now.seconds, now.seconds_left, on_one_line(now.judgement));
+        now.settled, now.seconds, now.seconds_left, now.at_most, on_one_line(now.judgement));
     for (const auto& one : now.running)
         text += fmt::format("case {} {} {} {:.1f} {}\n", one.case_id, one.attempt,
                             one.share ? fmt::format("{:.4f}", *one.share) : "?", one.seconds, on_one_line(one.host));
@@ -94,6 +94,7 @@ std::optional<Now> now_of(std::string_view text) {
         if (word == "settled") count(now.settled);
         if (word == "seconds") number(now.seconds);
         if (word == "seconds_left") number(now.seconds_left);
+        if (word == "at_most") now.at_most = line == "1";
         if (word == "case")
             if (auto one = running_of(line)) now.running.push_back(std::move(*one));
     }

@@ -28,6 +28,7 @@ struct Now {
     std::int64_t settled = 0;  ///< results of this run on disk
     double seconds = 0;        ///< since the run began
     double seconds_left = 0;   ///< until its expected end
+    bool at_most = false;      ///< it may end sooner
     std::string judgement;     ///< last verdict on convergence
     std::vector<RunningCase> running;
 };

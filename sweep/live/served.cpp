@@ -111,11 +111,17 @@ JsonText now_json(const Follower& follower) {
                             {"seconds", one.seconds},
                             {"host", one.host}};
         };
-        running = {{"campaign", now->campaign},   {"host", now->host},
-                   {"questions", now->questions}, {"decided", now->decided},
-                   {"failed", now->failed},       {"settled", now->settled},
-                   {"seconds", now->seconds},     {"seconds_left", now->seconds_left},
-                   {"judgement", now->judgement}, {"running", JsonText::list(now->running, running_json)}};
+        running = {{"campaign", now->campaign},
+                   {"host", now->host},
+                   {"questions", now->questions},
+                   {"decided", now->decided},
+                   {"failed", now->failed},
+                   {"settled", now->settled},
+                   {"seconds", now->seconds},
+                   {"seconds_left", now->seconds_left},
+                   {"at_most", now->at_most},
+                   {"judgement", now->judgement},
+                   {"running", JsonText::list(now->running, running_json)}};
     }
     return {{"database", follower.file().filename().string()}, {"in_place", follower.in_place()}, {"run", running}};
 }

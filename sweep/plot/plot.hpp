@@ -1,5 +1,5 @@
-// A figure for print as data: panels with axes, and what is drawn in them. Nothing here knows where the numbers come
-// from. Numbers are as the axes show them, already in the unit of the title.
+// A figure for print as data: panels with axes, and what is drawn in them. Nothing here depends on the origin of the
+// numbers. Numbers are as the axes show them, already in the unit of the title.
 //
 // Colours: Okabe & Ito, "Color Universal Design" (2008), which readers with any colour vision tell apart; scales of
 // colours are viridis (van der Walt & Smith 2015), whose lightness grows evenly, so that it survives a grey print.

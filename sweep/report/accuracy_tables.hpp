@@ -10,7 +10,7 @@
 
 namespace grainsweep::report {
 
-/// `observables`: those that are judged and shown as text; empty: all. Rows and value have all.
+/// `observables`: the judged ones, shown as text; empty: all. Rows and value have all.
 [[nodiscard]] Document accuracy_document(std::string_view campaign, std::span<const study::NumericsCost> costs,
                                          std::span<const std::string> observables, double tolerance);
 

@@ -17,7 +17,7 @@ namespace grainsweep::report {
 /// The same columns of the provisional figures, `provisional` 1: one row, or none.
 [[nodiscard]] store::Table provisional_rows(const study::Responses& responses, const study::ResponseColumn& response,
                                             const study::History& history);
-/// Everything `converge` knows of one campaign as one value.
+/// All results of `converge` for one campaign as one value.
 [[nodiscard]] Json to_json(const study::Responses& responses, const study::ResponseColumn& response,
                            const study::History& history, std::span<const study::LatticeStep> lattices);
 

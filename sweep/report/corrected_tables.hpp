@@ -6,7 +6,7 @@
 
 namespace grainsweep::report {
 
-/// One row per statistic: as the chosen setting has it, corrected, and the parts of the error relative to it.
+/// One row per statistic: at the chosen setting, corrected, and the parts of the error relative to it.
 [[nodiscard]] store::Table corrected_table(const study::Corrected& corrected);
 
 /// {"observable", "setting", "cases", "pairs", "tolerance", "within", "core_seconds", "alone_core_seconds",

@@ -27,7 +27,7 @@ struct FigureInfo {
     std::string name, shows;
     std::vector<std::string> panels;  ///< empty: the figure is one panel
 };
-/// Those that this campaign has data for.
+/// Figures that this campaign has data for.
 [[nodiscard]] std::vector<FigureInfo> figures_for(const FigureSubject& subject);
 
 /// "effects", or "effects:friction". Throws WrongQuestion for a name that figures_for() does not have, with the nearest

@@ -1,7 +1,7 @@
 // A case as a film: the frames taken of a scene, packed for the player of the page (page/watch).
 //
-// Positions are 16-bit numbers between the ends of the film's box along each axis, so they are known to half of
-// 1/65535 of it; colours and slices are 8-bit numbers (0: undefined), to 1/508 of their range, which ends at the 99.5 %
+// Positions are 16-bit numbers between the ends of the film's box along each axis: their error is half of 1/65535 of
+// it. Colours and slices are 8-bit numbers (0: undefined), to 1/508 of their range. The range ends at the 99.5 %
 // quantile where a few values lie far beyond. Vectors are shown by their magnitude, a flow on the three planes through
 // the middle of its box, between the cells beside it.
 #pragma once

@@ -1,4 +1,4 @@
-// Which cases of a database are worth watching: those that span what a response does.
+// Chooses the cases of a database that are worth watching: they span the values of a response.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -14,8 +14,8 @@ struct FilmChoice {
     std::string says;  ///< "largest mfr, 0.41"
 };
 
-/// So many cases at most, the campaigns sharing them: of the completed cases of each, by its main observable, the
-/// smallest, the largest and those at even quantiles between them; one alone is the median. A campaign without a
+/// At most that number of cases, shared by the campaigns: of the completed cases of each, by its main observable, the
+/// smallest, the largest and cases at even quantiles between them; one alone is the median. A campaign without a
 /// finite value has none.
 [[nodiscard]] std::vector<FilmChoice> cases_to_watch(const store::Store& store, std::size_t count);
 

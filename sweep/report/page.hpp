@@ -1,5 +1,5 @@
-// One page that holds a whole database: figures, pictures and the program that draws them, in one file that asks
-// nothing of any network.
+// One page that holds a whole database: figures, pictures and the program that draws them, in one file that needs no
+// network.
 #pragma once
 
 #include "sweep/report/table.hpp"
@@ -44,13 +44,13 @@ struct PageFilm {
 /// JSON that may stand inside a script element: "</", "<!--" and the line separators of JavaScript cannot occur.
 [[nodiscard]] std::string safe_in_script(const Json& value);
 
-/// Writes the page: all campaigns of all databases, of which any two can be laid over one another. Bytes of a database
+/// Writes the page: all campaigns of all databases; any two can be laid over one another. Bytes of a database
 /// that are no UTF-8 are replaced.
 void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films = {},
                 const PageModels& models = {});
 
-/// Writes the page of `serve`: the same whose data grows, beginning with this (an object, safe in a script). Returns its
-/// content security policy.
+/// Writes the page of `serve`: the same whose data grows, beginning with this (an object, safe in a script). Returns
+/// its content security policy.
 [[nodiscard]] std::string write_live_page(std::ostream& out, std::string_view data);
 
 }  // namespace grainsweep::report

@@ -23,7 +23,7 @@ struct Quantity {
     [[nodiscard]] double of(double x) const { return factor * x; }
     [[nodiscard]] std::vector<double> of(std::span<const double> numbers) const;
 };
-/// With the prefix that brings `largest` between 1 and 1,000: 0.0036 m is shown as 3.6 mm; a unit that takes none gets
+/// Chooses the prefix that brings `largest` between 1 and 1,000: 0.0036 m is shown as 3.6 mm. Units without prefix get
 /// a power of ten where numbers are 10,000 or more, or all below 0.01. Underscores of the name become spaces.
 [[nodiscard]] Quantity quantity_of(std::string_view name, std::string_view unit, double largest);
 

@@ -10,8 +10,8 @@
 // A column whose name is there already is named with _2 in csv and json.
 //
 // Numbers in csv and json are the shortest that read back as the same double. Whole numbers beyond 2^53 (seeds) are
-// text there, because jq, R and spreadsheets read every number as a double: "5577006791947779410" in json,
-// 5_577_006_791_947_779_410 in csv, where only the characters say what is a number. --seed takes both.
+// text there, because jq, R and spreadsheets read every number as a double. They are "5577006791947779410" in json and
+// 5_577_006_791_947_779_410 in csv, where only the characters mark a number. --seed takes both.
 #pragma once
 
 #include "solver/scenes/values.hpp"

@@ -14,7 +14,7 @@
 
 namespace grainsweep::report {
 
-/// Whether a scene has particles at all: those of a cell that ran empty are none any more, but have columns.
+/// Whether a scene has particles at all: a cell that ran empty has none any more, but has their columns.
 [[nodiscard]] bool shows_particles(const Snapshot& snapshot);
 
 /// The file's bytes. Columns of another length than the positions: std::invalid_argument.

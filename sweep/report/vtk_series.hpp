@@ -16,9 +16,9 @@ class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
 
-    /// Writes the moment's files, then NAME.pvd anew, which names all so far: particles as NAME_0000.vtp,
-    /// NAME_0001.vtp, ..., a wall as NAME_WALL_0000.vtp, numbered like the moment since which it stands as it is (one
-    /// that never moves is one file), a flow as NAME_FIELD_0000.vti or .vtr. Makes the folder where there is none; the
+    /// Writes the files of the moment, then NAME.pvd anew, which names all so far. Particles are NAME_0000.vtp,
+    /// NAME_0001.vtp, ...; a flow is NAME_FIELD_0000.vti or .vtr. A wall is NAME_WALL_0000.vtp, numbered by the moment
+    /// since which it has not moved: one that never moves is one file. Makes the folder where there is none; the
     /// first moment takes away an older series of this name. Throws BrokenWorld where it cannot.
     void add(const Snapshot& snapshot, double time);
     [[nodiscard]] std::size_t size() const { return moments_; }

@@ -12,8 +12,8 @@ namespace grainsweep::schedule {
 /// Puts what `store` knows of the campaign's points into its request, and says whether that brings points beyond those
 /// there were. Does nothing for a design that does not grow, and for a campaign that is not stored.
 ///
-/// A case that crashed or ran out of time as often as allowed, that is unstable or rejected, or whose observable is
-/// undefined, is settled without an answer, and so is a point that the `where` clause leaves out. Throws WrongQuestion
+/// Settled without an answer are: cases that crashed or ran out of time as often as allowed, unstable and rejected
+/// cases, cases whose observable is undefined, and points that the `where` clause leaves out. Throws WrongQuestion
 /// where another campaign is stored under the name.
 bool grow(campaign::Campaign& campaign, const store::Store& store);
 

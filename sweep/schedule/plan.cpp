@@ -57,7 +57,7 @@ void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
     const std::vector<std::uint32_t> in_order(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(end));
     double left = 0;
     for (const auto question : in_order) left += length(question);
-    tally_.predicted_left = left;
+    tally_.predicted_waiting = left;
 
     // Longest first, of equally long ones the first, block by block.
     std::vector<std::uint32_t> by_length = in_order;
@@ -100,6 +100,7 @@ std::optional<Plan::Start> Plan::next() {
     else
         returned_.pop_back();
     Entry& entry = entries_[question];
+    tally_.predicted_waiting -= entry.predicted;
     ++entry.attempts;
     Start start{{}, ask_(question), entry.predicted};
     start.attempt = {start.question.id, entry.attempts};
@@ -107,20 +108,9 @@ std::optional<Plan::Start> Plan::next() {
     return start;
 }
 
-void Plan::move_on(Running& one, double share) {
-    const double step = (share - one.share.value_or(0)) * entries_[one.question].predicted;
-    tally_.predicted_left -= step;
-    tally_.predicted_done += step;
-    one.share = share;
-}
-
 void Plan::advanced(const campaign::Attempt& attempt, double share) {
     const auto found = find(attempt);
-    if (found == under_way_.end() || !(share >= 0 && share <= 1)) return;
-    Running& one = found->second;
-    const bool resumed = !one.share && one.number > 1;  // a first attempt has no checkpoint
-    move_on(one, share);
-    if (resumed) tally_.predicted_done -= share * entries_[one.question].predicted;
+    if (found != under_way_.end() && share >= 0 && share <= 1) found->second.share = share;
 }
 
 double Plan::predicted(const campaign::Attempt& attempt) const {
@@ -142,19 +132,17 @@ Plan::UnderWay::iterator Plan::find(const campaign::Attempt& attempt) {
 Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
     const auto found = find(attempt);
     if (found == under_way_.end()) return Verdict::stale;
-    Running one = found->second;
+    const Running one = found->second;
     under_way_.erase(found);
     Entry& entry = entries_[one.question];
     if (settles(outcome)) {
         ++(good(outcome) ? tally_.settled_now : tally_.failed_now);
-        move_on(one, 1);
         decide(one.question, outcome);
         return Verdict::settled;
     }
     const bool given_up = outcome == Outcome::abandoned ? comes_no_further(one) : ++entry.failures >= rules_.attempts;
     if (given_up) {
         ++tally_.failed_now;
-        move_on(one, 1);
         decide(one.question, outcome);
         return Verdict::gave_up;
     }
@@ -174,8 +162,7 @@ bool Plan::comes_no_further(const Running& one) {
 }
 
 void Plan::put_back(const Running& one) {
-    // until the next attempt says what it found
-    tally_.predicted_left += one.share.value_or(0) * entries_[one.question].predicted;
+    tally_.predicted_waiting += entries_[one.question].predicted;
     returned_.push_back(one.question);
 }
 
@@ -192,6 +179,7 @@ void Plan::leave_out_longer_than(double seconds) {
     const auto too_long = [&](std::uint32_t question) {
         const double predicted = entries_[question].predicted;
         if (!(predicted > seconds)) return false;
+        tally_.predicted_waiting -= predicted;
         shortest_left_out_ = left_out_++ == 0 ? predicted : std::min(shortest_left_out_, predicted);
         return true;
     };

@@ -36,12 +36,12 @@ struct Rules {
     std::size_t workers = 1;                               ///< how many cases are computed at once
 };
 
-/// The questions of a plan, without repetition.
+/// The different cases of a plan: a repeated case stands here once.
 struct Questions {
     std::function<campaign::Case(std::uint32_t question)> ask;
     std::vector<History> histories;
     std::vector<double> predicted;  ///< seconds
-    /// Index of the question that each placed case asks. Empty: place i asks question i.
+    /// Index of the question of each placed case. Empty: place i has question i.
     std::vector<std::uint32_t> places;
     /// Number of the block after which the campaign may stop, growing; no case is brought forward out of a later block
     /// than the design is in. Empty: nothing stops it.
@@ -69,8 +69,7 @@ public:
     [[nodiscard]] std::size_t workers() const { return rules_.workers; }
     /// Of a running attempt: those predicted, less what it has done. 0: it is not running.
     [[nodiscard]] double seconds_left(const campaign::Attempt& attempt) const;
-    /// A running attempt has come so far, 0 to 1. What it had done when first reported, from a checkpoint, was not done
-    /// in this run.
+    /// A running attempt has come so far, 0 to 1.
     void advanced(const campaign::Attempt& attempt, double share);
 
     enum class Verdict { settled, again, gave_up, stale };
@@ -99,12 +98,11 @@ public:
 
     struct Tally {
         std::size_t questions = 0;
-        std::size_t decided = 0;      ///< settled or given up, before or in this run
-        std::size_t settled_now = 0;  ///< completed or skipped in this run
-        std::size_t failed_now = 0;   ///< given up, unstable or rejected in this run
-        std::size_t failed = 0;       ///< given up or settled as unstable or rejected, in all runs
-        double predicted_left = 0;    ///< seconds, of what this run may settle, less what running cases have done
-        double predicted_done = 0;    ///< seconds, in this run
+        std::size_t decided = 0;       ///< settled or given up, before or in this run
+        std::size_t settled_now = 0;   ///< completed or skipped in this run
+        std::size_t failed_now = 0;    ///< given up, unstable or rejected in this run
+        std::size_t failed = 0;        ///< given up or settled as unstable or rejected, in all runs
+        double predicted_waiting = 0;  ///< seconds, of what this run may still start
     };
     [[nodiscard]] const Tally& tally() const { return tally_; }
 
@@ -137,7 +135,6 @@ private:
     [[nodiscard]] std::uint32_t front() const { return returned_.empty() ? queue_[head_] : returned_.back(); }
     [[nodiscard]] UnderWay::iterator find(const campaign::Attempt& attempt);
     [[nodiscard]] bool comes_no_further(const Running& one);
-    void move_on(Running& one, double share);
     void put_back(const Running& one);
     void decide(std::size_t question, campaign::Outcome outcome);
 

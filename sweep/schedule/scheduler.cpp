@@ -18,6 +18,8 @@ using campaign::Overloaded;
 using campaign::unanswered;
 using namespace std::chrono_literals;
 
+constexpr double estimate_interval = 0.1;  // s; cases may end ten thousand times a second
+
 }  // namespace
 
 Scheduler::Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
@@ -91,6 +93,7 @@ void Scheduler::hand_out() {
         crew_.give(*place, start->attempt, start->question);
         progress_.under_way.insert_or_assign(start->attempt.case_id,
                                              UnderWay{start->attempt.number, place->computer, {}, seconds()});
+        time_left_.begun(start->attempt, start->predicted_seconds, seconds());
     }
 }
 
@@ -99,6 +102,7 @@ void Scheduler::handle(workers::PoolEvent event) {
         Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
                    [&](const workers::Heartbeat& beat) {
                        plan_.advanced(beat.attempt, beat.progress);
+                       time_left_.reported(beat.attempt, beat.progress, seconds());
                        const auto here = progress_.under_way.find(beat.attempt.case_id);
                        if (here != progress_.under_way.end() && std::isfinite(beat.progress))
                            here->second.share = beat.progress;
@@ -138,8 +142,7 @@ void Scheduler::handle_finished(workers::Finished& finished) {
     // A worker that reports a crash or a time-out of what it started.
     if (!settles(finished.result.outcome)) return handle_failure(std::move(finished.result));
     const auto& result = finished.result;
-    finished_seconds_ += result.cost.wall_seconds;
-    finished_predicted_ += plan_.predicted(result.attempt);
+    time_left_.ended(result.attempt, result.cost.wall_seconds, seconds());
     progress_.under_way.erase(result.attempt.case_id);
     if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
     if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected) {
@@ -157,6 +160,7 @@ void Scheduler::handle_finished(workers::Finished& finished) {
 void Scheduler::handle_failure(campaign::CaseResult result) {
     const auto& attempt = result.attempt;
     progress_.under_way.erase(attempt.case_id);
+    time_left_.taken_back(attempt.case_id);
     const auto verdict = plan_.ended(attempt, result.outcome);
     if (verdict == Plan::Verdict::stale) return;
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(result.outcome),
@@ -169,12 +173,14 @@ void Scheduler::handle_failure(campaign::CaseResult result) {
 void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
     for (const auto& attempt : attempts) {
         progress_.under_way.erase(attempt.case_id);
+        time_left_.taken_back(attempt.case_id);
         plan_.never_begun(attempt);
     }
 }
 
 void Scheduler::handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted) {
     progress_.under_way.erase(attempt.case_id);
+    time_left_.taken_back(attempt.case_id);
     const auto verdict = plan_.given_back(attempt);
     if (verdict == Plan::Verdict::stale) return;
     const bool gave_up = verdict == Plan::Verdict::gave_up;
@@ -199,32 +205,15 @@ void Scheduler::judge_prefix(Judge::Models models) {
     }
 }
 
-/// Of what is left, the part that is computed before the statistics are expected to converge.
-double Scheduler::share_to_go() const {
+std::optional<double> Scheduler::share_to_go() const {
+    if (judge_ == nullptr || !judge_->stops()) return 1;
     const auto& tally = plan_.tally();
     const auto left =
         static_cast<double>(std::min(tally.questions - tally.decided, plan_.waiting() + progress_.under_way.size()));
-    const auto share = judge_ != nullptr && left > 0 ? judge_->expected_share() : std::nullopt;
-    if (!share) return 1;
+    const auto share = judge_->expected_share();
+    if (!share || !(left > 0)) return std::nullopt;
     const double needed = *share * static_cast<double>(tally.questions) - static_cast<double>(tally.decided);
     return std::clamp(needed / left, 0.0, 1.0);
-}
-
-/// Predicted seconds done of the running cases that do not report how far they are (programs): by their age, at the
-/// pace of the cases that ended. Of those handed out the oldest run, one per worker; the others wait behind them.
-double Scheduler::done_unreported() const {
-    constexpr double at_most = 0.9;  // of a case that has not ended
-    if (!(finished_predicted_ > 0)) return 0;
-    const double pace = finished_seconds_ / finished_predicted_, now = seconds();
-    std::vector<std::pair<double, double>> ages;  // when it was given, predicted seconds
-    for (const auto& [id, one] : progress_.under_way)
-        if (!one.share) ages.emplace_back(one.given, plan_.seconds_left({id, one.attempt}));
-    std::ranges::sort(ages);
-    ages.resize(std::min(ages.size(), plan_.workers()));
-    double done = 0;
-    for (const auto& [given, predicted] : ages)
-        done += std::min(pace > 0 ? (now - given) / pace : 0, at_most * predicted);
-    return done;
 }
 
 void Scheduler::show() {
@@ -236,9 +225,15 @@ void Scheduler::show() {
     }
     progress_.tally = plan_.tally();
     progress_.seconds = seconds();
-    const double unreported = done_unreported();
-    progress_.predicted_done = progress_.tally.predicted_done + unreported;
-    progress_.predicted_to_go = std::max(0.0, progress_.tally.predicted_left - unreported) * share_to_go();
+    if (progress_.seconds - estimated_ > estimate_interval) {
+        estimated_ = progress_.seconds;
+        const double waiting = plan_.waiting() > 0 ? std::max(0.0, progress_.tally.predicted_waiting) : 0;
+        const auto seconds = time_left_.estimate(waiting, plan_.workers(), progress_.seconds);
+        progress_.computed = seconds.done;
+        const auto share = share_to_go();
+        progress_.to_compute = seconds.to_go * share.value_or(1);
+        progress_.at_most = !share;
+    }
     watchers_.progress(progress_);
 }
 

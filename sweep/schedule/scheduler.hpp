@@ -4,6 +4,7 @@
 
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
+#include "sweep/schedule/time_left.hpp"
 #include "sweep/store/recorder.hpp"
 #include "sweep/workers/crew.hpp"
 
@@ -17,8 +18,9 @@
 
 namespace grainsweep::schedule {
 
+/// Why a run ended.
 enum class Ending {
-    finished,   ///< every question is settled or given up
+    finished,   ///< every case is settled or given up
     converged,  ///< the statistics were good enough
     limited,    ///< as many cases as asked for in this run
     too_many_failures,
@@ -49,11 +51,12 @@ struct Progress {
     Plan::Tally tally;
     std::size_t durable = 0;  ///< results of this run on disk
     std::map<campaign::CaseId, UnderWay> under_way;
-    double seconds = 0;         ///< since the run began
-    double predicted_done = 0;  ///< seconds, of what this run has computed, cases under way in part
-    /// Seconds, of what it will still compute: all that is left, or less where the number of cases is limited or the
+    double seconds = 0;   ///< since the run began
+    double computed = 0;  ///< seconds, all workers together
+    /// The same, of what it will still compute: all that is left, or less where the number of cases is limited or the
     /// statistics are expected to converge before.
-    double predicted_to_go = 0;
+    double to_compute = 0;
+    bool at_most = false;   ///< it may end sooner: the statistics do not say yet when they will have converged
     std::string judgement;  ///< last verdict on convergence in one line
 };
 
@@ -79,8 +82,8 @@ private:
     /// Leaves out what does not fit into the time left, and stops when there is none.
     void look_at_time();
     [[nodiscard]] Ending ending() const;
-    [[nodiscard]] double share_to_go() const;
-    [[nodiscard]] double done_unreported() const;
+    /// Of what is left, the part that is computed before the statistics are expected to converge; none: not known yet.
+    [[nodiscard]] std::optional<double> share_to_go() const;
     [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
@@ -98,7 +101,8 @@ private:
     Watchers watchers_;
     Walltime walltime_;
     Clock::time_point began_ = Clock::now();
-    double finished_seconds_ = 0, finished_predicted_ = 0;  ///< of the cases that ended: taken, and predicted
+    TimeLeft time_left_;
+    double estimated_ = -1;  ///< when, in seconds of the run
     Progress progress_;
     std::optional<Ending> early_;
     std::optional<std::string> broken_;  ///< why nothing more can be computed

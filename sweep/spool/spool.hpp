@@ -94,8 +94,8 @@ private:
 /// Makes the file of a running task, and keeps it young; removes it in the end.
 class TaskFile {
 public:
-    /// A task whose file is older than `lease` seconds is taken for dead, and so is one whose file this process has not
-    /// seen change for as long: a date in the future is no sign of life.
+    /// A task counts as dead if its file is older than `lease` seconds, or if this process has not seen the file change
+    /// for that time: a date in the future is no sign of life.
     TaskFile(const Spool& spool, double lease);
     TaskFile(const TaskFile&) = delete;
     TaskFile& operator=(const TaskFile&) = delete;

@@ -94,8 +94,8 @@ struct KnownCampaign {
     campaign::Identity identity;
 };
 [[nodiscard]] std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name);
-/// Throws WrongQuestion where the stored campaign of that name asks something else; returns its key, none where
-/// it is new.
+/// Throws WrongQuestion where the stored campaign of that name is another one; returns its key, none where it is
+/// new.
 [[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
                                                          const campaign::Campaign& campaign);
 
@@ -111,7 +111,7 @@ struct KnownCampaign {
                                      const std::vector<DeclaredParameter>& parameters, KnownCases& known);
 
 /// Stores the places of an enrolled campaign whose placing does not simply add to what is there. Throws WrongQuestion
-/// where that would take stored places out of the campaign, BrokenWorld where a part of a damaged design is asked.
+/// where that would take stored places out of the campaign, BrokenWorld for a part of a damaged design.
 void place_anew(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key,
                 const campaign::Cases& cases, const Placing& placing);
 /// The verdicts given so far were about other places, or by another rule.

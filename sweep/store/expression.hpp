@@ -1,5 +1,5 @@
 // SQL expressions over a case's inputs, evaluated by SQLite itself: the `where` clause, and numbers made of inputs.
-// Two rules are not those of SQL (expression_text.hpp): a quotient is real, and comparisons are not chained.
+// Two rules differ from SQL (expression_text.hpp): a quotient is real, and comparisons are not chained.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"

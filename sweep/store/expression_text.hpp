@@ -1,6 +1,6 @@
-// The text of an expression before SQLite reads it. A condition is about quantities, and two rules of SQL are not meant
-// there: the quotient of whole numbers is a whole number (1/2 is 0), and a comparison is a number that can be compared
-// again (0.2 < a < 0.5 is (0.2 < a) < 0.5, always true).
+// The text of an expression before SQLite reads it. A condition is about quantities, so two rules of SQL do not apply.
+// In SQL the quotient of whole numbers is a whole number (1/2 is 0). And a comparison is a number that can be compared
+// again: 0.2 < a < 0.5 is (0.2 < a) < 0.5, always true.
 #pragma once
 
 #include <optional>

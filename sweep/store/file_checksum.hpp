@@ -1,9 +1,9 @@
-// The checksum of a whole database file. To check every row and index of a million cases takes seconds, to add up the
-// hashes of the pages a fraction of one: a file that is as the last run left it, which had found or written all of it
-// sound, is sound.
+// The checksum of a whole database file. Checking every row and index of a million cases takes seconds, adding up the
+// hashes of the pages a fraction of one. The last run had found or written all of the file sound, so an unchanged file
+// is sound.
 //
-// Not counted are the page of the checksum itself and the parts of the first page that SQLite changes when it writes
-// that one: the change counter (bytes 24 to 27) and the version that goes with it (92 to 99);
+// Not counted are the page of the checksum itself, and the parts of the first page that SQLite changes with it: the
+// change counter (bytes 24 to 27) and its version (92 to 99);
 // https://www.sqlite.org/fileformat.html
 #pragma once
 
@@ -18,9 +18,9 @@ namespace grainsweep::store {
 /// or a write-ahead log is waiting. Inside a transaction, of reading at least.
 [[nodiscard]] bool is_as_remembered(const Connection& db, const std::filesystem::path& file);
 
-/// Adds up the file, then checks what is in it, then stores the sum: a byte that changes after it was added up makes
-/// the file another one, a byte that changed before it is found by `is_sound`, which therefore reads from the disk and
-/// not from memory. Stores nothing where the check fails, or where a reader keeps the write-ahead log from being
+/// Adds up the file, checks its contents, then stores the sum. A byte that changes after it was added up changes the
+/// sum. A byte that changed before is found by `is_sound`, which therefore reads from the disk and not from memory.
+/// Stores nothing where the check fails, or where a reader keeps the write-ahead log from being
 /// brought home. Not inside a transaction.
 void remember_file(Connection& db, const std::function<bool()>& is_sound);
 

@@ -1,4 +1,4 @@
-// Which of a campaign's cases and places are in the file, and entering those that are not. A long campaign is entered
+// Finds the cases and places of a campaign that are in the file, and enters the others. A long campaign is entered
 // piece by piece, in the order of its design, while its first cases are computed: where the program ends before it is
 // done, the next run goes on. Internal to enrolling.
 #pragma once
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] bool adds_to(const Connection& db);
     /// After adds_to(): whether a place is new and stands before one that is there.
     [[nodiscard]] bool inside() const { return inside_; }
-    /// Enters up to so many of the places that are left, and their cases. Inside a transaction.
+    /// Enters up to that number of the places that are left, and their cases. Inside a transaction.
     void enter(Connection& db, std::size_t places);
     [[nodiscard]] bool done() const { return next_ == cases_.size(); }
 

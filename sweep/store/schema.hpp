@@ -1,4 +1,4 @@
-// The text of results_schema/, compiled in: what to run on a file of which version.
+// The text of results_schema/, compiled in: the statements that update a file of each version.
 #pragma once
 
 #include <span>

@@ -47,7 +47,7 @@ struct DamagedTable {
 [[nodiscard]] std::vector<DamagedTable> damaged_descriptions(const Connection& db);
 /// Our views, which users alone read: they are no data, and the next run makes them anew.
 [[nodiscard]] std::vector<DamagedTable> damaged_views(const Connection& db);
-/// Campaign files as the runs read them: those of the last run of each campaign, or all.
+/// Campaign files as the runs read them: of the last run of each campaign, or all.
 [[nodiscard]] std::vector<DamagedTable> damaged_texts(const Connection& db, bool of_all_runs);
 /// Numbers that no run writes, with or without checksums: a negative point, a case tried a million times. 0: of every
 /// campaign.
@@ -66,14 +66,14 @@ struct DamagedTable {
 /// The checksum that is stored of it.
 [[nodiscard]] RowSum stored_sum(const Connection& db, std::string_view name, std::int64_t part = 0);
 void store_sum(Connection& db, std::string_view name, std::int64_t part, const RowSum& sum);
-/// After a change: makes the stored checksum that of the rows.
+/// Stores the checksum of the rows after a change.
 void renew_sum(Connection& db, std::string_view name, std::int64_t part = 0);
 /// Changes a table and its stored checksum. Rows that are not as written before the change stay damaged after it.
 void change_summed(Connection& db, std::string_view name, const std::function<void()>& change);
 /// renew_sum of every table of damaged_descriptions().
 void renew_descriptions(Connection& db);
 
-/// Makes a checksum that of what is stored: of an attempt, of a case's answer, of a case with all its attempts.
+/// Stores a checksum of the stored values: of an attempt, of a case's answer, of a case with all its attempts.
 void renew_attempt(Connection& db, std::int64_t key, std::int64_t number);
 void renew_answer(Connection& db, std::int64_t key);
 void renew_case(Connection& db, std::int64_t key);

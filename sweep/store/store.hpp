@@ -30,7 +30,7 @@ struct Provenance {
     std::string version, commit, compiler, flags, instruction_path, processor, host;
 };
 
-/// What the archive knows of a case of the campaign.
+/// State of a case of the campaign in the archive.
 struct CaseState {
     std::int32_t attempts = 0;                 ///< highest attempt number begun
     std::int32_t failures = 0;                 ///< attempts that crashed or timed out
@@ -101,7 +101,7 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-/// What a campaign asks, and how far it has come.
+/// Content of a campaign, and how far it has come.
 struct CampaignRecord : campaign::Identity {
     std::string text;  ///< the campaign file of its last run
     std::int64_t sequences = 1, replicates = 1;
@@ -116,7 +116,7 @@ struct CampaignRecord : campaign::Identity {
     }
 };
 
-/// The places of a campaign's design, ordered by (point, replicate), and what the archive knows of their cases.
+/// The places of a campaign's design, ordered by (point, replicate), and the state of their cases in the archive.
 struct StoredPlaces {
     std::vector<campaign::Place> places;
     std::vector<campaign::CaseHash> hashes;
@@ -137,9 +137,9 @@ public:
     enum class Mode { create, read };
     /// A network disk gets a rollback journal instead of a write-ahead log; found out by statfs(2) it is refused.
     enum class Disk { found_out, local, network };
-    /// create: makes the file and its schema where absent, takes the writer's lock (a second writer is
-    /// refused with a sentence naming the first) and brings an older schema up to date; read: changes no content and
-    /// no schema. Throws BrokenWorld, or WrongQuestion when the file is no grainsweep database.
+    /// create: makes the file and its schema where absent, takes the writer's lock and updates an older schema. A
+    /// second writer is refused with a sentence that names the first. read: changes no content and no schema. Throws
+    /// BrokenWorld, or WrongQuestion when the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
@@ -148,22 +148,22 @@ public:
     /// Records campaign and cases (idempotent; extends), makes its view, closes attempts of a dead main program as
     /// abandoned. Returns the state of each case, in the order given. Not inside group().
     ///
-    /// Another scene, revision, default, factor set, range, fixed value, condition, seed, kind of design, scramble or
-    /// first index under the same name throws WrongQuestion naming both, and so does another size of a design that
-    /// does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
-    /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). Where a factor of a lattice
-    /// gains levels the points are renumbered: the new places replace the old ones, every answer is kept and stays in
-    /// the view, and convergence is judged anew, as it is after another rule or more replicates. A list only grows at
+    /// Throws WrongQuestion naming both for another scene, revision, default, factor set, range, fixed value,
+    /// condition, seed, kind of design, scramble or first index under the same name. So does another size of a design
+    /// that does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
+    /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). If a factor of a lattice
+    /// gains levels, the points are renumbered. New places replace the old ones, and every answer is kept and stays in
+    /// the view. Convergence is judged anew, as after another rule or more replicates. A list only grows at
     /// its end.
     ///
-    /// Places beyond `at_once` new ones are left to enrol_more(), where they need only be added: a long campaign can
-    /// begin before all of it is in the file, and what is missing when the program ends is added by its next run.
+    /// Places beyond `at_once` new ones are left to enrol_more(), so that a long campaign can begin before all of it is
+    /// in the file. Places that are missing when the program ends are added by its next run.
     std::vector<CaseState> enrol(const campaign::Campaign& campaign, const campaign::Cases& cases,
                                  const Provenance& provenance,
                                  std::size_t at_once = std::numeric_limits<std::size_t>::max());
     /// Whether places of the campaign enrolled last are left.
     [[nodiscard]] bool enrols() const;
-    /// Adds up to so many of them, on disk when this returns. Not inside group().
+    /// Adds up to that number of them, on disk when this returns. Not inside group().
     void enrol_more(std::size_t places);
 
     /// What the last enrol found damaged and what it did about it, a sentence each.
@@ -198,8 +198,8 @@ public:
     /// The names of a campaign's factors in the order that fixes the dimensions of its design; empty where there is
     /// no campaign of that name.
     [[nodiscard]] std::vector<std::string> factor_order(std::string_view campaign) const;
-    /// The stored campaign of that name, none where there is none. Throws WrongQuestion where enrol() would because it
-    /// asks something else.
+    /// The stored campaign of that name, none where there is none. Throws WrongQuestion where enrol() would, because it
+    /// is another campaign.
     [[nodiscard]] std::optional<CampaignRecord> stored(const campaign::Campaign& campaign) const;
     /// How many of these cases are settled, whichever campaign asked them.
     [[nodiscard]] std::int64_t settled(const campaign::Cases& cases) const;
@@ -236,7 +236,7 @@ public:
     /// asked_points (candidates) and asked_replicates.
     [[nodiscard]] Table status() const;
     /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence, the names there are
-    /// and the nearest. Beside SQLite's own functions those of aggregates.hpp.
+    /// and the nearest. Has SQLite's own functions and the aggregates of aggregates.hpp.
     [[nodiscard]] Table query(std::string_view sql) const;
     /// The same row by row: bounded memory, whatever there is to tell.
     struct QueryLimits {

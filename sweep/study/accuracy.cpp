@@ -102,14 +102,6 @@ double core_seconds(const store::Store& store, std::string_view what, const std:
             .front());
 }
 
-/// No fewer than the first check has.
-double cases_alone(const stats::TwoLevelCheck& check, double tolerance, std::int64_t sequences) {
-    const double ratio = largest_part(check, &stats::TwoLevelMoment::statistics) / tolerance;
-    constexpr std::int64_t first_rounds_alone = 8;
-    return std::max(static_cast<double>(check.points) * ratio * ratio,
-                    static_cast<double>(first_rounds_alone * sequences));
-}
-
 }  // namespace
 
 double Bias::relative_bound() const {
@@ -160,13 +152,15 @@ std::string Corrected::verdict() const {
     const auto cases = check.pairs == 0
                            ? fmt::format("{} cases at {}", check.points, *goal.setting)
                            : fmt::format("{} cases at {} and {} pairs", check.points, *goal.setting, check.pairs);
-    return fmt::format("{} {} {} of {}: {}; numerics {}, statistics {}, together {}; {}, {:.3g} core-s{}",
-                       goal.observable, within ? "within" : "not yet within", share_or_unknown(goal.tolerance),
-                       campaign::AccuracyGoal::measure, moments,
-                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::numerics)),
-                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::statistics)),
-                       share_or_unknown(largest_part(check, &stats::TwoLevelMoment::together)), cases, core_seconds,
-                       alone ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone) : "");
+    const auto other = alone          ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone)
+                       : chosen_alone ? "; pairs with a cheaper setting would have cost more"
+                                      : "";
+    return fmt::format(
+        "{} {} {} of {}: {}; numerics {}, statistics {}, together {}; {}, {:.3g} core-s{}", goal.observable,
+        within ? "within" : "not yet within", share_or_unknown(goal.tolerance), campaign::AccuracyGoal::measure,
+        moments, share_or_unknown(largest_part(check, &stats::TwoLevelMoment::numerics)),
+        share_or_unknown(largest_part(check, &stats::TwoLevelMoment::statistics)),
+        share_or_unknown(largest_part(check, &stats::TwoLevelMoment::together)), cases, core_seconds, other);
 }
 
 std::string name_at(std::string_view campaign, std::string_view setting) {
@@ -184,6 +178,19 @@ FirstValues first_values(const store::Store& store, std::string_view campaign, s
         }
         found.values[static_cast<std::size_t>(one.point)] = one.value;
         if (std::isnan(one.value)) ++found.without_value;
+    }
+    return found;
+}
+
+FirstFactors first_factors(const store::Store& store, std::string_view campaign, std::int64_t points) {
+    constexpr double middle = 0.5;  // of a point that has no case
+    const auto responses = read_responses(store, find_campaigns(store, campaign).front());
+    FirstFactors found{{}, responses.factors.size()};
+    found.rows.assign(static_cast<std::size_t>(points) * found.dimensions, middle);
+    for (std::size_t row = 0; row < responses.rows(); ++row) {
+        if (responses.points[row] >= points) continue;
+        const auto at = static_cast<std::size_t>(responses.points[row]) * found.dimensions;
+        for (std::size_t j = 0; j < found.dimensions; ++j) found.rows[at + j] = responses.factors[j].coordinate(row);
     }
     return found;
 }
@@ -236,13 +243,17 @@ std::optional<Corrected> corrected_of(const store::Store& store, const store::Ca
     if (cheap.empty() || (paired && expensive.empty())) return std::nullopt;
     Corrected found;
     const stats::TwoLevelRule rule{gates_of(*goal), goal->tolerance, campaign.asked.candidates, 1};
-    found.check = stats::two_level_check(rule, {cheap, expensive, campaign.sequences});
+    const auto factors = first_factors(store, campaign.name, std::ssize(cheap));
+    const auto sequences = static_cast<std::size_t>(campaign.sequences);
+    found.check = stats::two_level_check(rule, {cheap, expensive, sequences, factors.view()});
     for (const auto& row : store.convergence(campaign.name, goal->observable))
         found.within = found.within || (row.converged && row.points == found.check.points);
     found.core_seconds = core_seconds(store, "total", campaigns_of_goal(store, campaign));
     if (paired)
-        found.alone = cases_alone(found.check, goal->tolerance, campaign.sequences) *
+        found.alone = stats::cases_alone(rule, {expensive, {}, sequences, factors.view()}) *
                       core_seconds(store, "avg", fmt::format("'{}'", name));
+    else
+        found.chosen_alone = measure != records.end();
     found.goal = std::move(*goal);
     return found;
 }

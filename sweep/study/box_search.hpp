@@ -25,7 +25,7 @@ struct BoxPoint {
 /// Empty: every setting passes.
 using Admits = std::function<bool(const Setting&)>;
 
-/// `count` Sobol points of the box, less those that are not admitted.
+/// `count` Sobol points of the box, without the points that are not admitted.
 [[nodiscard]] std::vector<BoxPoint> spread_points(std::span<const ModelFactor> factors, const Admits& admits,
                                                   std::size_t count);
 /// Sobol points of the box of half-width `reach` (in ranges) about a point, cut at the walls; factors with levels stay.
@@ -37,12 +37,12 @@ using Admits = std::function<bool(const Setting&)>;
 [[nodiscard]] std::string_view share_of(std::span<const ModelFactor> factors);
 /// The number of a factor at share u of its range; of levels one by its place among them.
 [[nodiscard]] double number_along(const ModelFactor& factor, double u);
-/// The setting at a point of the unit cube, by the distributions of the factors where they have some; rounded to a
-/// thousandth of the range's order of magnitude (of the value's, where the range is logarithmic), within the range;
-/// multiples of a step as they are. Shares add to one, all but the last rounded to a thousandth. A factor that does not
+/// Returns the setting at a point of the unit cube, by the distributions of the factors where they have some. Values
+/// are rounded to a thousandth of the range's order of magnitude (of the value's, where the range is logarithmic),
+/// within the range. Shares add to one, all but the last rounded to a thousandth. A factor that does not
 /// count has its default.
 [[nodiscard]] Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u);
-/// The same without rounding, as a design asks it.
+/// The same without rounding, as in a design.
 [[nodiscard]] Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u);
 
 }  // namespace grainsweep::study

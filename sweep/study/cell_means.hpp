@@ -1,5 +1,5 @@
-// Mean response over two factors, cell by cell: a level, and each of up to 12 distinct values, is a cell of its own,
-// else sqrt(n/8) cells, 3 to 14, divide the range evenly (logarithmic ones in their logarithms).
+// Mean response over two factors, cell by cell. A level, and each of up to 12 distinct values, is a cell of its own.
+// Otherwise sqrt(n/8) cells, 3 to 14, divide the range evenly (logarithmic ones in their logarithms).
 #pragma once
 
 #include "sweep/study/responses.hpp"

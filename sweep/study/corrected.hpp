@@ -22,6 +22,7 @@ struct Corrected {
     /// Of the cases at `reference` that would bring the statistical error alone within the tolerance; none without
     /// pairs.
     std::optional<double> alone;
+    bool chosen_alone = false;  ///< a pilot found `reference` without pairs cheaper
 
     [[nodiscard]] std::string verdict() const;
 };
@@ -36,6 +37,15 @@ struct FirstValues {
 /// Values at the first points of a campaign; fewer points where one is not settled yet.
 [[nodiscard]] FirstValues first_values(const store::Store& store, std::string_view campaign,
                                        std::string_view observable, std::int64_t points);
+
+/// The factors of the first points of a campaign, 0 to 1 each.
+struct FirstFactors {
+    std::vector<double> rows;
+    std::size_t dimensions = 0;
+
+    [[nodiscard]] stats::Rows view() const { return {rows, dimensions}; }
+};
+[[nodiscard]] FirstFactors first_factors(const store::Store& store, std::string_view campaign, std::int64_t points);
 
 /// The statistics that are judged.
 [[nodiscard]] std::vector<stats::Statistic> gates_of(const campaign::AccuracyGoal& goal);

@@ -2,13 +2,13 @@
 // from fewer cases (stats/assisted_moments.hpp has the equations and how the errors are checked).
 //
 // The rules but `assisted` judge the plain one; the other is shown beside it, with and without the scatter of
-// single runs. What it is over is what the plain one is over: the settled beginning of the design, as its independent
-// sequences, and the box less what the campaign's `where` leaves out (4 scramblings of 8,192 Sobol points).
+// single runs. Both estimators use the same cases: the settled prefix of the design, by its independent sequences. They
+// refer to the box without the parts that the campaign's `where` leaves out (4 scramblings of 8,192 Sobol points).
 // Features: as the campaign file has them, else the factors, logarithms where the range is wide. Ratios of factors are
 // not tried here: which one lowers the error is a choice by the very cases that are corrected.
 //
-// The variance of single runs is that of replicates, where at least 100 cases repeat others of their point; else the
-// square of NAME_standard_error, where the scene states it (0 where it is undefined); else it is unknown.
+// The variance of single runs comes from replicates, where at least 100 cases repeat others of their point. Otherwise
+// it is the square of NAME_standard_error, where the scene states it (0 where undefined), or unknown.
 #pragma once
 
 #include "stats/assisted_moments.hpp"

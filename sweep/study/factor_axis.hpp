@@ -1,5 +1,5 @@
-// Where along a factor a response model is asked for pictures: curves at points that include the ends of the range,
-// maps at the middles of cells; logarithmic ranges evenly over their logarithms, a factor with levels once for each.
+// Places along a factor at which pictures evaluate a response model. Curves have points that include the ends of the
+// range, maps the middles of cells. Logarithmic ranges are even in their logarithms; levels have one place each.
 #pragma once
 
 #include "sweep/study/features.hpp"

@@ -42,7 +42,7 @@ struct ModelFactor {
     /// The smallest number that a design may ask.
     [[nodiscard]] double smallest() const { return distribution ? distribution->quantile(0) : low; }
     [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high > low; }
-    /// The value as the campaign file has it.
+    /// The value as in the campaign file.
     [[nodiscard]] Value value(double number) const;
     /// The same as text, to be read again: the shortest that is the same number; of NaN, averaged over, "varies".
     [[nodiscard]] std::string text(double number) const;

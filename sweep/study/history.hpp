@@ -30,7 +30,7 @@ struct History {
 /// where it is no check. Pointers into the history.
 [[nodiscard]] std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most);
 
-/// A campaign whose last run asked for less than is stored: what is asked now and what is stored; else empty.
+/// Sentence on a campaign whose last run had fewer points than are stored, with both numbers; else empty.
 [[nodiscard]] std::string extent_note(const store::CampaignRecord& campaign);
 /// Candidates, those left out by the `where` clause, cases asked and finished, in one line.
 [[nodiscard]] std::string points_line(const Responses& responses);

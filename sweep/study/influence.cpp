@@ -278,6 +278,14 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
         withdraw_errors_of_repeated_cases(influence, responses);
         return influence;
     }
+    if (design.grows) {
+        influence.notes.push_back(
+            fmt::format("a {} places its points by results: shares of the variance over the ranges are those of the "
+                        "response model alone",
+                        responses.campaign.design));
+        add_trends(influence, responses, response);
+        return influence;
+    }
     influence.split = split_of(responses, response);
     add_given_data(influence, responses, response);
     add_trends(influence, responses, response);

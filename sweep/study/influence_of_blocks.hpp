@@ -11,7 +11,7 @@ namespace grainsweep::study {
 /// Computes total and first-order indices of the groups, and notes of them in `influence`.
 [[nodiscard]] std::vector<FactorInfluence> add_saltelli(Influence& influence, const Responses& responses,
                                                         const ResponseColumn& response);
-/// Computes elementary effects of the groups, and those of single factors in `influence`, which get a trend.
+/// Computes elementary effects of the groups, and of single factors in `influence`, which get a trend.
 [[nodiscard]] std::vector<FactorInfluence> add_morris(Influence& influence, const Responses& responses,
                                                       const ResponseColumn& response);
 /// Puts the groups in the place of their factors; a factor by itself keeps what else is known of it.

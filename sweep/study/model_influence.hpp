@@ -1,5 +1,5 @@
 // Which factors move the mean response, alone and together, by a response model of the campaign's settled cases: total
-// indices and interactions from any design (stats/model_indices.hpp), beside those that come from the cases directly.
+// indices and interactions from any design (stats/model_indices.hpp), beside the indices from the cases themselves.
 //
 // Refused where the model is (stats/response_model.hpp), and where the campaign's `where` leaves a part of the box out:
 // indices are over all of it, and there are no cases in that part. Errors come from leaving out independent sequences,

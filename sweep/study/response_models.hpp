@@ -3,9 +3,9 @@
 //
 // A model rests on every answered case of the campaign, and on those of further campaigns of the database that ask the
 // same scene with the same factors and fixed values, wherever their points stand. Replicates are cases of their own.
-// A case without a number for the observable (NULL: undefined there) is left out of the model and counted. How likely a
-// setting is to have one comes from a model of that probability (stats/probability_model.hpp); so does an observable
-// whose values are 0 and 1 alone, like `jammed`: its mean is the probability of a 1.
+// A case without a number for the observable (NULL: undefined there) is left out of the model and counted. The
+// probability that a setting has one is a model of its own (stats/probability_model.hpp). So is an observable whose
+// values are 0 and 1 alone, like `jammed`: its mean is the probability of a 1.
 #pragma once
 
 #include "stats/probability_model.hpp"

@@ -28,9 +28,9 @@ struct FactorColumn {
     std::vector<double> places;       ///< of the levels among those of the campaign: 0 the first, 1 the last
 
     [[nodiscard]] bool continuous() const { return levels.empty(); }
-    /// Where the row stands in the range: 0 to 1, of a distribution the probability of less; a default out of it at the
-    /// nearer end; a level by its place among
-    /// those of the campaign, run or not.
+    /// Place of the row in the range, 0 to 1; of a distribution the probability of less. A default outside
+    /// of the range is at the nearer end. A level counts by its place among the campaign's levels, run or
+    /// not.
     [[nodiscard]] double coordinate(std::size_t row) const;
 };
 
@@ -92,8 +92,8 @@ struct Responses {
     /// Points the design numbers that the `where` clause leaves out.
     [[nodiscard]] std::int64_t dropped() const;
     [[nodiscard]] const designs::DesignInfo& design() const;
-    /// The observable of the convergence rule, else the first on which later points of the design rest (a calibration's
-    /// first target), else the scene's first with a value, else its first; none where it measures no scalar.
+    /// Main observable: the one of the convergence rule, else the first on which later points of the design rest (a
+    /// calibration's first target), else the scene's first with a value, else its first. None without scalars.
     [[nodiscard]] const ResponseColumn* main_observable() const;
     /// Throws WrongQuestion with the nearest name. Empty: the main observable.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;

@@ -1,4 +1,4 @@
-// docs/campaign_file.md and the JSON Schema tell of the same keys, and each key stands in an example that is planned.
+// docs/campaign_file.md and docs/factors.md show every key of the JSON Schema in an example, and no other key.
 #include "tests/documents/page.hpp"
 
 #include <gtest/gtest.h>
@@ -52,13 +52,15 @@ TEST(CampaignFilePage, ShowsEveryKeyOfTheSchemaAndNoOther) {
     const auto known = keys_of_schema();
     EXPECT_GT(known.size(), 35U);
     Keys shown;
-    for (const auto& block : read_page("docs/campaign_file.md").blocks) {
-        if (block.language != "json") continue;
-        const auto example = json::parse(block.text, nullptr, false);
-        ASSERT_FALSE(example.is_discarded()) << "line " << block.line << " is no JSON";
-        const bool powder = example.contains("material");
-        const bool machine = example.contains("materials");
-        if (!powder && !machine) add_keys(shown, example);
+    for (const char* page : {"docs/campaign_file.md", "docs/factors.md"}) {
+        for (const auto& block : read_page(page).blocks) {
+            if (block.language != "json") continue;
+            const auto example = json::parse(block.text, nullptr, false);
+            ASSERT_FALSE(example.is_discarded()) << page << ":" << block.line << " is no JSON";
+            const bool powder = example.contains("material");
+            const bool machine = example.contains("materials");
+            if (!powder && !machine) add_keys(shown, example);
+        }
     }
     for (const auto& key : known) EXPECT_TRUE(shown.contains(key)) << "no example of " << key;
     for (const auto& key : shown) EXPECT_TRUE(known.contains(key)) << "the schema has no key " << key;

@@ -58,6 +58,15 @@ TEST(Documents, EveryPageStandsInTheSite) {
     const std::string site{std::istreambuf_iterator<char>(stream), {}};
     for (const auto& page : user_pages())
         EXPECT_NE(site.find("- " + page.file.string() + "\n"), std::string::npos) << page.file;
+    static const std::regex entry("\n +- (\\S+)(?=\n)");
+    std::set<std::string> listed;
+    for (std::sregex_iterator it(site.begin(), site.end(), entry), end; it != end; ++it) {
+        const std::string page = (*it)[1];
+        if (!page.ends_with(".md")) continue;
+        EXPECT_TRUE(fs::exists(source(page))) << "docs/mkdocs.yml lists " << page;
+        EXPECT_TRUE(listed.insert(page).second) << "docs/mkdocs.yml lists twice " << page;
+    }
+    EXPECT_GT(listed.size(), 20U);
 }
 
 TEST(Documents, EveryCampaignFileIsMentioned) {

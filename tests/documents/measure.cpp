@@ -1,4 +1,4 @@
-// An aid for writers, not a gate: prints the length of every page, its long sentences and its vague turns.
+// Prints the length of every page, its long sentences and its vague turns; only the length is a gate.
 //   build/tests/test_documents --gtest_filter='Prose.*'
 #include "tests/documents/page.hpp"
 
@@ -15,6 +15,7 @@
 namespace grainsweep::tests::measure_test {
 
 constexpr std::size_t longest_sentence = 35;
+constexpr std::size_t longest_page = 200;  ///< lines, without blocks and generated tables
 
 /// A paragraph, a list item, a heading or a cell of a table, on one line; a code span or a link is its visible text.
 struct Passage {
@@ -120,6 +121,7 @@ TEST(Prose, IsMeasured) {
     for (const auto& page : user_pages()) {
         const auto one = measured(page);
         add(page.file.string(), one);
+        EXPECT_LE(one.lines, longest_page) << page.file << ": split it by the question that a reader has";
         all = {all.words + one.words, all.lines + one.lines, all.warnings + one.warnings};
     }
     add("all", all);

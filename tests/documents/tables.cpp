@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -28,9 +29,17 @@ namespace grainsweep::tests::tables_test {
 
 using nlohmann::ordered_json;
 
-ordered_json catalogue(std::vector<std::string> arguments) {
+/// What the program answers, asked once: reading it takes longer than asking.
+const ordered_json& answer_in_json(const std::vector<std::string>& arguments) {
+    static std::map<std::vector<std::string>, ordered_json> known;
+    const auto [place, asked_now] = known.try_emplace(arguments);
+    if (asked_now) place->second = ordered_json::parse(answer_of(arguments));
+    return place->second;
+}
+
+const ordered_json& catalogue(std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--format", "json"});
-    return ordered_json::parse(answer_of(arguments));
+    return answer_in_json(arguments);
 }
 
 std::string shown(const ordered_json& value) {
@@ -91,7 +100,7 @@ std::string parameters_table(const ordered_json& scene) {
 ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
     static const std::set<std::string> common = {"particles_scale", "time_step", "time_step_fraction", "precision",
                                                  "particles",       "lost",      "max_overlap"};
-    const auto declared = catalogue({"machines", name});
+    const auto& declared = catalogue({"machines", name});
     ordered_json own = ordered_json::array();
     for (const auto& one : declared[part]) {
         const std::string what = one["name"];
@@ -166,7 +175,7 @@ std::string designs_table() {
 
 std::string options_table(const std::string& design) {
     std::string table = head({"option", "default", "allowed", "meaning"});
-    const auto described = catalogue({"designs", design});
+    const auto& described = catalogue({"designs", design});
     for (const auto& option : described["options"])
         table += row({"`" + shown(option["option"]) + "`", option["default"].is_null() ? "" : shown(option["default"]),
                       shown(option["allowed"]), shown(option["meaning"])});
@@ -185,7 +194,7 @@ std::string powder_keys_table() {
 
 /// The keys of one object of the campaign file, as the JSON Schema tells them.
 std::string keys_table(const std::string& section) {
-    const auto schema = ordered_json::parse(answer_of({"schema"}));
+    const auto& schema = answer_in_json({"schema"});
     const auto& object = section == "campaign" ? schema
                          : section == "factor"
                              ? schema["allOf"][0]["then"]["properties"]["factors"]["items"]["oneOf"][0]
@@ -193,8 +202,8 @@ std::string keys_table(const std::string& section) {
                          : section == "experiment"
                              ? schema["properties"]["calibration"]["properties"]["experiments"]["additionalProperties"]
                          : section == "accuracy" ? schema["properties"]["accuracy"]["oneOf"][1]
-                         : section == "stop"   ? schema["properties"]["calibration"]["properties"]["stop"]
-                                               : schema["properties"][section];
+                         : section == "stop"     ? schema["properties"]["calibration"]["properties"]["stop"]
+                                                 : schema["properties"][section];
     std::string table = head({"key", "default", "meaning"});
     for (const auto& [name, key] : object["properties"].items()) {
         const bool required =
@@ -258,7 +267,7 @@ std::string generated(const std::string& what) {
     std::string kind, name, part;
     words >> kind >> name >> part;
     if (kind == "scene") {
-        const auto scene = catalogue({"scenes", name});
+        const auto& scene = catalogue({"scenes", name});
         if (part == "parameters") return parameters_table(scene);
         if (part == "observables") return observables_table(scene);
         if (part == "accuracy") return accuracy_table(scene);

@@ -30,7 +30,8 @@ Spec two_species() {
     spec.pairs = {material, material, material};
     spec.species.push_back({"small", 0, 0.002, particles::SizeDistribution::uniform(0.2)});
     spec.species.push_back({"large", 1, 0.003, {}});
-    spec.phases.push_back({"only", 1, {}, 10});
+    spec.phases.push_back(
+        {.name = "only", .duration = 1, .expected = {}, .until = {}, .frames = 10, .ends_at_frames = false});
     spec.time_step = 1e-5;
     return spec;
 }
@@ -165,7 +166,8 @@ TEST(MachineFillings, KeepOffWallsWhereTheyStandAtTheStart) {
         Spec spec = two_species();
         const Region box{Region::Box{{0.002, 0.002, 0.002}, {0.038, 0.038, 0.038}}};
         spec.fills = {filling(100, box, as)};
-        spec.phases.push_back({"later", 1, {}, 10});
+        spec.phases.push_back(
+            {.name = "later", .duration = 1, .expected = {}, .until = {}, .frames = 10, .ends_at_frames = false});
         machine::MachineWall plate{"plate", Plane{{0, 0, 0.02}, {0, 0, 1}}, {}, {}, {}};
         const auto lowest = [&] {
             double low = 1;

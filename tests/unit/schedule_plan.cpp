@@ -136,41 +136,31 @@ TEST(Plan, ACaseThatIsNotAskedHoldsThePrefixAndIsNotHandedOut) {
     EXPECT_EQ(plan.tally().decided, plan.tally().questions);
 }
 
-TEST(Plan, CountsWhatRunningCasesHaveDone) {
+TEST(Plan, SumsThePredictionsOfWhatItMayStillStart) {
     Plan plan = make_plan(2, {.attempts = 3}, {{1, 0, {}, true}, {}}, {100.0, 10.0});
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 110);
     const auto first = plan.next();
-    plan.advanced(first->attempt, 0.1);  // from a checkpoint of an earlier run
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 100);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 0);
-    plan.advanced(first->attempt, 0.4);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 70);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 30);
-    plan.advanced(first->attempt, std::numeric_limits<double>::quiet_NaN());
-    plan.advanced({"unknown", 1}, 0.5);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 70);
-    EXPECT_EQ(plan.ended(first->attempt, Outcome::crashed), Plan::Verdict::again);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 110);
-    const auto second = plan.next();
-    plan.advanced(first->attempt, 0.9);  // a late word of the attempt that crashed
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 110);
-    plan.advanced(second->attempt, 0.5);
-    EXPECT_EQ(plan.ended(second->attempt, Outcome::completed), Plan::Verdict::settled);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 10);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 80);
-}
-
-TEST(Plan, AFirstAttemptHasDoneInThisRunWhatItReportsFirst) {
-    Plan plan = make_plan(2, {}, {}, {100.0, 10.0});
-    const auto first = plan.next();
-    plan.advanced(first->attempt, 0.4);
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 40);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 10);
     EXPECT_DOUBLE_EQ(plan.predicted(first->attempt), 100);
     EXPECT_DOUBLE_EQ(plan.predicted({"unknown", 1}), 0);
+    plan.advanced(first->attempt, 0.4);
+    plan.advanced(first->attempt, std::numeric_limits<double>::quiet_NaN());
+    plan.advanced({"unknown", 1}, 0.5);
+    EXPECT_DOUBLE_EQ(plan.seconds_left(first->attempt), 60);
+    EXPECT_EQ(plan.ended(first->attempt, Outcome::crashed), Plan::Verdict::again);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 110);
+    const auto second = plan.next();
+    plan.advanced(first->attempt, 0.9);  // a late word of the attempt that crashed
+    EXPECT_DOUBLE_EQ(plan.seconds_left(second->attempt), 100);
+    EXPECT_EQ(plan.ended(second->attempt, Outcome::completed), Plan::Verdict::settled);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 10);
+    plan.leave_out_longer_than(5);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 0);
 }
 
 TEST(Plan, PredictsOnlyWhatThisRunMaySettle) {
     const Plan plan = make_plan(4, {.max_cases = 2}, {}, {1.0, 2.0, 30.0, 40.0});
-    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 3);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 3);
 }
 
 TEST(Plan, TriesACrashAgainWithGrowingNumbersUpToTheLimit) {

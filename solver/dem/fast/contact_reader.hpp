@@ -30,8 +30,8 @@ using PairContacts = std::vector<std::unique_ptr<const AnyContact>>;
 
 class ContactReader {
 public:
-    /// All views must outlive the reader; `motions` at the full step in the order of the records, empty where only
-    /// energy is wanted; `before` likewise at the half step before: the forces are those of the last step.
+    /// All views must outlive the reader. `motions` are at the full step in the order of the records, empty where only
+    /// energy is wanted; `before` are at the half step before. So the forces are the last step's.
     ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Velocities> motions, std::int32_t width, std::span<const ParkedContact> parked = {},
                   std::span<const Velocities> before = {});

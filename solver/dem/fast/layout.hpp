@@ -4,9 +4,9 @@
 // particle. A velocity is then the displacement per step, a force divided by a mass the change of velocity per
 // step, and every number a contact meets lies far from the ends of single precision.
 //
-// Positions are 32-bit integers per axis, counted from the middle of the domain. On a periodic axis 2^32 units
-// are exactly one period, so that the difference of two positions is the nearest image without a branch; on an
-// open axis the domain fills less than half the range. Differences are exact; only the law's arithmetic rounds.
+// Positions are 32-bit integers per axis, counted from the middle of the domain. On a periodic axis 2^32 units are
+// exactly one period, so the difference of two positions is the nearest image without a branch. On an open axis the
+// domain fills less than half the range. Differences are exact; only the law's arithmetic rounds.
 //
 // This header holds data only: it is included by files compiled for different instruction sets, and an inline
 // function compiled for one of them must never be what the linker keeps for all.
@@ -130,8 +130,8 @@ struct PieceList {
     std::uint32_t* piece;  ///< out
 };
 
-/// What the particles did to a wall in one step, where it is summed up: sums of their forces (to be reversed), of the
-/// torques of these about its pivot, and of forces times the velocity of the wall's material.
+/// Load of the particles on a wall in one step: the sum of their forces (to be reversed), of the torques about the
+/// pivot, and of force times velocity of the wall's material.
 struct WallSums {
     double force[3], torque[3], power;
 };

@@ -36,10 +36,10 @@ inline std::int32_t true_pairs(const Field& f) {
 }
 
 /// Field::fetch_ahead for an inner list: the median, over groups of neighbouring pairs, of how many places their
-/// farthest partner lies behind, and some more, since pairs are sifted before particles are integrated. Pairs across
-/// periodic faces, often nearly all places apart, are few, and copies of other subdomains' particles do not count. 0
-/// where particles have fewer than one pair each: integrating goes through memory in order, and what few pairs meet is
-/// not worth it.
+/// farthest partner lies behind, and some more, since pairs are sifted before particles are integrated. The few
+/// pairs across periodic faces, often nearly all places apart, and copies of other subdomains' particles do not
+/// count. 0 where particles have fewer than one pair each: integration visits memory in order, and few pairs are not
+/// worth it.
 inline std::int32_t distance_to_fetch(const Field& f) {
     constexpr std::int32_t group = 16, groups_at_most = 64;
     if (f.inner_count < f.end - f.begin) return 0;

@@ -9,8 +9,8 @@
 //   advanced  again, when something faster comes into that reach, or the net force on it, or the net torque over R,
 //             averaged since the last rebuild, exceeds half its weight
 //
-// Neglected are thus a net force below half the weight, creep slower than the rest speed, and the effect of an impact
-// on the fourth layer: the rebound from a pile at rest differs by 1 % (with the two layers fewer: by 17 %).
+// Neglected are a net force below half the weight, creep slower than the rest speed, and the effect of an impact on the
+// fourth layer. The rebound from a pile at rest differs by 1 % (without the two layers: by 17 %).
 #pragma once
 
 #include <cstddef>

@@ -40,7 +40,7 @@ struct Progress {
 };
 
 /// Sifts batches until a tile is full or the list at its end. `streams`: histories wait in the buffers until meet() has
-/// evaluated them and writes them past the caches; otherwise they go where they stay, and are evaluated there.
+/// evaluated them and writes them past the caches. Otherwise they are evaluated in place.
 template <class Kernel, bool streams>
 GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {
     const Constants& c = f.constants;

@@ -1,10 +1,10 @@
 // Checks of the mixed engine's speeds and energy, as of the clear one's (dem/limits.hpp).
 //
 // Energy minus the work of gravity and of moving walls must not grow: contacts store or dissipate. The sum is made in
-// double precision every energy_interval steps; a check costs about as much as seven steps, so many particles are
-// checked less often: their laws cannot spin all of them up at once. Work of gravity is that
-// over the displacements since the last check, which are known up to whole periods: checks come early enough that no
-// particle covers a quarter of a period between two of them where gravity acts along one. A vessel that is
+// double precision every energy_interval steps. A check costs about as much as seven steps, so many particles are
+// checked less often: their laws cannot spin all of them up at once. Work of gravity uses the displacements since the
+// last check, which are defined up to whole periods. Where gravity acts along a periodic axis, checks come before any
+// particle covers a quarter of a period. A vessel that is
 // shaken is not balanced, for the work of shaking would take the momentum of every step.
 #pragma once
 

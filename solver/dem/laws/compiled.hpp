@@ -75,7 +75,7 @@ struct CombinationFacts {
     bool spin;
 };
 
-/// Number of the first combination that fits all materials, those of the powder and of surfaces, and that the engine's
+/// Returns the number of the first combination that fits all materials of powder and surfaces and that the engine's
 /// `compiles` allows; general ones it must allow.
 template <class Compiles>
 [[nodiscard]] int choose_combination(std::span<const Material> materials, Compiles&& compiles);

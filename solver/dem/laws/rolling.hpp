@@ -10,10 +10,10 @@
 // angle, so k_r acts at the overlap of its time, and M is not turned with n (over a contact that sticks n turns by
 // less than the angles the spring allows). Twisting about n is not resisted.
 //
-// mu_r is the tangent of the steepest slope on which a sphere stays at rest. Two differences to LIGGGHTS: at a wall it
-// takes (R - d/2)/(R - d) times w_i for the relative rotation, here w_i as everywhere else unless
-// RollingLaw::epsd_liggghts is asked for; and its evaluation before the first step has the moment of one step later,
-// which is epsd_liggghts's, too. F_n is the normal
+// mu_r is the tangent of the steepest slope on which a sphere stays at rest. Two differences to LIGGGHTS. At a wall
+// it takes (R - d/2)/(R - d) times w_i for the relative rotation; here it is w_i, except under
+// RollingLaw::epsd_liggghts. Its evaluation before the first step has the moment of one step later, as under
+// epsd_liggghts. F_n is the normal
 // force that Coulomb's limit sees, too.
 #pragma once
 

@@ -1,9 +1,9 @@
 // A wall in its domain at a time: where it stands, how its points move, and where particles touch it.
 //
 // A particle is taken to the wall's nearest periodic image and, where the wall has turned, into its body frame, in
-// double precision; a wall that is only shifted is evaluated where it stands. Motions that leave the surface where it
-// is, as a drum turning about its axis or a belt running in its plane, move the material and nothing else: they take
-// no part in where the wall stands, and lists need not follow them.
+// double precision; a wall that is only shifted is evaluated where it stands. Some motions leave the surface where it
+// is: a drum that turns about its axis, a belt that runs in its plane. They move the material only. They do not change
+// the place of the wall, and lists need not follow them.
 #pragma once
 
 #include "solver/dem/walls/wall.hpp"

@@ -16,7 +16,7 @@
 
 namespace grainsweep::kit {
 
-/// What a property of a wall is given as where it is that of the powder.
+/// Value of a wall's property that means: the same as the powder's.
 inline constexpr double as_powder = -1;
 
 enum class SizeLaw { monodisperse, weibull_wide, weibull_narrow, lognormal, uniform, file };

@@ -1,4 +1,4 @@
-// What a case of powder spreading is asked. Default values after Wu (2020); study.hpp has the geometry.
+// Inputs of a case of powder spreading. Default values after Wu (2020); study.hpp has the geometry.
 #pragma once
 
 #include "solver/scenes/kit/powder.hpp"

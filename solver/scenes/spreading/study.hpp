@@ -85,8 +85,8 @@ inline constexpr double measured_from = 2.0 / 7.0;
 /// Samples of the sweep at equal distances, and the first one that counts.
 inline constexpr std::int64_t sweep_samples = 140;
 inline constexpr std::int64_t first_measured_sample = 40;
-/// A wanted standard error is checked after so many measured samples, and again after as many more of the second
-/// number: half of the measured travel at least, and few enough checks that chance does not end the sweep.
+/// Samples before the first check of a wanted standard error, and between checks: at least half of the measured travel,
+/// and so few checks that chance does not end the case early.
 inline constexpr std::int64_t least_measured_samples = 50;
 inline constexpr std::int64_t samples_between_looks = 10;
 

@@ -1,9 +1,9 @@
 // What spreads the powder: a blade, a roller or a surface from an STL file, and where it stands.
 //
-// A tool has three planes across the travel: its foremost point, which touches the layer's end at the start; its edge,
-// behind which powder has passed (of a blade the front face, of a roller the axis, of a surface the foremost of its
-// lowest points); and its rear, behind which the layer is free (of a blade the rear face, of a roller the axis, of a
-// surface its rearmost point). The lowest point of the tool is at height `gap` over the level it spreads on.
+// A tool has three planes across the travel. Its foremost point touches the layer's end at the start. Behind its edge
+// powder has passed: the front face of a blade, the axis of a roller, the foremost of the lowest points of a surface.
+// Behind its rear the layer is free: the rear face of a blade, the axis of a roller, the rearmost point of a surface.
+// The lowest point of the tool is at height `gap` over the level it spreads on.
 //
 //     roller: v(surface) = speed (1 + spin) at its lowest point, so angular velocity -spin speed/R about y
 #pragma once
@@ -26,7 +26,7 @@ struct Study;
 /// The tool as its wall, over a level, m.
 [[nodiscard]] dem::Wall tool_wall(const Study& study, double level);
 
-/// The surface in an STL file, fitted(). Kept for the next call that asks for the same. Throws std::invalid_argument
+/// The surface in an STL file, fitted(). Kept for the next call with the same arguments. Throws std::invalid_argument
 /// with one sentence where it is no tool: larger than half a metre, with stray triangles, or not fitting.
 [[nodiscard]] geometry::Mesh tool_surface(std::string_view stl, double scale, double facet_angle, double width);
 

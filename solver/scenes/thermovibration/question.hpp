@@ -1,4 +1,4 @@
-// What a thermovibration case asks, in the numbers of its inputs, and the pieces built from them.
+// Inputs of a thermovibration case as numbers, and the pieces built from them.
 //
 // Unit cube [-1/2, 1/2]^3, length L, time L^2/alpha, theta = (T - T0)/DT. Vibration along y; hot wall z = +1/2, cold
 // wall z = -1/2, the other four insulated; no slip everywhere. Start: fluid at rest, theta = z (conduction).
@@ -16,6 +16,7 @@
 
 namespace grainsweep::thermovibration {
 
+/// Inputs of a case as numbers.
 struct Question {
     double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
     std::int64_t particles;

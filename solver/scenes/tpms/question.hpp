@@ -1,5 +1,5 @@
-// What a TPMS discharge is asked: its parameters with their defaults (the study's table 1), and a case's
-// inputs as numbers ready to use.
+// Inputs of a TPMS discharge: its parameters with their defaults (the study's table 1), and a case's inputs as numbers
+// ready to use.
 #pragma once
 
 #include "solver/dem/engine.hpp"

@@ -90,7 +90,7 @@ function stateOf(state) {
   if (!state.run) return el("div", { class: "card" }, el("p", { class: "says" }, `${name}no run is under way.`), steering(state));
   const { run } = state, share = run.questions > 0 ? run.decided / run.questions : 1, rate = run.seconds > 0 ? run.settled / run.seconds : 0;
   const facts = [`${run.decided} of ${plural(run.questions, "case")}`, rate > 0 ? (rate >= 0.5 ? `${show(rate, 3)}/s` : `${show(60 * rate, 3)}/min`) : null,
-    run.decided < run.questions ? `${spanText(run.seconds_left)} left${partOf(state)}` : null, run.failed > 0 ? `${run.failed} failed` : null].filter(Boolean).join(" · ");
+    run.decided < run.questions ? `${run.at_most ? "at most " : ""}${spanText(run.seconds_left)} left${partOf(state)}` : null, run.failed > 0 ? `${run.failed} failed` : null].filter(Boolean).join(" · ");
   return el("div", { class: "card" },
     el("div", { class: "caption" }, el("h3", {}, `${name}${run.campaign}`), el("span", { class: "quiet" }, facts)),
     el("progress", { class: "whole", max: 1, value: share, "aria-label": "share of the cases that are decided" }),

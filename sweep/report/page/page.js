@@ -75,7 +75,9 @@ function momentsSection(campaign, response, other) {
   el("div", { class: "grid" }, statistics.map((statistic) => moment(campaign, response, other && other.response.history, statistic))));
 }
 
+// A calibration gathers its cases where its targets are met: means over bins compare unlike settings.
 function effectsSection(model, response, other) {
+  if (model.campaign.calibration) return null;
   const others = model.factors.map((factor) => effectOf(other, factor));
   const range = effectRange(response.effects.concat(others.filter(Boolean)));
   return section("effects", "Main effects", "Mean response in 16 bins of equal count, or fewer for few cases. Each level is a bin. All factors share one scale. " +

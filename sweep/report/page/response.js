@@ -109,6 +109,7 @@ function influenceFigure(response) {
   const { influence } = response, { by, shares, shows } = influence, two = shows.length > 1, shown = influenceOf(response);
   const scaled = (x) => (typeof x === "number" ? x * shown.factor : x);
   const factors = influence.factors.map((f) => Object.fromEntries(Object.entries(f).map(([key, x]) => [key, scaled(x)]))).sort((a, b) => (b[by] || 0) - (a[by] || 0));
+  if (factors.every((f) => typeof f[by] !== "number")) return null;
   const most = shares ? 1 : Math.max(...factors.map((f) => (f[by] || 0) + (f[by + "_error"] || 0)));
   return figure(shares ? "Share of the variance" : "Elementary effects", "", () => {
     const bar = (label, field, tone) => ({ label, data: factors.map((f) => (f[field] === undefined ? null : f[field])), errors: factors.map((f) => f[field + "_error"]),
