@@ -153,7 +153,8 @@ PairPrediction best_prediction(const Sample& sample) {
 }
 
 /// Means of the sequences over some rows.
-std::vector<double> by_sequence(const Sample& sample, std::span<const Eigen::Index> rows, const Eigen::VectorXd& of) {
+std::vector<double> corrected_by_sequence(const Sample& sample, std::span<const Eigen::Index> rows,
+                                          const Eigen::VectorXd& of) {
     std::vector<double> sums(sample.sequences, 0), counts(sample.sequences, 0);
     for (std::size_t k = 0; k < rows.size(); ++k) {
         sums[sample.of(rows[k])] += of(static_cast<Eigen::Index>(k));
@@ -202,7 +203,7 @@ CorrectedMean corrected_mean(const PairedValues& values) {
     const auto prediction = paired ? best_prediction(sample) : PairPrediction{PairPredictor::none, sample.cheap, 0};
     std::vector<Eigen::Index> all(static_cast<std::size_t>(sample.size()));
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Eigen::Index>(i);
-    const auto s = by_sequence(sample, all, prediction.g);
+    const auto s = corrected_by_sequence(sample, all, prediction.g);
     found.by = prediction.by;
     found.value = prediction.g.mean();
     found.statistics = over_sequences(s);
@@ -212,7 +213,7 @@ CorrectedMean corrected_mean(const PairedValues& values) {
     if (!paired) return found;
 
     const auto residuals = residuals_of(sample, prediction);
-    const auto d = by_sequence(sample, sample.pairs, residuals);
+    const auto d = corrected_by_sequence(sample, sample.pairs, residuals);
     std::vector<double> t;
     for (std::size_t k = 0; k < s.size(); ++k) t.push_back(s[k] + d[k]);
     const bool equal = sample.expensive(sample.pairs) == sample.cheap(sample.pairs);

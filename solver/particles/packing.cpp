@@ -21,7 +21,7 @@ using Real = float __attribute__((vector_size(16)));
 constexpr std::uint64_t first_points = 0x7061636B;  // the random stream that places them
 constexpr double turn = 4294967296.0;               // grid steps per edge
 
-float dot(const Real& a, const Real& b) {
+float dot_of(const Real& a, const Real& b) {
     const Real product = a * b;
     return product[0] + product[1] + product[2];
 }
@@ -128,7 +128,7 @@ void Relaxation::list_pairs() {
     const auto add_partners = [&](std::uint32_t i, std::uint32_t first, std::uint32_t end) {
         for (std::uint32_t j = first; j < end; ++j) {
             const Real d = between(position_[i], position_[j]);
-            if (dot(d, d) < range * range) partner_.push_back(j);
+            if (dot_of(d, d) < range * range) partner_.push_back(j);
         }
     };
     for (std::int32_t z = 0; z < cells_; ++z)
@@ -155,7 +155,7 @@ float Relaxation::apply_forces() {
         for (std::uint32_t k = pair_first_[i]; k < pair_first_[i + 1]; ++k) {
             const std::uint32_t j = partner_[k];
             const Real d = between(here, position_[j]);
-            const float r = std::sqrt(std::max(dot(d, d), 1e-12F));
+            const float r = std::sqrt(std::max(dot_of(d, d), 1e-12F));
             const float overlap = std::max(1 - r, 0.0F);
             const Real push = d * (overlap / r);
             total += push;
@@ -171,9 +171,9 @@ float Relaxation::apply_forces() {
 void Relaxation::choose_step() {
     double power = 0, speed_square = 0, force_square = 0;
     for (std::size_t i = 0; i < position_.size(); ++i) {
-        power += static_cast<double>(dot(force_[i], velocity_[i]));
-        speed_square += static_cast<double>(dot(velocity_[i], velocity_[i]));
-        force_square += static_cast<double>(dot(force_[i], force_[i]));
+        power += static_cast<double>(dot_of(force_[i], velocity_[i]));
+        speed_square += static_cast<double>(dot_of(velocity_[i], velocity_[i]));
+        force_square += static_cast<double>(dot_of(force_[i], force_[i]));
     }
     if (power > 0) {
         keep_ = 1 - mix_;
@@ -199,7 +199,7 @@ void Relaxation::move_downhill() {
     for (std::size_t i = 0; i < position_.size(); ++i) {
         Real v = velocity_[i] * keep_ + force_[i] * push_;
         Real move = v * step_;
-        float square = dot(move, move);
+        float square = dot_of(move, move);
         if (square > fire::longest_move * fire::longest_move) {
             const float shorter = fire::longest_move / std::sqrt(square);
             v *= shorter;
@@ -210,7 +210,7 @@ void Relaxation::move_downhill() {
         position_[i] += std::bit_cast<Fixed>(__builtin_convertvector(move * to_grid, Offset));
         const Real from_listed = between(position_[i], listed_position_[i]);
         longest_square = std::max(longest_square, square);
-        farthest_square = std::max(farthest_square, dot(from_listed, from_listed));
+        farthest_square = std::max(farthest_square, dot_of(from_listed, from_listed));
     }
     longest_move_ = std::sqrt(longest_square);
     farthest_ = std::sqrt(farthest_square);

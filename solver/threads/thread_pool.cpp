@@ -3,6 +3,7 @@
 #include "solver/own_cores.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <system_error>
 
@@ -78,7 +79,7 @@ void ThreadPool::work_on(int part, int thread, unsigned round) noexcept {
     if (timed_ && part == thread) {
         Times& times = times_[static_cast<std::size_t>(part)];
         ++times.rounds;
-        times.logarithms += std::log(std::max(std::chrono::duration<double>(Clock::now() - begun_at_).count(), 1e-9));
+        times.logarithms += std::log(std::max(clock_seconds() - begun_at_, 1e-9));
     }
     if (ended_.fetch_add(1) + 1 == size_ && thread != 0) wake();
 }
@@ -91,6 +92,10 @@ std::vector<double> ThreadPool::seconds(std::int64_t rounds) const {
         seconds.push_back(std::exp(times.logarithms / static_cast<double>(times.rounds)));
     }
     return seconds;
+}
+
+double ThreadPool::clock_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void ThreadPool::forget_times() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -33,7 +32,7 @@ public:
     /// As run(), for parts that should end at the same time: see seconds().
     template <class Work>
     void run_timed(const Work& work) noexcept {
-        begun_at_ = Clock::now();
+        begun_at_ = clock_seconds();
         ++timed_rounds_;
         begin_and_end(work, true);
     }
@@ -44,6 +43,8 @@ public:
     /// Rounds of run_timed() since forget_times().
     [[nodiscard]] std::int64_t timed_rounds() const { return timed_rounds_; }
     void forget_times();
+    /// Of a clock that only goes forward. Times decide which thread computes what, never what is computed.
+    [[nodiscard]] static double clock_seconds();
 
 private:
     /// The round in which a part was last begun, on a cache line of its own.
@@ -55,7 +56,6 @@ private:
         std::int64_t rounds = 0;
         double logarithms = 0;  ///< of seconds, their sum
     };
-    using Clock = std::chrono::steady_clock;
 
     template <class Work>
     void begin_and_end(const Work& work, bool timed) noexcept {
@@ -82,7 +82,7 @@ private:
     void (*work_)(const void*, int) = nullptr;
     const void* of_ = nullptr;
     bool timed_ = false;
-    Clock::time_point begun_at_;
+    double begun_at_ = 0;
     std::int64_t timed_rounds_ = 0;
     std::atomic<bool> ends_ = false;
     std::unique_ptr<Part[]> parts_;

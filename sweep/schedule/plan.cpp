@@ -92,6 +92,18 @@ std::size_t Plan::waiting() const {
     return rules_.max_cases ? std::min(queued(), static_cast<std::size_t>(*rules_.max_cases) - begun()) : queued();
 }
 
+std::optional<std::vector<double>> Plan::last_predicted(std::size_t most) const {
+    const std::size_t count = waiting();
+    if (count > most) return std::nullopt;
+    std::vector<double> seconds;
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto question =
+            k < returned_.size() ? returned_[returned_.size() - 1 - k] : queue_[head_ + k - returned_.size()];
+        seconds.push_back(entries_[question].predicted);
+    }
+    return seconds;
+}
+
 std::optional<Plan::Start> Plan::next() {
     if (!next_predicted()) return std::nullopt;
     const std::uint32_t question = front();

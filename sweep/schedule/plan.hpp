@@ -64,6 +64,9 @@ public:
     /// How many next() could return one after the other now.
     [[nodiscard]] std::size_t waiting() const;
 
+    /// Predicted seconds of those, in their order, where they are not more than `most`.
+    [[nodiscard]] std::optional<std::vector<double>> last_predicted(std::size_t most) const;
+
     /// Predicted seconds of a running attempt; 0: it is not running.
     [[nodiscard]] double predicted(const campaign::Attempt& attempt) const;
     [[nodiscard]] std::size_t workers() const { return rules_.workers; }

@@ -18,6 +18,7 @@ using campaign::Overloaded;
 using campaign::unanswered;
 using namespace std::chrono_literals;
 
+constexpr std::size_t last_cases = 4;      // per worker: near the end
 constexpr double estimate_interval = 0.1;  // s; cases may end ten thousand times a second
 
 }  // namespace
@@ -228,7 +229,8 @@ void Scheduler::show() {
     if (progress_.seconds - estimated_ > estimate_interval) {
         estimated_ = progress_.seconds;
         const double waiting = plan_.waiting() > 0 ? std::max(0.0, progress_.tally.predicted_waiting) : 0;
-        const auto seconds = time_left_.estimate(waiting, plan_.workers(), progress_.seconds);
+        const auto seconds = time_left_.estimate(waiting, plan_.workers(), progress_.seconds,
+                                                 plan_.last_predicted(last_cases * plan_.workers()));
         progress_.computed = seconds.done;
         const auto share = share_to_go();
         progress_.to_compute = seconds.to_go * share.value_or(1);

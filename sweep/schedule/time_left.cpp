@@ -67,35 +67,39 @@ double TimeLeft::left_of(const Running& one, double pace, double now) const {
     return share * own + (1 - share) * by_pace;
 }
 
-TimeLeft::Seconds TimeLeft::estimate(double waiting, std::size_t workers, double now) const {
+TimeLeft::Seconds TimeLeft::estimate(double waiting, std::size_t workers, double now,
+                                     const std::optional<std::vector<double>>& last) const {
     const double ratio = pace(now);
     Seconds seconds{taken_, ratio * waiting};
+    std::vector<double> ends(workers, 0);  // when each worker has done what it runs, from now on
+    std::vector<double> behind;            // what waits behind a case that runs
+    std::size_t busy = 0;
+    const auto runs = [&](const Running& one, double begun) {
+        seconds.done += now - begun;
+        const double left = left_of(one, ratio, now);
+        seconds.to_go += left;
+        ends[busy++ % workers] += left;
+    };
     // Of those that report nothing the oldest run, one per worker; the others wait behind them.
     std::vector<const Running*> silent;
-    std::size_t busy = 0;
-    double longest = 0;
-    for (const auto& [id, one] : running_) {
-        if (!one.last) {
+    for (const auto& [id, one] : running_)
+        if (one.last)
+            runs(one, one.first->at);
+        else
             silent.push_back(&one);
-            continue;
-        }
-        ++busy;
-        seconds.done += now - one.first->at;
-        const double left = left_of(one, ratio, now);
-        longest = std::max(longest, left);
-        seconds.to_go += left;
-    }
     std::ranges::stable_sort(silent, {}, [](const Running* one) { return one->given; });
     for (const Running* one : silent) {
-        const bool runs = busy < workers;
-        if (runs) {
-            ++busy;
-            seconds.done += now - one->given;
+        if (busy < workers) {
+            runs(*one, one->given);
+            continue;
         }
-        seconds.to_go += runs ? left_of(*one, ratio, now) : ratio * one->predicted;
+        behind.push_back(ratio * one->predicted);
+        seconds.to_go += behind.back();
     }
-    // No worker shortens the longest case: the others have nothing left to do meanwhile.
-    if (now > 0) seconds.to_go = std::max(seconds.to_go, longest * seconds.done / now);
+    if (!last || !(now > 0)) return seconds;
+    for (const double predicted : *last) behind.push_back(ratio * predicted);
+    for (const double length : behind) *std::ranges::min_element(ends) += length;
+    seconds.to_go = std::max(seconds.to_go, std::ranges::max(ends) * seconds.done / now);
     return seconds;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 namespace grainsweep::schedule {
 
@@ -29,8 +30,10 @@ public:
         double done = 0;   ///< all workers together, in this run
         double to_go = 0;  ///< all workers together
     };
-    /// `waiting`: predicted seconds of the cases that are not handed out yet.
-    [[nodiscard]] Seconds estimate(double waiting, std::size_t workers, double now) const;
+    /// `waiting`: predicted seconds of all cases that are not handed out yet. `last`: of each of them, in their order,
+    /// near the end of the run, where some workers have nothing left to do while others still compute.
+    [[nodiscard]] Seconds estimate(double waiting, std::size_t workers, double now,
+                                   const std::optional<std::vector<double>>& last = {}) const;
 
 private:
     struct Report {

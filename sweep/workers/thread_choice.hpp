@@ -8,7 +8,8 @@ namespace grainsweep::workers {
 
 /// Chooses between all threads, half of them and one by their speed in trial slices. Fewer threads are faster where
 /// other programs keep the cores busy, where the cores are far from one another, or where a case has few particles. The
-/// trials are repeated every 64 slices. No bit of a result depends on the choice.
+/// trials are repeated every 64 slices, and where the case may have twice or half as many threads as at the last ones.
+/// No bit of a result depends on the choice.
 class ThreadChoice {
 public:
     /// Threads of the next slice.
@@ -17,14 +18,14 @@ public:
     void note(double work, double seconds);
 
 private:
-    static constexpr int trials = 2, period = 64;  ///< slices
-    static constexpr std::size_t candidates = 3;
+    enum Candidate : std::size_t { all, half, one, candidates };
+    /// What is tried in the first slices.
+    static constexpr std::array<Candidate, 4> trials = {all, all, half, one};
+    static constexpr std::size_t period = 64;
 
-    [[nodiscard]] int threads_of(std::size_t candidate) const;
-
-    int allowed_ = 1;
-    int timed_ = 0;           ///< slices since the trials began
-    std::size_t chosen_ = 0;  ///< candidate
+    int allowed_ = 1, allowed_in_trials_ = 1;
+    std::size_t slices_ = 0;  ///< since the trials began
+    Candidate chosen_ = all;
     std::array<double, candidates> rate_{};
 };
 

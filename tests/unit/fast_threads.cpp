@@ -102,6 +102,31 @@ dem::Setup pile() {
     return s;
 }
 
+/// Two layers, wide enough for several threads to share the walls below: a turning plane, and one at rest in which the
+/// same spheres lie less deep.
+dem::Setup on_two_floors(double spread) {
+    constexpr double d = 1e-3;
+    dem::Setup s;
+    s.material = tests::steel_like();
+    s.time_step = 4e-6;
+    s.domain = {{-2 * d, -2 * d, -2 * d}, {32 * d, 32 * d, 10 * d}, {}};
+    const stats::Stream draws(3, 1);
+    std::uint64_t k = 0;
+    for (int layer = 0; layer < 2; ++layer)
+        for (int i = 0; i < 26; ++i)
+            for (int j = 0; j < 26; ++j) {
+                const double radius = 0.5 * d * (1 - spread * draws.uniform(k++));
+                s.spheres.push_back({{1.1 * i * d, 1.1 * j * d, (0.51 + 1.01 * layer + 0.1 * draws.uniform(k++)) * d},
+                                     {0.3 * draws.uniform(k++), 0, -0.1},
+                                     {},
+                                     radius,
+                                     true});
+            }
+    s.walls = {{dem::Plane{{}, {0, 0, 1}}, {dem::Rotation{.axis = {0, 0, 1}, .speed = 20}}},
+               dem::Plane{{0, 0, -1e-6}, {0, 0, 1}}};
+    return s;
+}
+
 /// Powder above a floor of triangles, in a drum.
 dem::Setup among_triangles() {
     dem::Setup s = tests::boxed_lattice(5, 0.5, 0, 8);
@@ -158,6 +183,7 @@ std::vector<Case> cases() {
     all.push_back({"triangles", among_triangles(), 400});
     for (const double spread : {0.0, 0.4}) {
         const std::string sizes = spread > 0 ? ", many sizes" : "";
+        all.push_back({"two floors" + sizes, on_two_floors(spread), 300});
         all.push_back({"a drum of triangles" + sizes, in_a_drum_of_triangles(spread), 500});
         all.push_back({"flying apart" + sizes, flying_apart(spread), 400});
     }

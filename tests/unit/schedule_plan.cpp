@@ -161,6 +161,8 @@ TEST(Plan, SumsThePredictionsOfWhatItMayStillStart) {
 TEST(Plan, PredictsOnlyWhatThisRunMaySettle) {
     const Plan plan = make_plan(4, {.max_cases = 2}, {}, {1.0, 2.0, 30.0, 40.0});
     EXPECT_DOUBLE_EQ(plan.tally().predicted_waiting, 3);
+    EXPECT_EQ(plan.last_predicted(2), (std::vector<double>{2, 1}));  // long ones first, near the end
+    EXPECT_FALSE(plan.last_predicted(1));
 }
 
 TEST(Plan, TriesACrashAgainWithGrowingNumbersUpToTheLimit) {

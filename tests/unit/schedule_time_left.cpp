@@ -68,6 +68,19 @@ TEST(TimeLeft, OfSilentCasesTheOldestRunOnEveryWorker) {
     EXPECT_DOUBLE_EQ(seconds.to_go, 4 + 4 + 10);
 }
 
+TEST(TimeLeft, NearTheEndWaitsForTheWorkerThatIsLast) {
+    TimeLeft left;
+    left.begun({"z", 1}, 4, 0);
+    left.ended({"z", 1}, 4, 4);
+    left.begun({"a", 1}, 4, 4);
+    left.begun({"b", 1}, 4, 4);
+    // Two seconds after, both have 2 s left, and a case of 4 s follows on one of two workers: 6 s, not 4.
+    EXPECT_DOUBLE_EQ(left.estimate(4, 2, 6).to_go, 2 + 2 + 4);
+    const auto seconds = left.estimate(4, 2, 6, std::vector<double>{4});
+    EXPECT_DOUBLE_EQ(seconds.done, 8);
+    EXPECT_DOUBLE_EQ(seconds.to_go / seconds.done * 6, 6);
+}
+
 TEST(TimeLeft, KnowsAttemptsApartAndForgetsWhatIsTakenBack) {
     TimeLeft left;
     left.begun({"a", 1}, 10, 0);

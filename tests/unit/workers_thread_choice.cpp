@@ -43,13 +43,29 @@ TEST(ThreadChoice, FollowsCoresThatBecomeFreeAgain) {
     EXPECT_EQ(choice.next(4), 4);
 }
 
-TEST(ThreadChoice, BeginsAnewWithAnotherNumberOfThreads) {
+TEST(ThreadChoice, TriesAgainWithTwiceAsManyThreads) {
     workers::ThreadChoice choice;
     EXPECT_EQ(choice.next(1), 1);
     choice.note(1, 1);
     for (int k = 0; k < 30; ++k) choice.note(choice.next(2) > 1 ? 0.3 : 1.0, 1);
     EXPECT_EQ(choice.next(2), 1);
+    EXPECT_EQ(choice.next(3), 1);
     EXPECT_EQ(choice.next(16), 16);
+}
+
+/// The last case of a campaign, whose threads grow as other cases end: trials cost it little.
+TEST(ThreadChoice, ACaseThatGetsMoreAndMoreThreadsUsesThem) {
+    const auto near = [](int threads) { return threads / (1 + 0.05 * (threads - 1)); };
+    workers::ThreadChoice choice;
+    double done = 0, best = 0;
+    for (int k = 0; k < 60; ++k) {
+        const int allowed = k < 10 ? 1 : k < 20 ? 2 : k < 30 ? 5 : 16;
+        const double work = near(choice.next(allowed));
+        choice.note(work, 1);
+        done += work;
+        best += near(allowed);
+    }
+    EXPECT_GT(done, 0.93 * best);
 }
 
 }  // namespace grainsweep::tests::workers_thread_choice_test

@@ -11,8 +11,8 @@ namespace grainsweep::dem::fast {
 namespace {
 
 template <class K, bool several = false>
-constexpr Kernels compiled{width,       sweep<K, several>,  advance<K>,         walls<K>,
-                           find_pieces, search<K::unequal>, refresh<K::unequal>};
+constexpr Kernels compiled{width,         sweep<K, several>, advance<K>,         walls<K>,
+                           mark_touching, find_pieces,       search<K::unequal>, refresh<K::unequal>};
 template <class K>
 GRAINSWEEP_LANES const Kernels& holding(const Needs& n) {
     return n.several ? compiled<K, true> : compiled<K>;

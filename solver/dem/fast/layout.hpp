@@ -24,6 +24,8 @@ namespace grainsweep::dem::fast {
 constexpr std::int32_t tile = 256;
 /// Contacts with a wall worked on at a time. Its sums are formed row by row: another number rounds them otherwise.
 constexpr std::int32_t wall_tile = 128;
+/// Vectors of listed particles that fill such a tile, at most.
+constexpr std::int32_t listed_vectors = 64;
 /// Spare entries of every column: lists are filled up, and read ahead, by as much as a tile and twice the widest
 /// vector.
 constexpr std::int32_t spare = 2 * tile + 64;
@@ -216,6 +218,7 @@ struct Field {
     std::int32_t outer_capacity;
 
     // Walls.
+    std::int32_t wall_filler;  ///< index of a record that fills vectors of wall contacts up
     const PlacedWall* walls;
     WallSums* wall_sums;
     WallSegment* segments;
@@ -240,8 +243,10 @@ struct Kernels {
     void (*sweep)(const Field&, bool advance, Tally&);
     /// Integrates all particles with the forces that are there, and clears these.
     void (*advance)(const Field&, Tally&);
-    /// Forces of the walls on listed particles, and what they sum up to.
-    void (*walls)(const Field&, Tally&);
+    /// Forces of a wall on the listed particles from number `begin` to `end`, in tiles; what they sum up to is added.
+    void (*walls)(const Field&, std::int32_t wall, WallSegment, Tally&, WallSums&);
+    /// Which lanes of these vectors of a wall's list touch it; walls touched in one place only.
+    void (*touching)(const Field&, std::int32_t wall, WallSegment, std::uint16_t* lanes);
     /// Pieces of a wall that particles touch, into the columns of touches from `at` on, in the order of the list.
     /// Returns their number.
     std::int32_t (*pieces)(const Field&, std::int32_t wall, const PieceList&, std::int32_t at);

@@ -154,7 +154,7 @@ void MixedEngine::stand_walls() {
 /// Forces of the walls. `moves`: as part of a step.
 void MixedEngine::press_walls(bool moves) {
     touches_.find(field_, columns_, walls_, *kernels_, space_.scale, drift_.outer, subdomains_.parts());
-    kernels_->walls(field_, tally_);
+    shared_walls_.press(field_, *kernels_, walls_, subdomains_, tally_);
     watch_.add_wall_work(walls_.book(field_.wall_sums, moves));
     if (!moves) return;
     walls_.kick(wall_time(), 1);

@@ -27,6 +27,7 @@
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/resting.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/fast/shared_walls.hpp"
 #include "solver/dem/fast/subdomains.hpp"
 #include "solver/dem/fast/wall_touches.hpp"
 #include "solver/dem/fast/walls.hpp"
@@ -149,6 +150,7 @@ private:
     Columns columns_;
     Resting resting_;
     Subdomains subdomains_;
+    SharedWalls shared_walls_;
     std::optional<Refresh> refresh_;  ///< of the subdomains' inner lists, by the sweep that follows
     Threads threads_;
     Field field_{};

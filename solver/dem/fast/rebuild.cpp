@@ -208,6 +208,7 @@ void place_fillers(Field& f) {
     }
     f.begin = 0;
     f.end = f.filler = f.count;
+    f.wall_filler = f.count + 2;
 }
 
 void refresh(Field& f, PairColumns& c, const Kernels& kernels, float skin, bool marked) {

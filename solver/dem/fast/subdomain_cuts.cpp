@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <numeric>
 #include <span>
 
@@ -64,7 +63,7 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
         shares_.move(pool_->seconds(sweeps_that_tell));
         pool_->forget_times();
     }
-    const auto start = std::chrono::steady_clock::now();
+    const double start = ThreadPool::clock_seconds();
     const std::int32_t width = kernels_->width;
     const std::int32_t vectors = whole.outer_count / width + 1;
     if (listed) mark_touching(whole, columns);
@@ -96,7 +95,7 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     });
     if (listed) pool_->run([this](int part) { find_what_to_send(part); });
     joined_ = true;
-    cut_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    cut_seconds_ = ThreadPool::clock_seconds() - start;
     if (first) cut_seconds_ *= share_without_memory;
 }
 

@@ -114,6 +114,8 @@ public:
     /// For what is no sweep, while the lists of the subdomains are not needed: after they were joined, until they are
     /// cut anew.
     [[nodiscard]] Parts parts() const;
+    /// A record that a part may add forces to in vain.
+    [[nodiscard]] std::int32_t filler(int part) const { return subdomains_[static_cast<std::size_t>(part)]->filler; }
     /// Writes inner list, touching pairs and histories of all subdomains to the whole lists, where they are not yet.
     void join(const Field& whole, const Columns& columns) const;
 

@@ -45,7 +45,7 @@ GRAINSWEEP_LANES void add_to(double* total, V3 a) {
 template <class Kernel>
 GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
     const F zero = broadcast(0.0f);
-    store(t.particle + packed, broadcast((f.count + 2) * places_per_index));
+    store(t.particle + packed, broadcast(f.wall_filler * places_per_index));
     store(t.overlap + packed, broadcast(-1.0f));
     for (auto* rows : {&t.normal, &t.velocity, &t.lever})
         for (auto& row : *rows) store(row + packed, zero);
@@ -178,41 +178,40 @@ GRAINSWEEP_LANES void return_touches(const Field& f, std::int32_t from, int coun
 }
 
 template <class Kernel>
-void walls(const Field& f, Tally& tally) {
+void walls(const Field& f, std::int32_t w, WallSegment slots, Tally& tally, WallSums& sums) {
+    if (slots.begin == slots.end) return;
     const auto denormals = flush_denormals();
+    const PlacedWall& wall = f.walls[w];
+    const typename Kernel::Laws laws(wall.laws);
     WallTile t;
     WallProgress p;
-    for (std::int32_t w = 0; w < f.wall_count; ++w) {
-        const PlacedWall& wall = f.walls[w];
-        const FindPlaces find = PlaceFinders<geometry::Shape>::of[wall.shape];
-        const auto [begin, end] = find != nullptr ? f.segments[w] : f.touched[w];
-        f.wall_sums[w] = {};
-        if (begin == end) continue;
-        const typename Kernel::Laws laws(wall.laws);
-        WallSums sums{};
-        const auto press_packed = [&](int packed) {
-            if (packed == 0) return;
-            if (f.kinds > 1) return press_by_kinds<Kernel>(f, wall, t, packed, tally.wall_overlap, sums);
-            fill_up<Kernel>(f, t, packed);
-            const auto press_all = wall.summed != 0 ? press<Kernel, true> : press<Kernel, false>;
-            press_all(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
-        };
-        if (find != nullptr) {
-            for (p.slot = begin; p.slot < end;) {
-                find(f, wall, end, t, p);
-                press_packed(p.packed);
-                if (f.history_step != 0) return_memories<Kernel>(f, t, p);
-            }
-        } else {
-            for (std::int32_t from = begin; from < end; from += wall_tile) {
-                const int count = from + wall_tile < end ? wall_tile : end - from;
-                take_touches<Kernel>(f, from, count, t);
-                press_packed(count);
-                if (f.history_step != 0) return_touches<Kernel>(f, from, count, t);
-            }
+    const auto press_packed = [&](int packed) {
+        if (packed == 0) return;
+        if (f.kinds > 1) return press_by_kinds<Kernel>(f, wall, t, packed, tally.wall_overlap, sums);
+        fill_up<Kernel>(f, t, packed);
+        const auto press_all = wall.summed != 0 ? press<Kernel, true> : press<Kernel, false>;
+        press_all(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
+    };
+    if (const FindPlaces find = PlaceFinders<geometry::Shape>::of[wall.shape]; find != nullptr) {
+        for (p.slot = slots.begin; p.slot < slots.end;) {
+            find(f, wall, slots.end, t, p);
+            press_packed(p.packed);
+            if (f.history_step != 0) return_memories<Kernel>(f, t, p);
         }
-        f.wall_sums[w] = sums;
+    } else {
+        for (std::int32_t from = slots.begin; from < slots.end; from += wall_tile) {
+            const int count = from + wall_tile < slots.end ? wall_tile : slots.end - from;
+            take_touches<Kernel>(f, from, count, t);
+            press_packed(count);
+            if (f.history_step != 0) return_touches<Kernel>(f, from, count, t);
+        }
     }
+    restore_denormals(denormals);
+}
+
+inline void mark_touching(const Field& f, std::int32_t wall, WallSegment slots, std::uint16_t* lanes) {
+    const auto denormals = flush_denormals();
+    PlaceFinders<geometry::Shape>::marking[f.walls[wall].shape](f, f.walls[wall], slots, lanes);
     restore_denormals(denormals);
 }
 

@@ -49,9 +49,6 @@ struct alignas(64) WallTile {
     float memory[histories_at_most][wall_tile + 2 * width];
 };
 
-/// Vectors of listed particles that fill a tile, at most.
-constexpr int listed_vectors = 64;
-
 /// How far a wall's list has come.
 struct WallProgress {
     std::int32_t slot;                    ///< next to be looked at
@@ -103,6 +100,21 @@ GRAINSWEEP_LANES geometry::Near<D> nearest(const PlacedWall& w, D3 r) {
     return {found.distance, normal.x, normal.y, normal.z};
 }
 
+/// Particles of a vector of the list against a wall: where they are, what of it is closest, how deep they are in it.
+template <class S>
+struct Approach {
+    D3 position;
+    geometry::Near<D> surface;
+    F overlap;
+
+    GRAINSWEEP_LANES Approach(const Field& f, const PlacedWall& w, const Place* particle)
+        : position(positions_at(f, w, particle)),
+          surface(nearest<S>(w, position)),
+          overlap(single(exact(load_radii(f.records, particle)) - surface.distance)) {}
+    /// Lanes that touch, or may still hold.
+    GRAINSWEEP_LANES Chosen near(const Field& f) const { return Chosen(broadcast(-f.constants.beyond_wall) < overlap); }
+};
+
 GRAINSWEEP_LANES void store(float (&rows)[3][wall_tile + 2 * width], int at, V3 a, Chosen lanes) {
     store(rows[0] + at, compress(a.x, lanes));
     store(rows[1] + at, compress(a.y, lanes));
@@ -120,18 +132,17 @@ GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int3
     const int histories = f.histories;
     for (int b = 0; b < listed_vectors && p.slot < end && p.packed < wall_tile; ++b, p.slot += width) {
         const Place* particle = f.wall_particle + p.slot;
-        const D3 r = positions_at(f, w, particle);
-        const geometry::Near<D> surface = nearest<S>(w, r);
-        const F overlap = single(exact(load_radii(f.records, particle)) - surface.distance);
-        const Chosen lanes(broadcast(-f.constants.beyond_wall) < overlap);
+        const Approach<S> to_wall(f, w, particle);
+        const Chosen lanes = to_wall.near(f);
         p.touch[b] = static_cast<std::uint16_t>(lanes.bits);
         if (lanes.bits == 0) continue;
+        const geometry::Near<D>& surface = to_wall.surface;
         const D3 normal{surface.x, surface.y, surface.z};
         store(t.particle + p.packed, compress(load(particle), lanes));
-        store(t.overlap + p.packed, compress(overlap, lanes));
+        store(t.overlap + p.packed, compress(to_wall.overlap, lanes));
         store(t.normal, p.packed, single(normal), lanes);
         if (summed) {
-            const D3 lever = fnma(surface.distance, normal, r) - origin;
+            const D3 lever = fnma(surface.distance, normal, to_wall.position) - origin;
             store(t.lever, p.packed, single(lever), lanes);
             store(t.velocity, p.packed, turns ? single(add_cross(velocity, spin, lever)) : carried, lanes);
         }
@@ -141,11 +152,25 @@ GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int3
     }
 }
 
+/// See Kernels::touching.
+template <class S>
+GRAINSWEEP_PHASE void mark_places(const Field& f, const PlacedWall& w, WallSegment slots, std::uint16_t* lanes) {
+    for (std::int32_t slot = slots.begin; slot < slots.end; slot += width)
+        *lanes++ = static_cast<std::uint16_t>(Approach<S>(f, w, f.wall_particle + slot).near(f).bits);
+}
+
 using FindPlaces = void (*)(const Field&, const PlacedWall&, std::int32_t end, WallTile&, WallProgress&);
 
 template <class S>
 constexpr FindPlaces find_places_of() {
     if constexpr (geometry::Vectorised<S>) return find_places<S>;
+    return nullptr;
+}
+using MarkPlaces = void (*)(const Field&, const PlacedWall&, WallSegment, std::uint16_t* lanes);
+
+template <class S>
+constexpr MarkPlaces mark_places_of() {
+    if constexpr (geometry::Vectorised<S>) return mark_places<S>;
     return nullptr;
 }
 
@@ -155,6 +180,7 @@ struct PlaceFinders;
 template <class... Shapes>
 struct PlaceFinders<std::variant<Shapes...>> {
     static constexpr FindPlaces of[] = {find_places_of<Shapes>()...};
+    static constexpr MarkPlaces marking[] = {mark_places_of<Shapes>()...};
 };
 
 }  // namespace
