@@ -118,8 +118,7 @@ Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, co
 }
 
 /// Rank correlations, and trends where the factor has an influence that can be told from none.
-void add_trends(Influence& influence, const Responses& responses, const ResponseColumn& response) {
-    const auto values = responses.judged(response);
+void add_trends(Influence& influence, const Responses& responses, std::span<const double> values) {
     const auto labels = sample_parts(responses).labels;
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& factor = responses.factors[j];
@@ -153,9 +152,20 @@ void add_trends(Influence& influence, const Responses& responses, const Response
     }
 }
 
-stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& response) {
+/// Values of points that do not depend on each other: of a block of a Saltelli design its first two points alone, for
+/// the others repeat their coordinates, and bins of repeated coordinates would explain what other factors do.
+std::vector<double> independent_values(const Responses& responses, const ResponseColumn& response) {
+    const auto judged = responses.judged(response);
+    std::vector<double> values(judged.begin(), judged.end());
+    if (responses.design().purpose != designs::Purpose::saltelli) return values;
+    const auto block = static_cast<std::int64_t>(responses.design().block(responses.group_names.size()));
+    for (std::size_t row = 0; row < values.size(); ++row)
+        if (responses.points[row] % block >= 2) values[row] = not_a_number;
+    return values;
+}
+
+stats::VarianceSplit split_of(const Responses& responses, std::span<const double> values) {
     const auto points = std::span(responses.points).first(responses.settled);
-    const auto values = responses.judged(response);
     const bool lattice = responses.design().beginning == designs::Beginning::corner;
     const std::size_t count = std::set<std::int64_t>(points.begin(), points.end()).size();
     const std::size_t d = responses.factors.size();
@@ -172,9 +182,8 @@ stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& 
     return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
 }
 
-void add_given_data(Influence& influence, const Responses& responses, const ResponseColumn& response) {
+void add_given_data(Influence& influence, const Responses& responses, std::span<const double> values) {
     const bool lattice = responses.design().beginning == designs::Beginning::corner;
-    const auto values = responses.judged(response);
     const std::int64_t points = influence.split.points;  // replicates add nothing to how well a sample covers the range
     const auto labels = sample_parts(responses).labels;
     std::size_t bins_at_most = 0;
@@ -267,13 +276,13 @@ std::string unexplained_text(const Influence& influence) {
 Influence influence_of(const Responses& responses, const ResponseColumn& response) {
     Influence influence;
     const auto& design = responses.design();
+    const auto values = independent_values(responses, response);
     for (const auto& factor : responses.factors) influence.factors.emplace_back().factor = factor.name;
     if (design.purpose == designs::Purpose::morris) {
         influence.method = Influence::Method::morris;
-        influence.split.pure =
-            stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
+        influence.split.pure = stats::pure_error(std::span(responses.points).first(responses.settled), values);
         const auto groups = add_morris(influence, responses, response);
-        add_trends(influence, responses, response);
+        add_trends(influence, responses, values);
         join_groups(influence, responses, groups);
         withdraw_errors_of_repeated_cases(influence, responses);
         return influence;
@@ -283,12 +292,12 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
             fmt::format("a {} places its points by results: shares of the variance over the ranges are those of the "
                         "response model alone",
                         responses.campaign.design));
-        add_trends(influence, responses, response);
+        add_trends(influence, responses, values);
         return influence;
     }
-    influence.split = split_of(responses, response);
-    add_given_data(influence, responses, response);
-    add_trends(influence, responses, response);
+    influence.split = split_of(responses, values);
+    add_given_data(influence, responses, values);
+    add_trends(influence, responses, values);
     if (design.purpose == designs::Purpose::saltelli) {
         influence.method = Influence::Method::saltelli;
         join_groups(influence, responses, add_saltelli(influence, responses, response));
