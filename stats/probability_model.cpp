@@ -1,10 +1,8 @@
 #include "stats/probability_model.hpp"
 
 #include "stats/confidence.hpp"
-#include "stats/response/climb.hpp"
-#include "stats/response/expectation.hpp"
 #include "stats/response/fit.hpp"
-#include "stats/sobol_sequence.hpp"
+#include "stats/response/likely_hyperparameters.hpp"
 
 #include <boost/math/special_functions/owens_t.hpp>
 
@@ -17,24 +15,25 @@
 namespace grainsweep::stats {
 
 using response::Expectation;
-using response::Hyperparameters;
 using response::Trials;
 
 struct ProbabilityModel::State {
+    /// The latent function under one set of hyperparameters, and the probability of these.
+    struct Part {
+        double weight;
+        Expectation found;
+    };
     Eigen::VectorXd low, high;
     Trials trials;
-    Expectation found;
+    std::vector<Part> parts;  ///< the likeliest first
     ProbabilityQuality quality;
 };
 
 namespace {
 
-constexpr double inside_by = 1e-9;  // of the box: what round-off of a feature may do
-constexpr double length_prior = 1.5, signal_prior = 2;
-const double typical_signal = std::log(400.0);
+constexpr double inside_by = 1e-9;    // of the box: what round-off of a feature may do
+constexpr double sure_within = 1e-9;  // where the moments of a probability have too few digits
 constexpr std::size_t places_in_search = 200, most_places = 1000, places_at_once = 1024;
-constexpr std::size_t compared_starts = 8, climbed_starts = 2;
-constexpr int most_looks = 30;
 
 Eigen::MatrixXd place_in_box(Rows points, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -93,88 +92,73 @@ Trials searched_trials(const Trials& all) {
     return chosen_trials(all, rows);
 }
 
-Hyperparameters hyperparameters_of(const Eigen::VectorXd& at) {
-    const Eigen::Index d = at.size() - 1;
-    return {at.head(d), at(d), 0, Eigen::MatrixXd::Identity(d, d)};
-}
-
-/// Log posterior density of log l and log s^2,; factors of the last look start the next.
-struct EvidenceSearch {
-    const Trials* trials;
-    std::optional<Expectation> last = {};
-    Eigen::VectorXd best = {};
-    double best_value = -std::numeric_limits<double>::infinity();
-
-    double look(const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
-        auto found = response::propagate(hyperparameters_of(at), *trials, last ? &*last : nullptr);
-        if (!found || !std::isfinite(found->log_evidence)) return -std::numeric_limits<double>::infinity();
-        const Eigen::Index d = at.size() - 1;
-        const double signal = (at(d) - typical_signal) / signal_prior;
-        const double value =
-            found->log_evidence - 0.5 * (at.head(d) / length_prior).squaredNorm() - 0.5 * signal * signal;
-        if (gradient) {
-            *gradient = response::evidence_gradient(*found);
-            gradient->head(d) -= at.head(d) / (length_prior * length_prior);
-            (*gradient)(d) -= signal / signal_prior;
-        }
-        last = std::move(found);
-        if (value > best_value) best_value = value, best = at;
-        return value;
-    }
+/// E Phi(f) and E Phi(f)^2 of the header.
+struct TwoMoments {
+    double mean = 0, square = 0;
 };
 
-void climb_from(EvidenceSearch& search, const Eigen::VectorXd& from) {
-    const Eigen::Index d = from.size() - 1;
-    response::Bounds bounds{Eigen::VectorXd::Constant(d + 1, std::log(0.05)),
-                            Eigen::VectorXd::Constant(d + 1, std::log(50.0))};
-    bounds.low(d) = -4;
-    bounds.high(d) = 8;
-    (void)response::climb([&](const auto& at, auto& gradient) { return search.look(at, &gradient); }, from, bounds,
-                          1e-2, most_looks);
-}
-
-/// The maximum that the best of Sobol starts lead to; none where every look is singular.
-std::optional<Hyperparameters> likeliest(const Trials& trials) {
-    const Eigen::Index d = trials.points.cols();
-    SobolSequence sequence(static_cast<std::size_t>(d + 1));
-    EvidenceSearch search{&trials};
-    std::vector<std::pair<double, Eigen::VectorXd>> starts;
-    for (std::size_t s = 0; s < compared_starts; ++s) {
-        Eigen::VectorXd at(d + 1);
-        for (Eigen::Index j = 0; j < d; ++j) at(j) = -1.5 + 3 * sequence.next_fraction();
-        at(d) = 7 * sequence.next_fraction();
-        const double value = search.look(at, nullptr);
-        starts.emplace_back(value, std::move(at));
-    }
-    std::ranges::stable_sort(starts, [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (std::size_t s = 0; s < climbed_starts; ++s)
-        if (std::isfinite(starts[s].first)) climb_from(search, starts[s].second);
-    if (!std::isfinite(search.best_value)) return std::nullopt;
-    return hyperparameters_of(search.best);
-}
-
-Prediction prediction_of(double mean, double variance) {
+TwoMoments moments_of_probability(double mean, double variance) {
     const double h = mean / std::sqrt(1 + variance), p = normal_cdf(h);
-    const double square = p - 2 * boost::math::owens_t(h, 1 / std::sqrt(1 + 2 * variance));
-    Prediction one{
-        .mean = p, .mean_error = std::sqrt(std::max(square - p * p, 0.0)), .scatter = std::sqrt(p * (1 - p))};
-    one.latent = Prediction::Latent{mean, std::sqrt(variance)};
-    return one;
+    return {p, p - 2 * boost::math::owens_t(h, 1 / std::sqrt(1 + 2 * variance))};
+}
+
+/// The normal f of these moments; its variance by bisection of Owen's T, which grows with its second argument.
+Prediction::Latent latent_with(const TwoMoments& moments) {
+    constexpr int halvings = 40;
+    const double h = normal_quantile(moments.mean), wanted = (moments.mean - moments.square) / 2;
+    double low = 0, high = 1;
+    for (int step = 0; step < halvings; ++step) {
+        const double middle = (low + high) / 2;
+        (boost::math::owens_t(h, middle) < wanted ? low : high) = middle;
+    }
+    const double a = (low + high) / 2, variance = (1 / (a * a) - 1) / 2;
+    return {h * std::sqrt(1 + variance), std::sqrt(variance)};
+}
+
+/// Predictions at places in the box.
+std::vector<Prediction> mixed_predictions(std::span<const ProbabilityModel::State::Part> parts,
+                                          const Eigen::MatrixXd& x) {
+    std::vector<TwoMoments> moments(static_cast<std::size_t>(x.rows()));
+    response::Latent likeliest;
+    for (const auto& [weight, found] : parts) {
+        auto latent = response::predict(found, response::mapped(found.h, x));
+        for (Eigen::Index i = 0; i < x.rows(); ++i) {
+            const auto one = moments_of_probability(latent.mean(i), latent.variance(i));
+            moments[static_cast<std::size_t>(i)].mean += weight * one.mean;
+            moments[static_cast<std::size_t>(i)].square += weight * one.square;
+        }
+        if (likeliest.mean.size() == 0) likeliest = std::move(latent);
+    }
+    std::vector<Prediction> result;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const auto& both = moments[static_cast<std::size_t>(i)];
+        const double p = both.mean;
+        result.push_back({.mean = p,
+                          .mean_error = std::sqrt(std::max(both.square - p * p, 0.0)),
+                          .scatter = std::sqrt(p * (1 - p)),
+                          .inside = x.row(i).minCoeff() >= -inside_by && x.row(i).maxCoeff() <= 1 + inside_by});
+        if (parts.size() == 1 || std::min(p, 1 - p) < sure_within)
+            result.back().latent = {likeliest.mean(i), std::sqrt(likeliest.variance(i))};
+        else
+            result.back().latent = latent_with(both);
+    }
+    return result;
 }
 
 void assess_probability(ProbabilityModel::State& state) {
     auto& quality = state.quality;
     const auto& trials = state.trials;
+    const auto& likeliest = state.parts.front().found;
     const double n = trials.count.sum(), share = trials.successes.sum() / n;
     quality.rests_on = static_cast<std::size_t>(std::lround(n));
     double sum = 0;
     for (Eigen::Index i = 0; i < trials.count.size(); ++i) {
-        const double p = normal_cdf(state.found.cavity_mean(i) / std::sqrt(1 + state.found.cavity_variance(i)));
+        const double p = normal_cdf(likeliest.cavity_mean(i) / std::sqrt(1 + likeliest.cavity_variance(i)));
         sum += trials.successes(i) * (1 - p) * (1 - p) + (trials.count(i) - trials.successes(i)) * p * p;
     }
     quality.brier = sum / n;
     quality.brier_of_share = share * (1 - share);
-    for (const double l : state.found.h.log_length) quality.lengths.push_back(std::exp(l));
+    for (const double l : likeliest.h.log_length) quality.lengths.push_back(std::exp(l));
 }
 
 }  // namespace
@@ -194,11 +178,7 @@ std::vector<Prediction> ProbabilityModel::predict(Rows points) const {
     std::vector<Prediction> result;
     for (Eigen::Index from = 0; from < x.rows(); from += places_at_once) {
         const Eigen::MatrixXd some = x.middleRows(from, std::min<Eigen::Index>(places_at_once, x.rows() - from));
-        const auto latent = response::predict(state_->found, response::mapped(state_->found.h, some));
-        for (Eigen::Index i = 0; i < some.rows(); ++i) {
-            result.push_back(prediction_of(latent.mean(i), latent.variance(i)));
-            result.back().inside = some.row(i).minCoeff() >= -inside_by && some.row(i).maxCoeff() <= 1 + inside_by;
-        }
+        std::ranges::move(mixed_predictions(state_->parts, some), std::back_inserter(result));
     }
     return result;
 }
@@ -214,8 +194,9 @@ std::vector<bool> ProbabilityModel::likely(Rows points) const {
     std::vector<bool> result;
     for (Eigen::Index from = 0; from < x.rows(); from += places_at_once) {
         const Eigen::MatrixXd some = x.middleRows(from, std::min<Eigen::Index>(places_at_once, x.rows() - from));
-        for (const double mean : response::predict_means(state_->found, response::mapped(state_->found.h, some)))
-            result.push_back(mean >= 0);
+        const auto& found = state_->parts.front().found;
+        const Eigen::VectorXd means = response::predict_means(found, response::mapped(found.h, some));
+        for (const double mean : means) result.push_back(mean >= 0);
     }
     return result;
 }
@@ -234,14 +215,16 @@ ProbabilityModel ProbabilityModel::with_cases(Rows points, std::span<const doubl
     trials.successes.conservativeResize(n + more);
     for (Eigen::Index i = 0; i < more; ++i)
         trials.successes(n + i) = std::clamp(values[static_cast<std::size_t>(i)], 0.0, 1.0);
-    Expectation start = state_->found;
-    start.tau.conservativeResize(n + more);
-    start.nu.conservativeResize(n + more);
-    start.tau.tail(more).setZero();
-    start.nu.tail(more).setZero();
-    auto found = response::propagate(state_->found.h, trials, &start);
-    if (!found) throw std::invalid_argument("probability model: its equations are singular");
-    next->found = std::move(*found);
+    for (auto& part : next->parts) {
+        Expectation start = part.found;
+        start.tau.conservativeResize(n + more);
+        start.nu.conservativeResize(n + more);
+        start.tau.tail(more).setZero();
+        start.nu.tail(more).setZero();
+        auto found = response::propagate(part.found.h, trials, &start);
+        if (!found) throw std::invalid_argument("probability model: its equations are singular");
+        part.found = std::move(*found);
+    }
     next->quality.cases += values.size();
     next->quality.rests_on += values.size();
     return ProbabilityModel(std::move(next));
@@ -276,12 +259,15 @@ std::variant<ProbabilityModel, Refusal> fit_probability(Rows points, std::span<c
     }
     if (state->quality.cases < 2) return Refusal{"no model of a probability: fewer than two cases"};
     state->trials = trials_of(place_in_box(points, state->low, state->high), values);
-    const auto h = likeliest(searched_trials(state->trials));
+    const bool few = static_cast<std::size_t>(state->trials.count.size()) <= places_in_search;
+    const auto likely = response::likely_hyperparameters(
+        searched_trials(state->trials), few ? response::Wanted::places_about_it : response::Wanted::maximum);
     if (static_cast<std::size_t>(state->trials.count.size()) > most_places)
         state->trials = chosen_trials(state->trials, response::space_filling_choice(state->trials.points, most_places));
-    auto found = h ? response::propagate(*h, state->trials) : std::nullopt;
-    if (!found) return Refusal{"no model of a probability: its equations are singular in double precision"};
-    state->found = std::move(*found);
+    for (const auto& [weight, h] : likely)
+        if (auto found = response::propagate(h, state->trials)) state->parts.push_back({weight, std::move(*found)});
+    if (state->parts.size() != likely.size() || likely.empty())
+        return Refusal{"no model of a probability: its equations are singular in double precision"};
     assess_probability(*state);
     return ProbabilityModel(std::move(state));
 }

@@ -6,15 +6,15 @@
 // The mean of f is unknown, N(0, 2^2). f follows from the cases by expectation propagation (Rasmussen & Williams 2006,
 // section 3.6: response/expectation.hpp), which keeps the probabilities calibrated where the Laplace approximation of
 // their section 3.4 draws them to 1/2 (Kuss & Rasmussen 2005, J. Mach. Learn. Res. 6, 1679). Cases at one place are
-// counted together, so that replicates count as what they are. Lengths and s^2 maximise the evidence times the priors
-// log l ~ N(0, 1.5^2), log s^2 ~ N(log 400, 2^2), on at most 200 places, half of them with the rarer outcome: a
-// large s stands for a sharp border.
+// counted together, so that replicates count as what they are. P is the average over the likely lengths and s^2
+// (response/likely_hyperparameters.hpp): one best guess places a sharp border too surely. Of more than 200 places the
+// best guess stands alone, from 200 of them, half of these with the rarer outcome.
 //
 //   P(x) = Phi(m/sqrt(1 + v)),  f(x) ~ N(m, v)                                                          (eq. 3.82)
 //   error^2 = E Phi(f)^2 - P^2 = Phi(h) - 2 T(h, 1/sqrt(1 + 2 v)) - P^2,  h = m/sqrt(1 + v),  T Owen's function
 //
-// P is the probability that a further case is a 1. A single run scatters by sqrt(P (1 - P)). Of more than 1,000 places
-// a subset that fills the space is used. Nothing is drawn.
+// P and E Phi(f)^2 are averaged; m and v of a prediction are of the normal f that has these averages. A single run
+// scatters by sqrt(P (1 - P)). Of more than 1,000 places a subset that fills the space is used. Nothing is drawn.
 #pragma once
 
 #include "stats/response_model.hpp"
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] std::vector<Prediction> predict(Rows points) const;
     /// Probabilities only.
     [[nodiscard]] std::vector<double> probabilities(Rows points) const;
-    /// Whether P is at least 1/2: that of f alone, at a cost of n per point.
+    /// Whether P is at least 1/2 under the likeliest hyperparameters, at a cost of n per point.
     [[nodiscard]] std::vector<bool> likely(Rows points) const;
     /// The model with cases added, hyperparameters as they are; a value between 0 and 1 is a share of a case.
     [[nodiscard]] ProbabilityModel with_cases(Rows points, std::span<const double> values) const;

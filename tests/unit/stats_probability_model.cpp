@@ -2,7 +2,7 @@
 // and intervals hold on truths that are known.
 #include "stats/probability_model.hpp"
 #include "stats/random.hpp"
-#include "stats/response/expectation.hpp"
+#include "stats/response/likely_hyperparameters.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -138,6 +138,86 @@ TEST(ProbabilityModel, ABorderIsFoundAndRepeatsItself) {
     const auto longer = model.with_cases({std::span(at).first(4), 4}, std::array{1.0});
     EXPECT_GT(longer.probabilities({at, 4})[0], p[0]);
     EXPECT_EQ(longer.quality().cases, 201U);
+}
+
+TEST(ProbabilityModel, LikelyHyperparametersAreThePriorWhereOneTrialDecidesNothing) {
+    // P(1) = 1/2 whatever l and s: the maximum is the prior's, the weights along log l are those of a normal density.
+    const Trials trials{Eigen::MatrixXd::Constant(1, 1, 0.5), Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1)};
+    const auto likely = response::likely_hyperparameters(trials, response::Wanted::places_about_it);
+    ASSERT_EQ(likely.size(), 5U);
+    EXPECT_NEAR(likely[0].h.log_length(0), 0, 0.2);
+    EXPECT_NEAR(likely[0].h.log_signal, std::log(400.0), 0.3);
+    double sum = 0;
+    int along_length = 0;
+    for (const auto& one : likely) {
+        sum += one.weight;
+        if (std::abs(one.h.log_length(0) - likely[0].h.log_length(0)) < 1) continue;
+        ++along_length;
+        EXPECT_NEAR(std::abs(one.h.log_length(0) - likely[0].h.log_length(0)), 2 * 1.5, 0.25);
+        EXPECT_NEAR(one.weight / likely[0].weight, 0.25, 0.05);
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+    EXPECT_EQ(along_length, 2);
+}
+
+TEST(ProbabilityModel, WeightsSumToOneAndOneMaximumStandsAloneWhereItIsWanted) {
+    const auto trials = small_trials();
+    const auto likely = response::likely_hyperparameters(trials, response::Wanted::places_about_it);
+    ASSERT_EQ(likely.size(), 7U);
+    double sum = 0;
+    for (const auto& one : likely) {
+        EXPECT_GT(one.weight, 0);
+        sum += one.weight;
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+    const auto alone = response::likely_hyperparameters(trials, response::Wanted::maximum);
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_EQ(alone[0].weight, 1);
+    EXPECT_EQ(alone[0].h.log_length, likely[0].h.log_length);
+}
+
+TEST(ProbabilityModel, AllOneFailureAndNoFailure) {
+    const auto seen = seen_of([](auto) { return 1.0; }, 2, 40, 1, 5);
+    Seen none = seen, one = seen;
+    for (double& value : none.values) value = 0;
+    one.values[7] = 0;
+    const std::vector<double> at = {0.5, 0.5, 0.1, 0.9, one.rows[14], one.rows[15]};
+    const auto all_answer = fitted_model(seen, 2).predict({at, 2}), all_fail = fitted_model(none, 2).predict({at, 2}),
+               one_fails = fitted_model(one, 2).predict({at, 2});
+    for (std::size_t i = 0; i < all_answer.size(); ++i) {
+        EXPECT_GT(all_answer[i].mean, 0.95);
+        EXPECT_NEAR(all_fail[i].mean, 1 - all_answer[i].mean, 1e-6);
+        EXPECT_NEAR(all_fail[i].mean_high(), 1 - all_answer[i].mean_low(), 1e-6);
+        EXPECT_LT(one_fails[i].mean, all_answer[i].mean);
+        EXPECT_LT(one_fails[i].mean_low(), all_answer[i].mean_low());
+    }
+    EXPECT_LT(one_fails[2].mean, one_fails[0].mean) << "where it failed";
+}
+
+TEST(ProbabilityModel, AChosenSettingBesideASharpBorderKeepsItsPromise) {
+    // Eight slanted borders, 60 cases each; the largest x + y of 400 settings that answer surely, as `window` chooses.
+    const std::vector<double> grid = [] {
+        std::vector<double> points;
+        for (int i = 0; i < 400; ++i) points.insert(points.end(), {(i % 20 + 0.5) / 20, (i / 20 + 0.5) / 20});
+        return points;
+    }();
+    double covered = 0, broken = 0;
+    for (std::uint64_t campaign = 0; campaign < 8; ++campaign) {
+        const double slope = drawn(71, 0, campaign), offset = 0.5 + 0.4 * drawn(71, 1, campaign);
+        const Truth truth = [&](auto x) { return slope * x[0] + (1 - slope) * x[1] < offset ? 1.0 : 0.0; };
+        const auto found = fitted_model(seen_of(truth, 2, 60, 1, 700 + campaign), 2).predict({grid, 2});
+        double largest = 0, there = 1;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const auto x = std::span(grid).subspan(2 * i, 2);
+            covered += truth(x) >= found[i].mean_low() - 0.05 && truth(x) <= found[i].mean_high() + 0.05 ? 1 : 0;
+            if (found[i].mean_low() < 0.95 || x[0] + x[1] <= largest) continue;
+            largest = x[0] + x[1];
+            there = truth(x);
+        }
+        broken += 1 - there;
+    }
+    EXPECT_LE(broken, 1);
+    EXPECT_GE(covered / (8 * 400), 0.93);
 }
 
 TEST(ProbabilityModel, IsOfZeroAndOneAlone) {
