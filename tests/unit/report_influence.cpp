@@ -98,6 +98,13 @@ TEST_F(Study, APointThatRepeatsCoordinatesOfItsBlockIsNotBinned) {
     }
 }
 
+TEST_F(Study, WithoutAnIndexNothingIsSaidOfItsFloor) {
+    answer_by(store, halton("c", 2), [](const Inputs& inputs) { return linear(inputs); });
+    const auto responses = ask("c");
+    EXPECT_THAT(influence_of(responses, responses.observable("y")).notes,
+                Not(Contains(HasSubstr("indistinguishable"))));
+}
+
 TEST_F(Study, ElementaryEffectsOfLevelsAreOnTheScaleOfTheRange) {
     // Linear in the place of a level: slope k - 1, whatever the numbers or words; trajectories that share cases count.
     answer_by(store, R"({"campaign": "m", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
