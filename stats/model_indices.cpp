@@ -137,11 +137,15 @@ struct Whole {
     }
 };
 
-/// Leave-one-out error^2 less the scatter of single runs. Noise at the bound of the fit is none.
+/// The last two lines of the header. Noise at the bound of the fit is none.
 double unseen_share(const ResponseModel& model) {
+    constexpr double chi_squared = 7.815;  // 95 % quantile with 3 degrees of freedom
     const ModelQuality& quality = model.quality();
-    const bool scatters = model.state().kriging.h.noise() > 2 * response::smallest_noise;
-    return std::max(0.0, std::pow(quality.leave_one_out_error, 2) - (scatters ? quality.noise_share : 0));
+    const auto& kriging = model.state().kriging;
+    const bool scatters = kriging.h.noise() > 2 * response::smallest_noise;
+    const double error = std::pow(quality.leave_one_out_error, 2);
+    return std::hypot(std::max(0.0, error - (scatters ? quality.noise_share : 0)),
+                      error * chi_squared / static_cast<double>(kriging.size()));
 }
 
 /// Means over the rows whose column lies in [low, high).

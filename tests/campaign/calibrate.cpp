@@ -1,4 +1,5 @@
 // A calibration through the real program: waves, posterior, predictive check, interruption, refusals.
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
@@ -64,6 +65,20 @@ TEST(CalibrateCampaign, FindsTheTruthAndNamesTheRidge) {
     for (const auto& target : found["targets"]) {
         EXPECT_EQ(target["runs"], 8);
         EXPECT_LT(std::abs(target["z"].get<double>()), 3);
+    }
+}
+
+TEST(CalibrateCampaign, TwoImpactsOfAGrainEndCalibrated) {
+    const Folder folder;
+    std::filesystem::copy_file(source("configs/calibrate_grain.json"), folder.path() / "c.json");
+    const auto ended = calibrate(folder, "a.db", {"-j", "2"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.out, ::testing::EndsWith("\ncalibrated; all cases are settled\n"));
+    const auto said = run_program({"converge", "a.db", "--format", "json"}, folder.path());
+    const auto found = json::parse(said.out)[0];
+    for (const auto& [factor, truth] : {std::pair(0, 0.87), std::pair(1, 0.25)}) {
+        EXPECT_LE(found["posterior"][factor]["q05"].get<double>(), truth);
+        EXPECT_GE(found["posterior"][factor]["q95"].get<double>(), truth);
     }
 }
 

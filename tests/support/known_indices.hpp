@@ -64,7 +64,8 @@ inline KnownIndices g_function(std::string name, std::vector<double> a) {
     return known;
 }
 
-/// Linear, additive without and with scatter, Ishigami (Ishigami & Homma 1990), a product, a g-function, scatter alone.
+/// Linear, additive without and with scatter, Ishigami (Ishigami & Homma 1990), a product, a g-function, and a linear
+/// one whose second factor is lost in the scatter.
 inline std::vector<KnownIndices> known_indices() {
     using Point = std::span<const double>;
     const auto bent = [](Point u) { return std::sin(3 * u[0]) + 2 * u[1] * u[1] + 0.5 * u[2]; };
@@ -95,6 +96,8 @@ inline std::vector<KnownIndices> known_indices() {
          {4.0 / 19, 4.0 / 19, 12.0 / 19},
          {1.0 / 19, 0, 0}},
         g_function("g_function", {0, 0.5, 3, 9}),
+        additive_response(
+            "lost", [](Point u) { return u[0] + 0.05 * u[1]; }, {1.0 / 12, 0.0025 / 12, 0}, 0.12),
     };
 }
 
