@@ -167,7 +167,9 @@ std::vector<double> independent_values(const Responses& responses, const Respons
 stats::VarianceSplit split_of(const Responses& responses, std::span<const double> values) {
     const auto points = std::span(responses.points).first(responses.settled);
     const bool lattice = responses.design().beginning == designs::Beginning::corner;
-    const std::size_t count = std::set<std::int64_t>(points.begin(), points.end()).size();
+    std::set<std::int64_t> known;
+    for (std::size_t row = 0; row < values.size(); ++row)
+        if (std::isfinite(values[row])) known.insert(points[row]);
     const std::size_t d = responses.factors.size();
     std::vector<std::vector<double>> coordinates(d);
     std::vector<stats::SplitFactor> factors;
@@ -175,9 +177,10 @@ stats::VarianceSplit split_of(const Responses& responses, std::span<const double
         const auto& factor = responses.factors[j];
         for (std::size_t row = 0; row < responses.settled; ++row) coordinates[j].push_back(factor.coordinate(row));
         const bool levels = lattice || !factor.continuous();
-        factors.push_back(
-            {coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
-             levels ? 0 : std::clamp<std::size_t>(count / (5 * d), 2, std::min(most_pieces, most_coefficients / d))});
+        factors.push_back({coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
+                           levels ? 0
+                                  : std::clamp<std::size_t>(known.size() / (5 * d), 2,
+                                                            std::min(most_pieces, most_coefficients / d))});
     }
     return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
 }
@@ -211,7 +214,7 @@ void add_given_data(Influence& influence, const Responses& responses, std::span<
     } else if (lattice) {
         influence.notes.emplace_back(
             "a lattice of single runs gives its indices without errors: compare campaigns of growing levels");
-    } else if (influence.used > 0) {
+    } else if (std::ranges::any_of(influence.factors, [](const auto& f) { return std::isfinite(f.first.value); })) {
         const double floor = static_cast<double>(bins_at_most - 1) / static_cast<double>(points);
         influence.notes.push_back(
             fmt::format("with {} points in {} bins an index below about {:.2g} is indistinguishable from zero", points,

@@ -2,7 +2,7 @@
 //
 //   any design    first-order indices by binning: 16 bins of equal count, fewer below 256 points; a level, and a
 //                 coordinate of a lattice, is a bin of its own
-//   saltelli      the same, and total indices by Jansen 1999
+//   saltelli      the same of the first two points of every block, and total indices by Jansen 1999
 //   morris        elementary effects per unit of the range: mu*, sigma (indices would mean nothing on so few points)
 // Beside them: which way the response goes with each factor, and what the main effects leave unexplained, split into
 // interactions and the scatter of single runs where replicates allow (stats/variance_split.hpp).

@@ -42,8 +42,7 @@ void take_coordinates_of_design(Grid& grid, const Responses& responses) {
 Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     const std::size_t d = responses.factors.size();
     const auto repeated = responses.settled_repeats();
-    auto points = responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
-    for (const auto& place : repeated) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
+    const auto points = static_cast<std::size_t>(responses.settled_points);  // the last ones may be filtered out
     Grid grid{std::vector<double>(points * d, no_figure), std::vector<double>(points, no_figure),
               std::vector<bool>(points, false)};
     std::vector<double> sums(points), counts(points);

@@ -98,6 +98,24 @@ TEST_F(Study, APointThatRepeatsCoordinatesOfItsBlockIsNotBinned) {
     }
 }
 
+TEST_F(Study, ALastBlockWithoutItsEndIsLeftOutAndCounted) {
+    answer_by(store, R"({"campaign": "s", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "between": [0, 1]}, {"name": "x3", "between": [0, 1]}], "where": "x1 + x2 < 1.6",
+        "design": {"kind": "saltelli", "base_points": 32}})",
+              [](const Inputs& inputs) { return input(inputs, "x1") + 2 * input(inputs, "x2"); });
+    const auto responses = ask("s");
+    ASSERT_LT(responses.points.back(), responses.candidates - 1);
+    const auto influence = influence_of(responses, responses.observable("y"));
+    EXPECT_EQ(influence.used + influence.excluded, 32);
+}
+
+TEST_F(Study, WithoutAnIndexNothingIsSaidOfItsFloor) {
+    answer_by(store, halton("c", 2), [](const Inputs& inputs) { return linear(inputs); });
+    const auto responses = ask("c");
+    EXPECT_THAT(influence_of(responses, responses.observable("y")).notes,
+                Not(Contains(HasSubstr("indistinguishable"))));
+}
+
 TEST_F(Study, ElementaryEffectsOfLevelsAreOnTheScaleOfTheRange) {
     // Linear in the place of a level: slope k - 1, whatever the numbers or words; trajectories that share cases count.
     answer_by(store, R"({"campaign": "m", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
