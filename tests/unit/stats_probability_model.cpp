@@ -125,7 +125,7 @@ TEST(ProbabilityModel, ReplicatesCountAndNarrowTheInterval) {
 
 TEST(ProbabilityModel, ABorderIsFoundAndRepeatsItself) {
     const Truth corner = [](auto x) { return x[0] < 0.4 && x[2] > 0.6 ? 0.0 : 1.0; };
-    const auto seen = seen_of(corner, 4, 200, 1, 9);
+    const auto seen = seen_of(corner, 4, 120, 1, 9);
     const auto model = fitted_model(seen, 4);
     EXPECT_LT(model.quality().brier, 0.5 * model.quality().brier_of_share);
     EXPECT_LT(model.quality().lengths[0], model.quality().lengths[1]);
@@ -137,7 +137,7 @@ TEST(ProbabilityModel, ABorderIsFoundAndRepeatsItself) {
     EXPECT_EQ(fitted_model(seen, 4).probabilities({at, 4}), p) << "the same bits again";
     const auto longer = model.with_cases({std::span(at).first(4), 4}, std::array{1.0});
     EXPECT_GT(longer.probabilities({at, 4})[0], p[0]);
-    EXPECT_EQ(longer.quality().cases, 201U);
+    EXPECT_EQ(longer.quality().cases, 121U);
 }
 
 TEST(ProbabilityModel, LikelyHyperparametersAreThePriorWhereOneTrialDecidesNothing) {
