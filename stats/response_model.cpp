@@ -185,11 +185,13 @@ double Prediction::run_half_width() const {
 }
 
 double Prediction::mean_low() const {
-    return latent ? normal_cdf(latent->mean - half_width_factor(freedom) * latent->error) : mean - mean_half_width();
+    return latent ? std::min(mean, normal_cdf(latent->mean - half_width_factor(freedom) * latent->error))
+                  : mean - mean_half_width();
 }
 
 double Prediction::mean_high() const {
-    return latent ? normal_cdf(latent->mean + half_width_factor(freedom) * latent->error) : mean + mean_half_width();
+    return latent ? std::max(mean, normal_cdf(latent->mean + half_width_factor(freedom) * latent->error))
+                  : mean + mean_half_width();
 }
 
 Eigen::MatrixXd ResponseModel::State::in_box(Rows points) const {

@@ -112,7 +112,8 @@ struct Prediction {
     };
     std::optional<Latent> latent = {};
 
-    /// Ends of the 95 % interval of the mean: symmetric, but for a probability, whose interval lies within 0 to 1.
+    /// Ends of the 95 % interval of the mean: symmetric, but for a probability, whose interval lies within 0 to 1 and
+    /// reaches to its mean, which rare large values may hold beyond the quantiles.
     [[nodiscard]] double mean_low() const;
     [[nodiscard]] double mean_high() const;
     /// Standard deviation of a single run about the predicted mean: sqrt(mean_error^2 + scatter^2).

@@ -202,11 +202,15 @@ void add_given_data(Influence& influence, const Responses& responses, std::span<
         // Lines of a lattice are no sample of it: leaving some out says nothing about the error.
         if (lattice) found.first.half_width = not_a_number;
         if (lattice && influence.split.pure.freedom > 0) take_out_scatter(found, influence.split, values);
+        // Cells of unlike numbers of values move the index by more than scatter does.
+        if (lattice && indices.excluded > 0) found.first.half_width = not_a_number;
         influence.used = indices.count;
         influence.excluded = indices.excluded;
         bins_at_most = std::max(bins_at_most, found.bins);
     }
-    if (lattice && influence.split.pure.freedom > 0) {
+    if (lattice && influence.excluded > 0) {
+        influence.notes.emplace_back("cases without a value leave a lattice uneven: its indices have no errors");
+    } else if (lattice && influence.split.pure.freedom > 0) {
         influence.notes.push_back(fmt::format(
             "errors are those of the scatter of single runs (pure error, {} degrees of freedom), not of the "
             "lattice's steps: compare campaigns of growing levels",

@@ -283,4 +283,21 @@ TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
     EXPECT_THAT(unexplained_text(influence), HasSubstr("interactions indistinguishable from zero"));
 }
 
+// Cases of one corner have no value: the bins of x1 hold unlike shares of x2, which no scatter tells.
+TEST_F(Study, ALatticeWithFailuresHasNoErrorsOfItsIndices) {
+    int failed = 0;
+    answer_by(store, R"({"campaign": "c", "scene": "rehearsal", "replicates": 6, "factors": [
+        {"name": "x1", "levels": [0, 0.5, 1]}, {"name": "x2", "levels": [0, 0.2, 1]}], "design": {"kind": "lattice"}})",
+              [&](const Inputs& inputs) -> std::optional<double> {
+                  if (input(inputs, "x1") > 0.9 && input(inputs, "x2") > 0.9 && failed < 5)
+                      return ++failed, std::nullopt;
+                  return input(inputs, "x1") + 10 * input(inputs, "x2");
+              });
+    const auto responses = ask("c");
+    const auto influence = influence_of(responses, responses.observable("y"));
+    EXPECT_EQ(influence.excluded, 5);
+    for (const auto& factor : influence.factors) EXPECT_TRUE(std::isnan(factor.first.half_width)) << factor.factor;
+    EXPECT_THAT(influence.notes, Contains(HasSubstr("leave a lattice uneven")));
+}
+
 }  // namespace grainsweep::tests::report_influence_test

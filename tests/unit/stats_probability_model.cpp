@@ -220,6 +220,19 @@ TEST(ProbabilityModel, AChosenSettingBesideASharpBorderKeepsItsPromise) {
     EXPECT_GE(covered / (8 * 400), 0.93);
 }
 
+TEST(ProbabilityModel, AnIntervalHoldsItsMean) {
+    // Far below 0 and very uncertain: the mean is the rare large values', beyond the 97.5 % quantile.
+    for (const double at : {-30.0, 30.0}) {
+        Prediction prediction;
+        prediction.latent = Prediction::Latent{at, 10};
+        prediction.mean = std::erfc(-at / std::hypot(1, 10) / std::numbers::sqrt2) / 2;
+        EXPECT_LE(prediction.mean_low(), prediction.mean);
+        EXPECT_GE(prediction.mean_high(), prediction.mean);
+        EXPECT_GE(prediction.mean_low(), 0);
+        EXPECT_LE(prediction.mean_high(), 1);
+    }
+}
+
 TEST(ProbabilityModel, IsOfZeroAndOneAlone) {
     EXPECT_TRUE(only_zero_and_one(std::array{0.0, 1.0, std::nan("")}));
     EXPECT_FALSE(only_zero_and_one(std::array{0.0, 0.0}));
