@@ -13,8 +13,8 @@
 // response/local_noise.hpp.
 //
 // On request, the logarithm of a positive response takes the response's place if that lowers the error: its scatter is
-// then a share of its size. Means, errors and covariances are those of the log-normal response; what is said
-// of it is in its own unit, and intervals are symmetric about the mean as everywhere.
+// then a share of its size. Means, errors and covariances are those of the log-normal response, in its own
+// unit; intervals are symmetric about the mean as everywhere.
 //
 // Between 12 and 4,000 cases; of more, a subset that fills the space (greedy maximin) is what the model rests on.
 // Same numbers in, same model out: the starts of the search are Sobol points and nothing is drawn.

@@ -11,7 +11,7 @@
 //   sampled points     E[RSS/(P - p)] = V_int + sigma^2 mean(1/r)
 //   all points there   E[RSS/P]       = V_int + sigma^2 mean(1/r) (P - p)/P     (a lattice: V is over its own points)
 //
-// so that with replicates interactions and scatter are told apart. Without, a second model adds products of two factors
+// so that replicates separate interactions from scatter. Without, a second model adds products of two factors
 // (Legendre polynomials up to a total degree of 3 to 10, as far as three points per coefficient allow). It shows how
 // much of the rest is interactions of two factors. The remainder is scatter, higher interactions and the error of the
 // products.
