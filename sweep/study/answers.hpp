@@ -45,7 +45,6 @@ public:
     /// Whether an answer is likelier than none, which is faster.
     [[nodiscard]] std::vector<bool> expected(std::span<const Setting> settings) const;
     [[nodiscard]] Near near(const Setting& setting) const;
-    [[nodiscard]] bool any_failed() const { return failed_ > 0; }
 
 private:
     [[nodiscard]] std::vector<double> rows(std::span<const Setting> settings) const;
