@@ -60,8 +60,8 @@ private:
 /// Returns why the program's command cannot be started here; empty: it can.
 [[nodiscard]] std::string why_not_here(const campaign::Program& program);
 
-/// Stores a program and its files where workers find them by the name of its scene. Files larger than a megabyte stay
-/// in their place on disk. Throws BrokenWorld.
+/// Stores a program and its files under the name of its scene; staged_program() returns the stored program. Files
+/// larger than a megabyte stay in their place on disk. Both throw BrokenWorld.
 void stage_program(const campaign::Program& program, const std::filesystem::path& cases);
 [[nodiscard]] std::shared_ptr<const campaign::Program> staged_program(std::string_view scene,
                                                                       const std::filesystem::path& cases);
