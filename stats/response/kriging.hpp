@@ -5,8 +5,7 @@
 //   var(x) = s^2 - k^T K^-1 k + (1 - 1^T K^-1 k)^2 / (1^T K^-1 1)       of the mean; a single run adds the noise g
 //
 // Leave-out predictions (Dubrule 1983, Math. Geol. 15, 687) keep the hyperparameters and estimate the mean anew. The
-// upper left block
-// of the inverse of the system is B = K^-1 - K^-1 1 1^T K^-1/(1^T K^-1 1), and without the cases S
+// upper left block of the inverse of the system is B = K^-1 - K^-1 1 1^T K^-1/(1^T K^-1 1), and without the cases S
 //
 //   z_S - prediction = B_SS^-1 (B z)_S,   its covariance B_SS^-1 (noise included),   B z = a
 //   a^(-S) = a - B(:, S) B_SS^-1 a_S,     b^(-S) = b - c_S^T B_SS^-1 a_S,   c = K^-1 1/(1^T K^-1 1)
