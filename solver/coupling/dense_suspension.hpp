@@ -1,6 +1,5 @@
 // Fluid and particles that displace each other's volume, advanced together:
-//   1.
-// 1. forces of the particles on the fluid at their predicted middle positions (levels.hpp, force form), without the
+//   1. forces of the particles on the fluid at their predicted middle positions (levels.hpp, force form), without the
 //      forces between particles
 //   2. the fluid step for the volume flux of both (shared_space.hpp)
 //   3. the particles, in the fluid between them, with their interaction

@@ -5,7 +5,6 @@
 // the particle moves by all of it. The velocity changes by the displacement divided by the step (position-based
 // dynamics, Mueller et al. 2007, doi 10.1016/j.jvcir.2007.01.005). A displacement dx and a velocity change dx/dt,
 // against inertia and drag, need the momentum
-//   f dt = (xi + 1/2) dx/dt + (xi + 1/2)/tau dx
 //   f dt = (xi + 1/2) dx/dt + (xi + 1/2)/tau dx   per volume,   tau of the step (motion.hpp).
 // This momentum comes from the contact and is not part of the force on the fluid: a particle resting on a wall exerts
 // no force on the fluid. The forces of two spheres on each other are opposite, with the mean of their tau^-1.
