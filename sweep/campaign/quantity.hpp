@@ -13,9 +13,8 @@ namespace grainsweep::campaign {
 /// - Decimal factors are exact: "60 um" in m is the double nearest to 60e-6.
 /// - Angles are no pure numbers: "30 deg" is refused for a friction coefficient, and "10 %" for an angle.
 /// - A frequency counts turns: 20 rpm is 20 1/min, 2 Hz is 120 rpm, 1 rad/s is 1/(2 pi) Hz.
-/// Only a place in rad/s refuses "Hz" and "1/s", because many authors write 1/s for rad/s. -
-/// Units: UDUNITS-2, whose database is read at the first unit, and deg, rev and the permille
-/// sign.
+/// - Only a place in rad/s refuses "Hz" and "1/s", because many authors write 1/s for rad/s.
+/// - Units: UDUNITS-2, whose database is read at the first unit, and deg, rev and the permille sign.
 [[nodiscard]] std::variant<double, std::string> in_si(std::string_view text, std::string_view unit);
 
 }  // namespace grainsweep::campaign
