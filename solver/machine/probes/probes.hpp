@@ -1,4 +1,4 @@
-// The rows of the catalogue, one per probe; each is defined in the file of its name.
+// Rows of the catalogue, one per probe, each defined in the file of its name.
 #pragma once
 
 #include "solver/machine/probe.hpp"
