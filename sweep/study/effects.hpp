@@ -27,8 +27,7 @@ struct Histogram {
 ///   parts       sampled designs: jackknife that leaves out parts of the design. It includes the spread of the other
 ///               factors in the bin and the scatter of single runs
 ///   pure_error  a lattice or a list with replicates: scatter of single runs, sigma t / sqrt(n), sigma^2 the pure
-///   error;
-///               the settings of the other factors are fixed, so their spread is no error
+///               error; the settings of the other factors are fixed, so their spread is no error
 ///   none        a lattice or a list of single runs: the values in a bin differ by the other factors, so no error is
 ///               known
 struct EffectErrors {
