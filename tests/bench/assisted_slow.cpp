@@ -1,7 +1,10 @@
 // Coverage and actual errors of plain and model-assisted moments: five responses with known moments, 100 campaigns
 // each; minutes: slow_assisted. GRAINSWEEP_CAMPAIGNS sets another number, GRAINSWEEP_CASES another size.
+// With GRAINSWEEP_WRITE_DOCUMENTS the table of docs/coverage.md is written to tests/reference/measured/assisted.csv.
 #include "tests/support/known_responses.hpp"
+#include "tests/support/measured.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -82,6 +85,13 @@ void count(const KnownResponse& response, std::int64_t n, std::uint64_t campaign
                 EXPECT_GE(t.coverage(), 0.95 - 3 * std::sqrt(0.95 * 0.05 / t.asked)) << response.name << " " << k;
             }
         }
+    std::vector<std::string> row = {response.name, fmt::format("{}", n)};
+    for (std::size_t k = 0; k < 4; ++k) {
+        auto &plain = tallies[0][k], &assisted = tallies[1][k];
+        row.push_back(fmt::format("{:.2g} ({}) / {:.2g} ({})", plain.actual(), plain.covered, assisted.actual(),
+                                  assisted.covered));
+    }
+    remember_measured("assisted", {"response", "cases", "mean", "sd", "g1", "kurtosis"}, {row}, 2);
 }
 
 }  // namespace

@@ -1,13 +1,16 @@
 // Coverage of the 95 % intervals of moments and indices where factors follow distributions: 200 campaigns each of a
 // plane, the Ishigami function and the flow through a borehole; minutes: slow_distributions. GRAINSWEEP_CAMPAIGNS sets
-// another number of campaigns. One line of JSON for each figure.
+// another number of campaigns. One line of JSON for each figure. With
+// GRAINSWEEP_WRITE_DOCUMENTS the table of docs/coverage.md is written to tests/reference/measured/distributions.csv.
 #include "stats/assisted_moments.hpp"
 #include "stats/convergence.hpp"
 #include "stats/distribution.hpp"
 #include "stats/model_indices.hpp"
 #include "stats/sensitivity.hpp"
 #include "tests/support/ask_design.hpp"
+#include "tests/support/measured.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -151,6 +154,10 @@ public:
         }
         std::fflush(stdout);
     }
+    [[nodiscard]] std::string share(const std::string& name) const {
+        const Tally& t = tallies_.at(name);
+        return fmt::format("{:.2g}", static_cast<double>(t.covered) / t.asked);
+    }
 
 private:
     std::map<std::string, Tally> tallies_;
@@ -249,10 +256,18 @@ TEST(SlowDistributions, PlainIntervalsReachTheTruth) {
     for (const auto& problem : problems()) {
         const auto truth = truth_of(problem);
         Tallies tallies;
+        const std::vector<std::string> designs = {"halton", "sobol", "latin_hypercube", "random"};
         for (std::uint64_t seed = 1; seed <= campaigns(); ++seed)
-            for (const char* design : {"halton", "sobol", "latin_hypercube", "random"})
-                count_direct(tallies, problem, truth, ask(problem, design, seed));
+            for (const auto& design : designs) count_direct(tallies, problem, truth, ask(problem, design, seed));
         tallies.print(problem);
+        std::vector<std::string> row = {problem.name};
+        for (const auto& design : designs)
+            row.push_back(fmt::format("{}, {}, {}", tallies.share(design + " mean"), tallies.share(design + " sd"),
+                                      tallies.share(design + " first, bins")));
+        remember_measured(
+            "distributions",
+            {"response and distributions", "halton, 8 sequences", "sobol, 8 sequences", "latin_hypercube", "random"},
+            {row}, 1);
     }
 }
 

@@ -1,5 +1,6 @@
 // Coverage of the 95 % intervals of sensitivity indices over campaigns of known responses: of the response model, of
 // bins, and of the split of the variance; minutes: slow_indices. GRAINSWEEP_CAMPAIGNS sets another number of campaigns.
+// With GRAINSWEEP_WRITE_DOCUMENTS the table of docs/coverage.md is written to tests/reference/measured/indices.csv.
 #include "stats/model_indices.hpp"
 #include "stats/random.hpp"
 #include "stats/sensitivity.hpp"
@@ -7,15 +8,19 @@
 #include "tests/support/ask_design.hpp"
 #include "tests/support/known_indices.hpp"
 #include "tests/support/known_responses.hpp"
+#include "tests/support/measured.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -25,6 +30,8 @@ using namespace grainsweep::tests;
 namespace {
 
 constexpr double rounding = 1e-12;
+
+using Range = std::pair<double, double>;
 
 std::uint64_t campaigns() {
     const char* text = std::getenv("GRAINSWEEP_CAMPAIGNS");
@@ -62,10 +69,26 @@ public:
         }
         std::fflush(stdout);
     }
+    /// Lowest and highest share of intervals that hold.
+    void widen(Range& range) const {
+        for (const auto& [name, t] : tallies_) {
+            if (t.asked == 0) continue;
+            const double share = static_cast<double>(t.covered) / t.asked;
+            range = {std::min(range.first, share), std::max(range.second, share)};
+        }
+    }
 
 private:
     std::map<std::string, Tally> tallies_;
 };
+
+void remember(const KnownIndices& known, const std::string& estimator, Range range) {
+    const auto [low, high] = range;
+    remember_measured(
+        "indices", {"response", "estimator", "share of intervals that hold"},
+        {{known.name, estimator, low < high ? fmt::format("{:.2g} to {:.2g}", low, high) : fmt::format("{:.2g}", low)}},
+        2);
+}
 
 struct Campaign {
     std::vector<double> points, values;
@@ -84,7 +107,7 @@ Campaign ask(const KnownIndices& known, std::int64_t n, std::int64_t sequences, 
     return campaign;
 }
 
-void count_models(const KnownIndices& known, std::int64_t n) {
+void count_models(const KnownIndices& known, std::int64_t n, Range& range) {
     Tallies tallies;
     for (std::uint64_t seed = 1; seed <= campaigns(); ++seed) {
         const auto campaign = ask(known, n, 8, seed);
@@ -101,10 +124,11 @@ void count_models(const KnownIndices& known, std::int64_t n) {
                 tallies.add("pair " + x + " x" + std::to_string(k + 1), found.pairs[pair], known.pairs[pair]);
         }
     }
+    tallies.widen(range);
     tallies.print(known.name, n, "model");
 }
 
-void count_bins(const KnownIndices& known, std::int64_t n, std::int64_t sequences) {
+void count_bins(const KnownIndices& known, std::int64_t n, std::int64_t sequences, Range& range) {
     Tallies tallies;
     for (std::uint64_t seed = 1; seed <= campaigns(); ++seed) {
         const auto campaign = ask(known, n, sequences, seed);
@@ -113,10 +137,11 @@ void count_bins(const KnownIndices& known, std::int64_t n, std::int64_t sequence
         for (std::size_t j = 0; j < known.dimensions; ++j)
             tallies.add("first x" + std::to_string(j + 1), found.first[j], known.share * known.first[j]);
     }
+    tallies.widen(range);
     tallies.print(known.name, n, sequences > 1 ? "bins, 8 sequences" : "bins, 1 sequence");
 }
 
-void count_splits(const KnownIndices& known, std::int64_t n, std::int64_t sequences) {
+void count_splits(const KnownIndices& known, std::int64_t n, std::int64_t sequences, Range& range) {
     Tallies tallies;
     const double main = std::accumulate(known.first.begin(), known.first.end(), 0.0) * known.share;
     const double pairs = std::accumulate(known.pairs.begin(), known.pairs.end(), 0.0) * known.share;
@@ -138,6 +163,7 @@ void count_splits(const KnownIndices& known, std::int64_t n, std::int64_t sequen
         tallies.add("pairs", found.pairs, pairs);
         tallies.add("remainder", found.remainder, 1 - main - pairs);
     }
+    tallies.widen(range);
     tallies.print(known.name, n, sequences > 1 ? "split, 8 sequences" : "split, 1 sequence");
 }
 
@@ -147,19 +173,26 @@ class IndexCoverage : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(IndexCoverage, OfTheModel) {
     const auto known = known_indices()[GetParam()];
-    count_models(known, known.cases);
+    Range range{1, 0};
+    count_models(known, known.cases, range);
+    remember(known, "model", range);
 }
 
 TEST_P(IndexCoverage, OfBins) {
     const auto known = known_indices()[GetParam()];
-    for (const std::int64_t n : {192, 512, 2048})
-        for (const std::int64_t sequences : {1, 8}) count_bins(known, n, sequences);
+    for (const std::int64_t sequences : {1, 8}) {
+        Range range{1, 0};
+        for (const std::int64_t n : {192, 512, 2048}) count_bins(known, n, sequences, range);
+        remember(known, sequences > 1 ? "bins, 8 sequences" : "bins, 1 sequence", range);
+    }
 }
 
 TEST_P(IndexCoverage, OfTheSplit) {
     const auto known = known_indices()[GetParam()];
+    Range range{1, 0};
     for (const std::int64_t n : {128, 512, 1024})
-        for (const std::int64_t sequences : {1, 8}) count_splits(known, n, sequences);
+        for (const std::int64_t sequences : {1, 8}) count_splits(known, n, sequences, range);
+    remember(known, "split of the variance", range);
 }
 
 INSTANTIATE_TEST_SUITE_P(Responses, IndexCoverage, ::testing::Range(std::size_t{0}, known_indices().size()),

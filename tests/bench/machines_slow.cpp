@@ -1,12 +1,15 @@
 // Ready machines against ensembles of LIGGGHTS: means over seeds, within three standard errors of their difference;
 // minutes: slow_machines. References: ensembles.csv of tests/reference/machines and of tests/reference/laboratory,
-// definitions in their README.md.
+// definitions in their README.md. With
+// GRAINSWEEP_WRITE_DOCUMENTS the means are written to tests/reference/measured/machines.csv for the documents.
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "tests/support/measured.hpp"
 #include "tests/support/places.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,12 +69,12 @@ Scalars answer(const SceneInfo& scene, const Inputs& set, std::uint64_t seed) {
 
 /// A measured number of the reference, and how a machine's observables give it.
 struct Quantity {
-    std::string name;
+    std::string name, observable;
     std::function<double(const Scalars&)> of;
 };
 
 Quantity same(std::string name, std::string observable) {
-    return {std::move(name), [observable](const Scalars& scalars) { return scalars.at(observable); }};
+    return {std::move(name), observable, [observable](const Scalars& scalars) { return scalars.at(observable); }};
 }
 
 struct Case {
@@ -90,8 +93,8 @@ std::vector<Quantity> of_drum() {
         return [observable](const Scalars& scalars) { return scalars.at(observable) / radius; };
     };
     return {same("lacey_3", "lacey"),
-            {"radius_bed_A", over_radius("radius_a")},
-            {"radius_bed_B", over_radius("radius_b")},
+            {"radius_bed_A", "radius_a", over_radius("radius_a")},
+            {"radius_bed_B", "radius_b", over_radius("radius_b")},
             same("radius_bed_A_minus_B", "segregation"),
             same("angle_cm_deg", "angle")};
 }
@@ -138,8 +141,14 @@ TEST_P(MachinesAgainstLiggghts, AgreeWithinThreeStandardErrors) {
         answers.push_back(answer(scene, asked.set, static_cast<std::uint64_t>(seed)));
     for (const Quantity& quantity : asked.quantities) {
         const Reference& reference = references().at({asked.reference, quantity.name});
-        double mean = 0;
+        double mean = 0, squares = 0;
         for (const Scalars& scalars : answers) mean += quantity.of(scalars) / seeds;
+        for (const Scalars& scalars : answers) squares += std::pow(quantity.of(scalars) - mean, 2);
+        tests::remember_measured(
+            "machines", {"case", "quantity", "machine", "observable", "seeds", "mean", "sd"},
+            {{asked.reference, quantity.name, asked.machine, quantity.observable, fmt::format("{}", seeds),
+              fmt::format("{:.6g}", mean), fmt::format("{:.3g}", std::sqrt(squares / (seeds - 1)))}},
+            2);
         std::printf("%-15s %-24s reference %9.4g here %9.4g difference over tolerance %5.2f\n", asked.reference.c_str(),
                     quantity.name.c_str(), reference.mean, mean,
                     (mean - reference.mean) / (narrower * reference.tolerance));

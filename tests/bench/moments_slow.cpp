@@ -1,9 +1,12 @@
 // Coverage of the 95 % intervals of mean, sd, g1 and kurtosis in 8 random Halton sequences, 200 campaigns of each
 // response; seconds: slow_moments. GRAINSWEEP_CAMPAIGNS sets another number of campaigns. One line of JSON for each
-// figure: how often the interval is given, and how often one that is given misses the truth.
+// figure: how often the interval is given, and how often one that is given misses the truth. With
+// GRAINSWEEP_WRITE_DOCUMENTS the table of docs/coverage.md is written to tests/reference/measured/moments.csv.
 #include "stats/convergence.hpp"
 #include "tests/support/known_responses.hpp"
+#include "tests/support/measured.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,6 +49,7 @@ Checkpoint check_of(const KnownCampaign& campaign) {
 }
 
 void count(const KnownResponse& response, std::int64_t each) {
+    std::vector<std::string> row = {response.name, fmt::format("{}", each)};
     const auto truth = true_statistics(response, true);
     const std::array judged = {Statistic::mean, Statistic::sd, Statistic::g1, Statistic::kurtosis};
     std::array<ShapeTally, 4> tallies;
@@ -67,7 +71,13 @@ void count(const KnownResponse& response, std::int64_t each) {
             response.name.c_str(), static_cast<long long>(each), std::string(to_string(judged[k])).c_str(), given,
             missed, truth[k]);
         EXPECT_LE(missed, 0.1 + 2 * std::sqrt(0.09 / campaigns())) << response.name << ' ' << to_string(judged[k]);
+        row.push_back(given == 1 ? fmt::format("{:.3g} %", 100 * missed)
+                                 : fmt::format("{:.3g} % of {:.3g} %", 100 * missed, 100 * given));
     }
+    if (each == 32 || each == 300)
+        remember_measured(
+            "moments", {"response", "points per sequence", "mean misses", "sd misses", "g1 misses", "kurtosis misses"},
+            {row}, 2);
     std::fflush(stdout);
 }
 

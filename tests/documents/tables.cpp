@@ -3,7 +3,9 @@
 #include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/store/store.hpp"
+#include "tests/documents/command_tables.hpp"
 #include "tests/documents/machine_tables.hpp"
+#include "tests/documents/measured_tables.hpp"
 #include "tests/documents/page.hpp"
 #include "tests/documents/table_rows.hpp"
 #include "tests/support/archive.hpp"
@@ -96,15 +98,28 @@ std::string parameters_table(const ordered_json& scene) {
     return table;
 }
 
-/// What a machine declares itself, without what every machine has.
-ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
+const std::set<std::string>& common_to_machines() {
     static const std::set<std::string> common = {"particles_scale", "time_step", "time_step_fraction", "precision",
                                                  "particles",       "lost",      "max_overlap"};
+    return common;
+}
+
+/// Parameters that every machine has.
+std::string common_parameters() {
+    const auto& declared = catalogue({"machines", "chute"});
+    ordered_json common;
+    for (const auto& one : declared["parameters"])
+        if (common_to_machines().contains(one["name"])) common["parameters"].push_back(one);
+    return parameters_table(common);
+}
+
+/// What a machine declares itself, without what every machine has.
+ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
     const auto& declared = catalogue({"machines", name});
     ordered_json own = ordered_json::array();
     for (const auto& one : declared[part]) {
         const std::string what = one["name"];
-        if (!common.contains(what) || (what == "particles" && part == "parameters"))
+        if (!common_to_machines().contains(what) || (what == "particles" && part == "parameters"))
             if (!what.ends_with("_error")) own.push_back(one);
     }
     ordered_json machine;
@@ -136,6 +151,29 @@ std::string machines_table(const std::string& kind) {
         table += row({fmt::format("[`{}`]({})", name, place), shown(machine["summary"])});
     }
     return table;
+}
+
+/// Scenes with a page; for README.md.
+std::string scenes_table() {
+    std::string table = head({"scene", "what it is"});
+    for (const auto& scene : catalogue({"scenes"})) {
+        const std::string name = shown(scene["scene"]);
+        if (has_own_page(name)) table += row({fmt::format("[{0}](docs/scenes/{0}.md)", name), shown(scene["summary"])});
+    }
+    return table;
+}
+
+/// Ready machines beside LIGGGHTS, by the cases of the reference.
+std::string liggghts(std::istream& words) {
+    std::vector<std::string> cases;
+    for (std::string one; words >> one;) cases.push_back(one);
+    std::map<std::pair<std::string, std::string>, std::string> units;
+    for (const auto& machine : catalogue({"machines"})) {
+        const std::string name = shown(machine["machine"]);
+        const auto& declared = catalogue({"machines", name});
+        for (const auto& one : declared["observables"]) units[{name, shown(one["name"])}] = shown(one["unit"]);
+    }
+    return liggghts_table(cases, units);
 }
 
 std::string observables_table(const ordered_json& scene) {
@@ -222,57 +260,21 @@ std::string keys_table(const std::string& section) {
     return table;
 }
 
-/// Entries of a section of --help, in its order: what they are called and what they mean.
-std::vector<std::pair<std::string, std::string>> entries_of_help(std::vector<std::string> command,
-                                                                 std::string_view section) {
-    static const std::regex entry(R"(^  (\S+(?: \S+)*)(?: {2,}(.*))?$)"), more(R"(^ {20,}(\S.*)$)");
-    command.emplace_back("--help");
-    std::istringstream help(answer_of(command));
-    std::vector<std::pair<std::string, std::string>> entries;
-    bool inside = false;
-    for (std::string line; std::getline(help, line);) {
-        if (!line.starts_with(' ')) inside = line == section;
-        std::smatch match;
-        if (inside && std::regex_match(line, match, more))
-            entries.back().second += (entries.back().second.empty() ? "" : " ") + match[1].str();
-        else if (inside && std::regex_match(line, match, entry))
-            entries.emplace_back(match[1], match[2]);
-    }
-    return entries;
-}
-
-std::string commands_table() {
-    std::string table = head({"command", "does"});
-    for (const auto& [name, summary] : entries_of_help({}, "Subcommands:"))
-        table += row({fmt::format("[`{0}`](#{0})", name), summary});
-    return table;
-}
-
-/// The arguments and options of one command, without those of every command, and its example.
-std::string command_table(const std::string& command) {
-    std::string table = head({"argument", "meaning"});
-    for (auto [name, meaning] : entries_of_help({command}, "Positionals:"))
-        table += row({"`" + name.substr(0, name.find(' ')) + "`", meaning});
-    for (const auto& [name, meaning] : entries_of_help({command}, "Options:"))
-        if (name != "-h,--help" && name != "--format FORMAT" && name != "--wide")
-            table += row({"`" + name.substr(0, name.find(" REQUIRED")) + "`", meaning});
-    if (table == head({"argument", "meaning"})) table = "No arguments.\n";
-    for (const auto& [example, ignored] : entries_of_help({command}, "Example:"))
-        table += "\nExample: `" + example + "`\n";
-    return table;
-}
-
 std::string generated(const std::string& what) {
     std::istringstream words(what);
     std::string kind, name, part;
-    words >> kind >> name >> part;
+    words >> kind;
+    if (kind == "liggghts") return liggghts(words);
+    words >> name >> part;
     if (kind == "scene") {
         const auto& scene = catalogue({"scenes", name});
         if (part == "parameters") return parameters_table(scene);
         if (part == "observables") return observables_table(scene);
         if (part == "accuracy") return accuracy_table(scene);
     }
-    if (kind == "machines") return machines_table(name);
+    if (kind == "scenes") return scenes_table();
+    if (kind == "measured") return measured_table(name, part == "crossed");
+    if (kind == "machines") return name == "common" ? common_parameters() : machines_table(name);
     if (kind == "machine") return name == "keys" ? machine_keys_tables() : machine_table(name);
     if (kind == "ready") {
         const auto machine = own_part_of_machine(name, part);
@@ -285,6 +287,7 @@ std::string generated(const std::string& what) {
     if (kind == "keys") return keys_table(name);
     if (kind == "commands") return commands_table();
     if (kind == "command") return command_table(name);
+    if (kind == "manual") return manual_table(name == "functions" ? "FUNCTIONS OF QUERY" : "EXIT STATUS");
     throw std::invalid_argument("no table is called '" + what + "'");
 }
 
