@@ -124,7 +124,7 @@ using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flig
 /// Returns the angular velocity of a flight, rad/s.
 [[nodiscard]] Vec3 spin_of(const Flight& flight);
 
-/// Pose of a body: x = R X + shift.
+/// Where a body stands: x = R X + shift.
 struct Pose {
     bool turned = false;  ///< false: R = 1
     std::array<Vec3, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -149,13 +149,13 @@ struct Twist {
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);
 /// Returns the velocity at a time; each motion acts from its start until before its end.
 [[nodiscard]] Twist twist_at(std::span<const Motion> motions, double time);
-/// Updates the speeds of free motions after `span` under a load: force on the body, and its moment about a point, at
-/// `time`. Other motions do not change. A motion that is held at this time has speed 0.
+/// The speeds of free motions after `span` under a load: force on the body, and its moment about a point, at `time`.
+/// Others stay as they are. A motion that is held at that time has no speed.
 void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
           double span);
-/// Updates the travel of a free motion after `span`.
+/// The way of a free motion after `span`.
 void drift(Motion& motion, double span);
-/// Copies travel and speed from the free motion of the same kind and number.
+/// Takes way and speed of the free motion of the same kind and number.
 void take_state(Motion& motion, std::span<const Motion> from);
 /// Returns whether the motion never moves the body.
 [[nodiscard]] bool is_still(const Motion& motion);
