@@ -117,6 +117,7 @@ struct ContactForce {
     bool slides = false;      ///< friction is at its limit, or there is none
     /// What the normal force, and all the rest, take out of the motion of both bodies, W.
     double normal_power = 0, tangential_power = 0;
+    double stored = 0;  ///< energy in the springs, and of cohesion, J
 };
 
 /// Load on a wall by the particles in the last step of a run (after a fault: of walls that move): the reaction to their
@@ -180,13 +181,16 @@ public:
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
     /// The same with the forces of the last step, which the laws computed at the velocities of the half step before.
     /// Times the time step, the powers are the loss of a step: kinetic energy at half steps changes by them, by the
-    /// work of the walls and by the work of body forces. This holds to rounding in double precision, and to 1e-3 in
+    /// work of the walls and by the work of body forces. This holds to rounding in double precision, and to 3e-3 in
     /// mixed precision, which judges anew whether springs yield. After a step only.
     virtual void step_contacts(std::vector<ContactForce>& into) const = 0;
     /// The wall with this number as it is, with way and speed of its free motions.
     [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;
     /// Of the wall with this number, about a point.
     [[nodiscard]] virtual WallLoad wall_load(std::size_t wall, const Vec3& about) const = 0;
+    /// What changed the kinetic energy of a wall that the powder moves, to rounding. Speeds and energy are those of the
+    /// full step in double precision, and in mixed precision those half a step later.
+    [[nodiscard]] virtual const geometry::BodyEnergy& wall_energy(std::size_t wall) const = 0;
     /// What became unsound, where and when; empty: the state is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;

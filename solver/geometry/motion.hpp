@@ -123,6 +123,18 @@ using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flig
 /// Angular velocity of a flight, rad/s.
 [[nodiscard]] Vec3 spin_of(const Flight& flight);
 
+/// What changed the kinetic energy of the free motions of a body, J. kinetic_energy() is their sum to rounding,
+/// whatever the time step: a kick changes m v^2/2 by its force times the mean of the speeds before and after it.
+struct BodyEnergy {
+    double start = 0;     ///< kinetic, when the walls were set
+    double contacts = 0;  ///< work of the load
+    double own = 0;       ///< work of the force and moment of the motions themselves: press, drive, weight
+    double bounds = 0;    ///< work of what bounds the speed or holds the body, and of a change of its motions
+    double turning = 0;   ///< error of the integrator: a free turn keeps the energy to second order in the time step
+
+    [[nodiscard]] double sum() const { return start + contacts + own + bounds + turning; }
+};
+
 /// Where a body stands: x = R X + shift.
 struct Pose {
     bool turned = false;  ///< false: R = 1
@@ -148,12 +160,14 @@ struct Twist {
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);
 /// A motion counts from its start on, up to its end.
 [[nodiscard]] Twist twist_at(std::span<const Motion> motions, double time);
+/// Kinetic energy of the free motions, J.
+[[nodiscard]] double kinetic_energy(std::span<const Motion> motions);
 /// The speeds of free motions after `span` under a load: force on the body, and its moment about a point, at `time`.
-/// Others stay as they are. A motion that is held at that time has no speed.
-void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
-          double span);
-/// The way of a free motion after `span`.
-void drift(Motion& motion, double span);
+/// Others stay as they are. A motion that is held at that time has no speed. Adds what changed their energy.
+void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span,
+          BodyEnergy& energy);
+/// The way of a free motion after `span`; likewise.
+void drift(Motion& motion, double span, BodyEnergy& energy);
 /// Takes way and speed of the free motion of the same kind and number.
 void take_state(Motion& motion, std::span<const Motion> from);
 /// Whether it moves anything at any time.

@@ -54,6 +54,10 @@ public:
     void kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span);
     /// Moves a free wall on by its speeds; place() completes it.
     void drift(double span);
+    /// What changed the kinetic energy of a free wall since the walls were set.
+    [[nodiscard]] const geometry::BodyEnergy& energy() const { return energy_; }
+    /// That of a checkpoint.
+    void take_energy(const geometry::BodyEnergy& energy) { energy_ = energy; }
 
     [[nodiscard]] const Wall& wall() const { return wall_; }
     /// The shape as particles find it in its body frame: with its images where they can touch more than one.
@@ -108,7 +112,8 @@ private:
     std::vector<geometry::Motion> displacing_;  // those that move the surface
     bool switches_ = false;                     // one of them starts late or ends
     bool free_ = false;
-    geometry::Pose before_;  // of a free wall
+    geometry::Pose before_;        // of a free wall
+    geometry::BodyEnergy energy_;  // likewise
     bool bounded_ = false;
     bool single_contact_ = true;
     bool thin_ = false;
