@@ -119,6 +119,7 @@ struct ContactForce {
     bool slides = false;      ///< the tangential force is at the limit of friction, or there is no friction
     /// Power that the normal force, and all other forces and moments, remove from the motion of both bodies, W.
     double normal_power = 0, tangential_power = 0;
+    double stored = 0;  ///< energy in the springs, and of cohesion, J
 };
 
 /// Load of the particles on a wall in the last step of a run (after a fault: of moving walls). It is the reaction to
@@ -182,16 +183,19 @@ public:
     /// Lists every touching pair with a mobile particle, and every touch of a wall. The order depends on the state
     /// only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
-    /// The same with the forces of the last step, which the laws computed at the velocities of the half step before.
-    /// Times the time step, the powers are the loss of a step: kinetic energy at half steps changes by them, by the
-    /// work of the walls and by the work of body forces. This holds to rounding in double precision, and to 1e-3 in
-    /// mixed precision, which judges anew whether springs yield. After a step only.
+    /// Lists the same contacts with the forces of the last step, which use the velocities of the half step before. The
+    /// powers times the time step are the loss of the step: kinetic energy at half steps changes by this loss, the work
+    /// of the walls and the work of body forces. This is exact to rounding in double precision, and to 3e-3 in mixed
+    /// precision, which decides anew whether springs yield. Valid only after a step.
     virtual void step_contacts(std::vector<ContactForce>& into) const = 0;
     /// Returns the wall with this number, with travel and speed of its free motions.
     [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;
     /// Returns the load on the wall with this number, about a point.
     [[nodiscard]] virtual WallLoad wall_load(std::size_t wall, const Vec3& about) const = 0;
-    /// What became unsound, where and when; empty: the state is sound.
+    /// Returns the booked changes of the kinetic energy of a wall that the powder moves, exact to rounding. Speeds and
+    /// energy are those of the full step in double precision, and in mixed precision those half a step later.
+    [[nodiscard]] virtual const geometry::BodyEnergy& wall_energy(std::size_t wall) const = 0;
+    /// Returns the fault of an unsound state, with place and time; empty: the state is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;
     /// Saves the complete state. An engine of the same Setup and Method restored from it continues with the same bits.

@@ -66,7 +66,8 @@ template <Partner partner>
             .slip = now.slip,
             .slides = r.slides || r.resistance == Vec3{},
             .normal_power = -r.normal * now.normal_velocity,
-            .tangential_power = dot(r.resistance, now.slip) + dot(r.rolling, now.turning)};
+            .tangential_power = dot(r.resistance, now.slip) + dot(r.rolling, now.turning),
+            .stored = laws.energy(now, memory)};
 }
 
 }  // namespace grainsweep::dem

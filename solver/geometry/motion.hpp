@@ -124,7 +124,19 @@ using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flig
 /// Returns the angular velocity of a flight, rad/s.
 [[nodiscard]] Vec3 spin_of(const Flight& flight);
 
-/// Where a body stands: x = R X + shift.
+/// Booked changes of the kinetic energy of the free motions of a body, J. Their sum is kinetic_energy() to rounding for
+/// any time step: a kick changes m v^2/2 by its force times the mean of the speeds before and after it.
+struct BodyEnergy {
+    double start = 0;     ///< kinetic energy when the walls were set
+    double contacts = 0;  ///< work of the load
+    double own = 0;       ///< work of the force and moment of the motions themselves: press, drive, weight
+    double bounds = 0;    ///< work of limits of the speed, of holding the body, and of a change of its motions
+    double turning = 0;   ///< error of the integrator: a free turn keeps the energy to second order in the time step
+
+    [[nodiscard]] double sum() const { return start + contacts + own + bounds + turning; }
+};
+
+/// Pose of a body: x = R X + shift.
 struct Pose {
     bool turned = false;  ///< false: R = 1
     std::array<Vec3, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -149,13 +161,15 @@ struct Twist {
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);
 /// Returns the velocity at a time; each motion acts from its start until before its end.
 [[nodiscard]] Twist twist_at(std::span<const Motion> motions, double time);
-/// The speeds of free motions after `span` under a load: force on the body, and its moment about a point, at `time`.
-/// Others stay as they are. A motion that is held at that time has no speed.
-void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
-          double span);
-/// The way of a free motion after `span`.
-void drift(Motion& motion, double span);
-/// Takes way and speed of the free motion of the same kind and number.
+/// Returns the kinetic energy of the free motions, J.
+[[nodiscard]] double kinetic_energy(std::span<const Motion> motions);
+/// Updates the speeds of free motions after `span` under a load: force on the body, and its moment about a point, at
+/// `time`. Other motions do not change. A motion that is held at this time has speed 0. Adds the changes to `energy`.
+void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span,
+          BodyEnergy& energy);
+/// Updates the travel of a free motion after `span`. Adds the change to `energy`.
+void drift(Motion& motion, double span, BodyEnergy& energy);
+/// Copies travel and speed from the free motion of the same kind and number.
 void take_state(Motion& motion, std::span<const Motion> from);
 /// Returns whether the motion never moves the body.
 [[nodiscard]] bool is_still(const Motion& motion);

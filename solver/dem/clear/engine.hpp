@@ -59,6 +59,9 @@ public:
     void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(true, into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_.at(wall).wall.wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
+    [[nodiscard]] const geometry::BodyEnergy& wall_energy(std::size_t wall) const override {
+        return walls_.at(wall).wall.energy();
+    }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;

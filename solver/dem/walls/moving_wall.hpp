@@ -54,6 +54,10 @@ public:
     void kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span);
     /// Moves a free wall by its speeds; place() completes the motion.
     void drift(double span);
+    /// What changed the kinetic energy of a free wall since the walls were set.
+    [[nodiscard]] const geometry::BodyEnergy& energy() const { return energy_; }
+    /// That of a checkpoint.
+    void take_energy(const geometry::BodyEnergy& energy) { energy_ = energy; }
 
     [[nodiscard]] const Wall& wall() const { return wall_; }
     /// Returns the shape in its body frame that is searched for contacts; with its images if a particle can touch
@@ -113,7 +117,8 @@ private:
     std::vector<geometry::Motion> displacing_;  // motions that move the surface
     bool switches_ = false;                     // one of these motions starts late or ends
     bool free_ = false;
-    geometry::Pose before_;  // of a free wall
+    geometry::Pose before_;        // of a free wall
+    geometry::BodyEnergy energy_;  // likewise
     bool bounded_ = false;
     bool single_contact_ = true;
     bool thin_ = false;
