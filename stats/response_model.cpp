@@ -113,8 +113,8 @@ std::optional<response::Hyperparameters> search(const Eigen::MatrixXd& x, const 
                                           {options.starts, options.cases_in_fit, options.map});
 }
 
-/// Leave-one-out error, in the unit of the response over its sd: of a response with a long tail few cases decide it, so
-/// that more of them are asked than decide the hyperparameters.
+/// Returns the leave-one-out error divided by the sd of the response. For a response with a long tail few cases decide
+/// the error, so it uses more cases than the search for the hyperparameters.
 double error_left_out(const response::Hyperparameters& h, const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                       bool logarithm) {
     ResponseModel::State state;

@@ -68,8 +68,8 @@ std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading)
     throw wrong_question(wall.path(), "", "key 'material' is missing: several materials could be meant");
 }
 
-/// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes of a wall or
-/// of a motion. Within it the counter "as" is known.
+/// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes. Within it the
+/// counter "as" is known.
 template <class Read>
 void for_every_one(const Section& section, MachineReading& reading, Read read) {
     const auto repeat = section.find("repeat"), as = section.find("as");

@@ -35,9 +35,9 @@ std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settl
     return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, most_bins);
 }
 
-/// The binned index of a lattice with replicates without the part that scatter gives to the means, and the half-width
-/// of normal scatter: a sum of squares S of f degrees of freedom has E[S] = S0 + f sigma^2 and, as a (noncentral)
-/// chi-squared variable, V[S] = 2 f sigma^4 + 4 sigma^2 S0; the index is one such sum over that and the rest.
+/// Removes the contribution of scatter to the bin means from the index of a lattice with replicates, and sets its
+/// half-width for normal scatter. A sum of squares S with f degrees of freedom is a (noncentral) chi-squared variable:
+/// E[S] = S0 + f sigma^2, V[S] = 2 f sigma^4 + 4 sigma^2 S0. The index is the ratio of one such sum to the total.
 void take_out_scatter(FactorInfluence& factor, const stats::VarianceSplit& split, std::span<const double> values) {
     double n = 0, mean = 0, squares = 0;
     for (const double value : values) {
@@ -86,8 +86,8 @@ double variance_in_bins(const Responses& responses, const stats::PureError& pure
     return freedom > 0 ? std::max(0.0, squares / freedom) : not_a_number;
 }
 
-/// The response bends where its binned means leave the best rising and the best falling curve by more than scatter
-/// explains: a sum of squares beyond three standard deviations of a chi-squared variable.
+/// Returns the trend. The response bends if the distance of its bin means from the best rising and the best falling
+/// curve is more than scatter explains: a sum of squares beyond three standard deviations of a chi-squared variable.
 Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, const Responses& responses,
                const stats::PureError& pure, std::span<const double> response) {
     double centre = 0, count = 0;
@@ -152,8 +152,8 @@ void add_trends(Influence& influence, const Responses& responses, std::span<cons
     }
 }
 
-/// Values of points that do not depend on each other: of a block of a Saltelli design its first two points alone, for
-/// the others repeat their coordinates, and bins of repeated coordinates would explain what other factors do.
+/// Returns the values of independent points. In a block of a Saltelli design these are the first two points, because
+/// the others repeat their coordinates. Bins of repeated coordinates would include effects of other factors.
 std::vector<double> independent_values(const Responses& responses, const ResponseColumn& response) {
     const auto judged = responses.judged(response);
     std::vector<double> values(judged.begin(), judged.end());
