@@ -1,4 +1,4 @@
-// The signals by which systems ask a process to end.
+// Signals by which systems request the end of a process.
 #pragma once
 
 #include <array>
