@@ -10,7 +10,8 @@
 //   POST /film?token=T&database=NAME&case=ID          -> {"job": n}, or {"film": address} where it is there already
 //   GET  /job?token=T&number=n        {"running": true} | {"code", "out", "err"}
 //   GET  /film?token=T&database=NAME&case=ID          the page of a film
-//   POST /stop | /run | /again?... | /more?points=N   only where the user allowed it: what the command line would do
+//   POST /stop | /run | /again?... | /more?points=N   only where the user allowed it: what the command line would do;
+//                                     with config=NAME where there are several campaign files
 //
 // Every question needs the token that was printed, and a Host field of this machine: a page of another site cannot ask
 // even where it makes its own name point here (DNS rebinding).
@@ -36,9 +37,9 @@
 
 namespace grainsweep::live {
 
-/// What the reader of the page may do to the campaign.
+/// What the reader of the page may run.
 struct Control {
-    std::filesystem::path config;  ///< the campaign file that is run again
+    std::vector<std::filesystem::path> configs;  ///< campaign files, with different names
 };
 
 /// What a page has started. It goes on where a database is added to those that are served.
@@ -74,6 +75,8 @@ private:
     [[nodiscard]] HttpReply film(const HttpQuestion& question) const;
     [[nodiscard]] HttpReply job(const HttpQuestion& question);
     [[nodiscard]] HttpReply steer(const HttpQuestion& question);
+    /// The campaign file that the question names, or the only one.
+    [[nodiscard]] const std::filesystem::path* config_of(const HttpQuestion& question) const;
     /// The database that the question names, or the only one.
     [[nodiscard]] const Follower* asked(const HttpQuestion& question) const;
     [[nodiscard]] std::string event(std::string_view kind, std::string_view data, std::int64_t number) const;
