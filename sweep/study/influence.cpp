@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "stats/confidence.hpp"
+#include "stats/spread.hpp"
 #include "stats/trend.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
@@ -185,6 +186,23 @@ stats::VarianceSplit split_of(const Responses& responses, std::span<const double
     return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
 }
 
+/// Of values that depend on other factors a binned index is no first-order index of an independent factor.
+void note_dependent_values(Influence& influence, const Responses& responses) {
+    const auto note = [&](const char* sentence, auto depends) {
+        std::vector<std::string> names;
+        for (std::size_t j = 0; j < responses.factors.size(); ++j)
+            if (depends(j)) names.push_back(responses.factors[j].name);
+        if (!names.empty()) influence.notes.push_back(fmt::format(fmt::runtime(sentence), campaign::listed(names)));
+    };
+    note(
+        "the binned index of {} includes the effect of its condition, because the default stands where that is false; "
+        "indices by a response model do not include it",
+        [&](std::size_t j) { return responses.factors[j].conditional; });
+    if (responses.design().purpose == designs::Purpose::saltelli) return;  // the shares have one index there
+    note("{} add to one: the binned index of each includes the effect of the others, and the indices have no sum",
+         [&](std::size_t j) { return responses.group_names[responses.groups[j]] == campaign::group_of_shares; });
+}
+
 void add_given_data(Influence& influence, const Responses& responses, std::span<const double> values) {
     const bool lattice = responses.design().beginning == designs::Beginning::corner;
     const std::int64_t points = influence.split.points;  // replicates add nothing to how well a sample covers the range
@@ -224,6 +242,7 @@ void add_given_data(Influence& influence, const Responses& responses, std::span<
             fmt::format("with {} points in {} bins an index below about {:.2g} is indistinguishable from zero", points,
                         bins_at_most, floor));
     }
+    note_dependent_values(influence, responses);
 }
 
 }  // namespace
@@ -299,6 +318,11 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
             fmt::format("a {} places its points by results: shares of the variance over the ranges are those of the "
                         "response model alone",
                         responses.campaign.design));
+        add_trends(influence, responses, values);
+        return influence;
+    }
+    if (const auto reason = stats::reason_against_powers(values, 2); !reason.empty()) {
+        influence.notes.push_back("no shares of the variance: " + reason);
         add_trends(influence, responses, values);
         return influence;
     }
