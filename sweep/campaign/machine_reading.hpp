@@ -23,7 +23,7 @@ struct MachineReading {
     const std::map<std::string, std::string, std::less<>>& files;
     std::map<std::string, std::string_view, std::less<>> chosen;  ///< contents of parameters that are files, by value
     MachineScope scope;
-    double particles_scale = 1;
+    double particles_scale = 1, stiffness_scale = 1;
 
     machine::Spec spec;
     std::vector<std::string> materials;                ///< all of them, those of walls too

@@ -189,6 +189,8 @@ public:
     /// std::logic_error for an observable that the scene has not declared.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
+    /// Deletes what was recorded, and where the campaign stopped.
+    void forget_checks(std::string_view campaign);
     /// Stores where the campaign converged and stopped; nothing: it goes on.
     void stop(std::string_view campaign, std::optional<std::int64_t> points);
 

@@ -98,8 +98,9 @@ std::string parameters_table(const ordered_json& scene) {
 
 /// What a machine declares itself, without what every machine has.
 ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
-    static const std::set<std::string> common = {"particles_scale", "time_step", "time_step_fraction", "precision",
-                                                 "particles",       "lost",      "max_overlap"};
+    static const std::set<std::string> common = {
+        "particles_scale", "stiffness_scale", "time_step", "time_step_fraction",
+        "precision",       "particles",       "lost",      "max_overlap"};
     const auto& declared = catalogue({"machines", name});
     ordered_json own = ordered_json::array();
     for (const auto& one : declared[part]) {
