@@ -17,7 +17,7 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array predictor_words = {"none", "difference", "slope", "factors", "model"};
+constexpr std::array predictor_words = {"none", "difference", "slope", "factors", "squares", "model"};
 
 /// The points with a cheap value, those with both first in `pairs`.
 struct Sample {
@@ -60,12 +60,11 @@ struct PairPrediction {
     Eigen::Index coefficients = 0;
 };
 
-/// 1, then the cheap value, then the factors.
+/// 1, then the cheap value, the factors, and their squares.
 Eigen::MatrixXd terms_of(const Sample& sample, Eigen::Index count) {
-    Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(sample.size(), count);
-    if (count > 1) terms.col(1) = sample.cheap;
-    if (count > 2) terms.rightCols(count - 2) = sample.factors;
-    return terms;
+    Eigen::MatrixXd terms(sample.size(), 2 + 2 * sample.factors.cols());
+    terms << Eigen::VectorXd::Ones(sample.size()), sample.cheap, sample.factors, sample.factors.cwiseAbs2();
+    return terms.leftCols(count);
 }
 
 PairPrediction regression(const Sample& sample, PairPredictor by, Eigen::Index count) {
@@ -139,6 +138,7 @@ std::vector<PairPrediction> predictions_of(const Sample& sample) {
     if (pairs >= pairs_each * 2) all.push_back(regression(sample, PairPredictor::slope, 2));
     if (width == 0) return all;
     if (pairs >= pairs_each * (2 + width)) all.push_back(regression(sample, PairPredictor::factors, 2 + width));
+    if (pairs >= pairs_each * (2 + 2 * width)) all.push_back(regression(sample, PairPredictor::squares, 2 + 2 * width));
     if (pairs >= model_from && pairs <= model_to)
         if (auto model = model_of_difference(sample)) all.push_back(*std::move(model));
     return all;

@@ -7,6 +7,7 @@
 //   difference  g = c                        two-level Monte Carlo (Giles 2015, Acta Numerica 24, 259)
 //   slope       g = b0 + b c                 control variate (Lavenberg & Welch 1981, Management Science 27, 322)
 //   factors     g = b0 + b c + sum_j b_j x_j regression, from four pairs a coefficient on
+//   squares     the same + sum_j a_j x_j^2
 //   model       g = c + GP(x)                the response model of the difference, from 24 to 500 pairs
 // The one with the least rms residual of left-out sequences, times its Student factor, is taken. Where runs scatter by
 // themselves b tends to 0 and T to the mean of the expensive values alone.
@@ -28,7 +29,7 @@
 
 namespace grainsweep::stats {
 
-enum class PairPredictor { none, difference, slope, factors, model };
+enum class PairPredictor { none, difference, slope, factors, squares, model };
 
 [[nodiscard]] std::string_view to_string(PairPredictor predictor);
 

@@ -77,21 +77,29 @@ void propose(const TwoLevelRule& rule, std::int64_t sequences, TwoLevelCheck& ch
     check.next_pairs = check.pairs == 0 ? 0 : whole_sequences(next.pairs, sequences, check.next_points);
 }
 
-double predicted_pairs_cost(const TwoLevelRule& rule, const Pilot& pilot, const PilotLevel& level) {
-    const auto n = std::ssize(level.values), sequences = static_cast<std::int64_t>(pilot.sequences);
-    auto here = rule;
-    here.cost_ratio = pilot.levels.back().cost / level.cost;
-    TwoLevelCheck check{.points = n, .pairs = n, .moments = {}};
+/// Cost of the values and pairs that are still to run, in cheap values; infinite where it is unknown.
+double further_cost_of_pairs(const TwoLevelRule& rule, const PairedValues& values) {
+    TwoLevelCheck check{.points = std::ssize(values.cheap), .pairs = std::ssize(values.expensive), .moments = {}};
     for (const auto gate : rule.gates) {
-        auto& moment = check.moments.emplace_back(
-            two_level_moment(gate, {level.values, pilot.levels.back().values, pilot.sequences, pilot.points}));
+        auto& moment = check.moments.emplace_back(two_level_moment(gate, values));
         moment.statistics = moment.scatter;
     }
-    const auto first = first_sizes(sequences, true);
-    const auto sizes = needed(here, check);
-    const double pairs = std::max(sizes.pairs, static_cast<double>(first.pairs));
-    const double points = std::max(sizes.points, static_cast<double>(first.points));
-    return (points - static_cast<double>(n)) * level.cost + (pairs - static_cast<double>(n)) * pilot.levels.back().cost;
+    const auto first = first_sizes(static_cast<std::int64_t>(values.sequences), true);
+    const auto sizes = needed(rule, check);
+    if (std::isnan(sizes.points)) return std::numeric_limits<double>::infinity();
+    const auto missing = [](double wanted, std::int64_t least, std::int64_t present) {
+        return std::max({wanted, static_cast<double>(least), static_cast<double>(present)}) -
+               static_cast<double>(present);
+    };
+    return missing(sizes.points, first.points, check.points) +
+           missing(sizes.pairs, first.pairs, check.pairs) * rule.cost_ratio;
+}
+
+/// The same of the expensive response alone.
+double further_cost_alone(const TwoLevelRule& rule, const PairedValues& values) {
+    const auto n = static_cast<double>(values.expensive.size());
+    const double cases = cases_alone(rule, {values.expensive, {}, values.sequences, values.points});
+    return std::isnan(cases) ? std::numeric_limits<double>::infinity() : std::max(0.0, cases - n) * rule.cost_ratio;
 }
 
 }  // namespace
@@ -149,15 +157,21 @@ double cases_alone(const TwoLevelRule& rule, const PairedValues& expensive) {
     return most;
 }
 
+bool alone_costs_less(const TwoLevelRule& rule, const PairedValues& values) {
+    return further_cost_alone(rule, values) < further_cost_of_pairs(rule, values);
+}
+
 std::size_t cheapest_level(const TwoLevelRule& rule, const Pilot& pilot) {
     const auto& measure = pilot.levels.back();
-    const auto n = static_cast<double>(measure.values.size());
     std::size_t best = pilot.levels.size() - 1;
-    double least = (cases_alone(rule, {measure.values, {}, pilot.sequences, pilot.points}) - n) * measure.cost;
-    if (std::isnan(least)) least = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k + 1 < pilot.levels.size(); ++k) {
-        const double cost = predicted_pairs_cost(rule, pilot, pilot.levels[k]);
-        if (!(cost < least)) continue;
+        const auto& level = pilot.levels[k];
+        auto here = rule;
+        here.cost_ratio = measure.cost / level.cost;
+        const PairedValues values{level.values, measure.values, pilot.sequences, pilot.points};
+        const double cost = further_cost_of_pairs(here, values) * level.cost;
+        if (!(cost < least) || !(cost < further_cost_alone(here, values) * level.cost)) continue;
         least = cost;
         best = k;
     }

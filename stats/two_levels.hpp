@@ -75,6 +75,10 @@ struct Pilot {
 /// leaves, for evenly spread points integrate the trend. What the pilot has run costs nothing more.
 [[nodiscard]] std::size_t cheapest_level(const TwoLevelRule& rule, const Pilot& pilot);
 
+/// Returns whether the expensive response alone is predicted to meet the tolerance at less further cost than more
+/// values and pairs. The pairs so far count for both.
+[[nodiscard]] bool alone_costs_less(const TwoLevelRule& rule, const PairedValues& values);
+
 /// Returns how many values of the expensive response alone would bring every gate within the tolerance, no fewer than
 /// the first check has.
 [[nodiscard]] double cases_alone(const TwoLevelRule& rule, const PairedValues& expensive);

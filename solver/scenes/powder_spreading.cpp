@@ -70,7 +70,9 @@ SceneInfo powder_spreading_scene() {
     info.accuracy = {{"survey", survey},
                      {"fast", numerics(0.3, 5, "mixed")},
                      {"balanced", numerics(0.2, 10, "mixed")},
+                     {"fine", numerics(0.05, 20, "mixed")},
                      {"reference", numerics(0.05, 20, "double")}};
+    info.stiffness = "youngs_modulus";
     info.parameters = spreading::question::parameters();
     info.observables = spreading::record::observables();
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,

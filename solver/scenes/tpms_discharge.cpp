@@ -341,6 +341,7 @@ SceneInfo tpms_discharge_scene() {
     info.accuracy["fast"] = {{"precision", std::string("mixed")}, {"time_step", 2e-6}};
     info.accuracy["balanced"] = {{"precision", std::string("mixed")}};
     info.accuracy["reference"] = {{"precision", std::string("double")}};
+    info.stiffness = "youngs_modulus";
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
                     const Files& files) -> std::unique_ptr<Scene> {
         const TpmsQuestion question(inputs, seed);

@@ -98,8 +98,9 @@ void read_materials(const Section& top, MachineReading& reading) {
         require_name(place, name);
         const Section section(place, machine_keys::material());
         reading.materials.push_back(name);
-        reading.elasticities.push_back({reading.scope.number(section.at("youngs_modulus"), "Pa", {1e3, 1e13}),
-                                        reading.scope.number(section, "poisson_ratio", "1", 0.3, {0, 0.49})});
+        const double modulus = reading.scope.number(section.at("youngs_modulus"), "Pa", {1e3, 1e13});
+        reading.elasticities.push_back(
+            {modulus * reading.stiffness_scale, reading.scope.number(section, "poisson_ratio", "1", 0.3, {0, 0.49})});
         reading.densities.push_back(reading.scope.number(section, "density", "kg/m3", 0, positive_number));
     }
 }
@@ -141,6 +142,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
             if (contact.surface_tension > 0 && contact.cohesion_law != dem::CohesionLaw::capillary)
                 throw wrong_question(top.find("contacts")->path(), "",
                                      "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
+            contact.stiffness *= reading.stiffness_scale;
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;
             if (reading.elasticities[a] != reading.elasticities[b]) contact.partner = reading.elasticities[b];

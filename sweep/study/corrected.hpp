@@ -15,14 +15,16 @@
 namespace grainsweep::study {
 
 struct Corrected {
-    campaign::AccuracyGoal goal;  ///< its setting is known
+    campaign::AccuracyGoal goal;  ///< its setting is known; `reference` where that goes on alone
     stats::TwoLevelCheck check;
     bool within = false;      ///< at two checks in a row
     double core_seconds = 0;  ///< of all cases, those of the pilot included
     /// Of the cases at `reference` that would bring the statistical error alone within the tolerance; none without
     /// pairs.
     std::optional<double> alone;
-    bool chosen_alone = false;  ///< a pilot found `reference` without pairs cheaper
+    bool chosen_alone = false;  ///< a pilot, or a later check, found `reference` without pairs cheaper
+    /// Cases at the setting of the goal before a check chose `reference` alone; none: no check did.
+    std::optional<std::int64_t> before_alone;
 
     [[nodiscard]] std::string verdict() const;
 };
