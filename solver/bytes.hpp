@@ -1,6 +1,6 @@
-// Converts values and columns of values to and from the bytes of a saved state, in the order they are named. Values are
-// little-endian as in memory; lengths have 64 bits. Every read is bounded: bytes that
-// end too early throw std::invalid_argument before anything beyond them is touched or memory for them is taken.
+// Conversion of values and columns of values to and from the bytes of a saved state, in the order in which they are
+// named. Values are little-endian as in memory; lengths have 64 bits. Every read is bounded: if bytes end too early,
+// std::invalid_argument is thrown before any byte beyond them is read or memory is allocated.
 #pragma once
 
 #include <bit>
@@ -21,11 +21,11 @@ template <class T>
 inline constexpr bool is_span = false;
 template <class T, std::size_t N>
 inline constexpr bool is_span<std::span<T, N>> = true;
-/// What is its own bytes; a span or a pointer is those of something else.
+/// Types whose bytes are their value; not spans and pointers, which refer to other bytes.
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !is_span<T>;
 
-/// The values alone, without their number.
+/// Appends the values without their number.
 template <Plain T>
 void append_bytes(std::vector<std::byte>& into, std::span<const T> values) {
     const std::size_t before = into.size();
@@ -56,7 +56,7 @@ void take_bytes(std::span<const std::byte>& from, T& value) {
     return n;
 }
 
-/// Of what was read: false where no state has such a value. Throws std::invalid_argument.
+/// Throws std::invalid_argument if a value that was read is impossible.
 inline void require_possible(bool possible) {
     if (!possible) throw std::invalid_argument("the checkpoint holds values that no state has");
 }
@@ -69,12 +69,12 @@ public:
     void put(const T& value) {
         append_bytes(*into_, value);
     }
-    /// Without their number.
+    /// Writes values without their number.
     template <Plain T>
     void put_all(std::span<const T> values) {
         append_bytes(*into_, values);
     }
-    /// Their number, and they.
+    /// Writes the number of values and the values.
     template <Plain T>
     void put(const std::vector<T>& column) {
         put(static_cast<std::uint64_t>(column.size()));
@@ -106,7 +106,7 @@ public:
         column.resize(take_count(from_, sizeof(T)));
         get_all(std::span<T>(column));
     }
-    /// A byte that is neither 0 nor 1 is no truth value.
+    /// Reads a bool; a byte that is neither 0 nor 1 throws.
     void get(bool& truth) {
         std::uint8_t byte = 0;
         get(byte);

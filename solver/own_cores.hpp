@@ -1,4 +1,4 @@
-// How many processors the system lets this process run on: taskset, a cpuset of a container or of a job.
+// Number of processors on which the system lets this process run (taskset, or the cpuset of a container or job).
 #pragma once
 
 #include <sched.h>
@@ -9,7 +9,7 @@
 
 namespace grainsweep {
 
-/// At least 1. Machines with more processors than a cpu_set_t holds need a larger set.
+/// Returns the number, at least 1. Machines with more processors than a cpu_set_t can hold need a larger set.
 [[nodiscard]] inline int own_cores() {
     for (int most = CPU_SETSIZE; most <= 1 << 20; most *= 2) {
         const std::unique_ptr<cpu_set_t, void (*)(cpu_set_t*)> set(CPU_ALLOC(most), [](cpu_set_t* s) { CPU_FREE(s); });

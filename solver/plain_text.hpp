@@ -1,5 +1,4 @@
-// Words and numbers of text that a user or another program wrote: blanks around a word, a number that is all of a
-// word, the shortest text that reads back as the same number. Independent of the locale.
+// Words and numbers in text from a user or another program, independent of the locale.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 
 namespace grainsweep {
 
-/// Without blanks, tabulators and carriage returns at either end.
+/// Returns the text without blanks, tabulators and carriage returns at either end.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
     constexpr std::string_view blanks = " \t\r";
     const auto first = text.find_first_not_of(blanks);
@@ -20,7 +19,7 @@ namespace grainsweep {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Whether a decimal number that double cannot hold is too small, not too large.
+/// Returns whether a decimal number outside the range of double is too small (not too large).
 [[nodiscard]] inline bool is_too_small(std::string_view number) {
     const auto mark = std::min(number.find_first_of("eE"), number.size());
     const auto digits = number.substr(0, mark);
@@ -33,8 +32,8 @@ namespace grainsweep {
     return static_cast<long>(digits.find_first_of("123456789")) - point > power;
 }
 
-/// The number that the whole word is, infinite or NaN, too; none: it is something else, or beyond the range of double.
-/// One too small for double is 0.
+/// Returns the number if the whole word is one, also infinite or NaN. Empty: it is no number, or too large for double.
+/// A number too small for double is 0.
 [[nodiscard]] inline std::optional<double> any_number_in(std::string_view word) {
     double number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -44,13 +43,13 @@ namespace grainsweep {
     return number;
 }
 
-/// The finite number that the whole word is.
+/// Returns the number if the whole word is a finite number.
 [[nodiscard]] inline std::optional<double> number_in(std::string_view word) {
     const auto number = any_number_in(word);
     return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-/// The shortest text that reads back as the same number.
+/// Returns the shortest text that reads back as the same number.
 [[nodiscard]] inline std::string shortest_text(double number) {
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;

@@ -1,5 +1,4 @@
-// The rules by which the statistics of a response are good enough, and what others must know of each. What they compute
-// is described in convergence.hpp and assisted_convergence.hpp.
+// Catalogue of the convergence rules with their traits. Equations: convergence.hpp and assisted_convergence.hpp.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +11,14 @@ namespace grainsweep::stats {
 
 enum class ConvergenceRule { replicates, assisted, any_change, all_change };
 
-/// A row of the catalogue; nothing else compares names.
+/// Row of the catalogue. No other code compares names of rules.
 struct RuleInfo {
     ConvergenceRule rule = ConvergenceRule::replicates;
     std::string_view name;
-    /// The error comes from independent sequences of the design, at least 4, and two checks in a row must pass. Else it
-    /// is the change since the check before.
+    /// True: the error comes from at least 4 independent sequences of the design, and two checks in a row must pass.
+    /// False: the error is the change since the check before.
     bool of_sequences = false;
-    bool of_model = false;  ///< with a model of the response: checks are fewer, and a median has no estimate
+    bool of_model = false;  ///< uses a model of the response: fewer checks, and no estimate of a median
     bool one_gate = false;  ///< one gate within the tolerance is enough
 };
 
@@ -36,15 +35,15 @@ inline constexpr std::array convergence_rules = {
 [[nodiscard]] constexpr std::string_view to_string(ConvergenceRule rule) {
     return info_of(rule).name;
 }
-/// nullptr where there is none of that name.
+/// Returns the rule of this name; nullptr if there is none.
 [[nodiscard]] constexpr const RuleInfo* find_rule(std::string_view name) {
     const auto* const found = std::ranges::find(convergence_rules, name, &RuleInfo::name);
     return found == convergence_rules.end() ? nullptr : found;
 }
 
-/// Sequences of a design that give an error.
+/// Smallest number of sequences that gives an error.
 inline constexpr std::int64_t fewest_sequences = 4;
-/// Of a rule with a model: fewest points of a check, and the share by which the next one is larger at least: 1 in 5.
+/// For a rule with a model: fewest points of a check, and its growth: the next check has at least 1/5 more points.
 inline constexpr std::int64_t fewest_assisted_points = 104, assisted_growth = 5;
 
 }  // namespace grainsweep::stats

@@ -1,4 +1,4 @@
-// A number that follows a distribution, by its quantile function x(u), u in [0, 1].
+// Distributions of a number, by the quantile function x(u), u in [0, 1].
 //
 //   normal      mean, sd
 //   lognormal   median, sigma: the standard deviation of ln x
@@ -43,20 +43,20 @@ class Distribution {
 public:
     using Form = std::variant<Normal, Lognormal, Triangular, Beta, SampleColumn>;
 
-    /// Of sound figures: sd, median, sigma, a and b above 0, low below high. `low` and `high` truncate what has no ends
-    /// of its own.
+    /// Requires sd, median, sigma, a and b above 0, and low below high. `low` and `high` truncate a normal or lognormal
+    /// distribution.
     explicit Distribution(Form form, double low = -std::numeric_limits<double>::infinity(),
                           double high = std::numeric_limits<double>::infinity());
 
     [[nodiscard]] const Form& form() const { return form_; }
-    /// The values it may have; of what has no ends those it is truncated to, which may be infinite.
+    /// Returns the smallest value; for a normal or lognormal distribution the truncation, which may be infinite.
     [[nodiscard]] double low() const { return low_; }
     [[nodiscard]] double high() const { return high_; }
-    /// Whether x(0) and x(1) are low and high: not of a normal and a lognormal distribution.
+    /// Returns whether x(0) = low and x(1) = high; false for a normal and a lognormal distribution.
     [[nodiscard]] bool has_ends() const;
     /// Returns the probability that the truncation cuts off.
     [[nodiscard]] double cut() const { return has_ends() ? 0 : below_ + above_; }
-    /// Returns low and high; of what has no ends the central 99.8 %, x(0.001) to x(0.999).
+    /// Returns low and high; for a distribution without ends the central 99.8 %, x(0.001) to x(0.999).
     [[nodiscard]] std::pair<double, double> range() const;
 
     /// Returns x(u), never beyond low and high, finite and not decreasing.
@@ -69,7 +69,7 @@ public:
 private:
     Form form_;
     double low_, high_;
-    double below_ = 0, above_ = 0;  ///< probabilities that are cut off
+    double below_ = 0, above_ = 0;  ///< probabilities that the truncation cuts off
 };
 
 }  // namespace grainsweep::stats

@@ -3,8 +3,8 @@
 // The cube is divided in the order of the columns, as the conditional quantiles of Rosenblatt 1952 (Ann. Math. Statist.
 // 23, 470-472) are taken: the rows sorted by the first column make m(1) parts, those of a part sorted by the second
 // column make m(2) parts, and so on; a part of the last column is one row. With r rows in a part and c columns left
-// m is the largest whole number with m^c <= r. Every row has a box of volume 1/rows, so an integral over the cube is
-// the mean over the rows, and dependence between columns of any form is that of the rows.
+// m is the largest whole number with m^c <= r. Every row has a box of volume 1/rows. An integral over the cube is
+// therefore the mean over the rows, and any dependence between the columns is kept.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace grainsweep::stats {
 
 class JointSample {
 public:
-    /// Columns of one length, at least 1; finite numbers.
+    /// Requires columns of one length, at least 1, of finite numbers.
     explicit JointSample(std::vector<std::vector<double>> columns);
 
     [[nodiscard]] std::size_t rows() const { return columns_.front().size(); }
@@ -26,14 +26,14 @@ public:
 
     /// Returns the row whose box holds the point u of the cube, one coordinate per column.
     [[nodiscard]] std::size_t row_at(std::span<const double> u) const;
-    /// Returns the middle of the box of the row with these values; of equal rows one in their middle. None where there
+    /// Returns the middle of the box of the row with these values; of several equal rows the middle one. Empty if there
     /// is no such row.
     [[nodiscard]] std::optional<std::vector<double>> place_of(std::span<const double> values) const;
 
-    /// Returns the quantile of one column alone: linear between the sorted values x(i) at (i - 1/2)/rows, the ends
-    /// constant, so that its mean over u is the mean of the column.
+    /// Returns the quantile of one column alone: linear between the sorted values x(i) at (i - 1/2)/rows, constant at
+    /// the ends. Its mean over u is the mean of the column.
     [[nodiscard]] double quantile(std::size_t column, double u) const;
-    /// Returns u with quantile(column, u) = x, the middle of such u where there are several.
+    /// Returns u with quantile(column, u) = x; if there are several, their middle.
     [[nodiscard]] double cumulative(std::size_t column, double x) const;
 
     bool operator==(const JointSample& other) const { return columns_ == other.columns_; }

@@ -10,7 +10,7 @@ namespace grainsweep::stats {
 
 using RawMoments = std::array<double, 4>;
 
-/// V, mu3, mu4.
+/// Returns V, mu3, mu4.
 [[nodiscard]] std::array<double, 3> central_moments(const RawMoments& m);
 
 struct MomentStatistic {
@@ -18,7 +18,7 @@ struct MomentStatistic {
     RawMoments gradient{};  ///< by M_1 ... M_4
 };
 
-/// Mean, sd, g1, kurtosis. NaN where V is not positive.
+/// Returns mean, sd, g1, kurtosis. NaN if V is not positive.
 [[nodiscard]] std::array<MomentStatistic, 4> moment_statistics(const RawMoments& m);
 
 }  // namespace grainsweep::stats

@@ -26,10 +26,9 @@ inline constexpr std::array statistics = {Statistic::mean, Statistic::sd, Statis
 [[nodiscard]] std::string_view to_string(Statistic statistic);
 [[nodiscard]] std::optional<Statistic> statistic_named(std::string_view word);
 
-/// What is known of a sample. NaN: undefined (no values; skewness, g1 and kurtosis of equal values) or not
-/// representable.
+/// Statistics of a sample. NaN: undefined (no values; skewness, g1 and kurtosis of equal values) or not representable.
 struct Summary {
-    std::int64_t count = 0;     ///< finite values: what all figures are over
+    std::int64_t count = 0;     ///< finite values, from which all statistics are computed
     std::int64_t excluded = 0;  ///< NaN and infinite values left out
     double mean = std::numeric_limits<double>::quiet_NaN();
     double sd = std::numeric_limits<double>::quiet_NaN();        ///< divides by count
@@ -40,37 +39,37 @@ struct Summary {
     double minimum = std::numeric_limits<double>::quiet_NaN();
     double maximum = std::numeric_limits<double>::quiet_NaN();
     double zero_share = std::numeric_limits<double>::quiet_NaN();  ///< share of values that are exactly 0
-    /// False where a power sum overflowed or vanished in double precision: the statistics that need it are NaN.
+    /// False if a power sum overflowed or vanished in double precision; statistics that need it are NaN.
     bool representable = true;
 
     [[nodiscard]] double of(Statistic statistic) const;
 };
 
-/// The middle value of a sorted sample, or the middle two where their number is even.
+/// Middle value of a sorted sample, or the middle two if their number is even.
 struct Middle {
     double low = std::numeric_limits<double>::quiet_NaN();
     double high = std::numeric_limits<double>::quiet_NaN();
     [[nodiscard]] double median() const;
 };
 
-/// Accumulates values without keeping them. Everything but the median.
+/// Accumulator of values that does not store them. It gives all statistics except the median.
 class Moments {
 public:
-    /// Non-finite values are counted and left out.
+    /// Adds a value. Non-finite values are counted and left out.
     void add(double value);
     void add(std::span<const double> values);
-    /// As if the other's values had been added here.
+    /// Adds the values of another accumulator.
     void merge(const Moments& other);
 
     [[nodiscard]] std::int64_t count() const { return total_.count + chunk_.count; }
     [[nodiscard]] std::int64_t excluded() const { return excluded_; }
-    /// All figures but median and skewness (NaN).
+    /// Returns all statistics except median and skewness (NaN).
     [[nodiscard]] Summary summary() const;
-    /// All figures, given the middle of the same values.
+    /// Returns all statistics, given the middle of the same values.
     [[nodiscard]] Summary summary(Middle middle) const;
 
 private:
-    /// count, mean and sums of powers of deviations, of values minus the shift.
+    /// Count, mean and sums of powers of deviations, of values minus the shift.
     struct Sums {
         std::int64_t count = 0;
         double mean = 0;
@@ -92,7 +91,7 @@ private:
     double maximum_ = -std::numeric_limits<double>::infinity();
 };
 
-/// The middle of the finite values; NaN where there are none. Linear time.
+/// Returns the middle of the finite values; NaN if there are none. Linear time.
 [[nodiscard]] Middle middle(std::span<const double> values);
 
 [[nodiscard]] Summary summarise(std::span<const double> values);

@@ -1,20 +1,21 @@
-// A probability as a function of the factors, learned from cases that did or did not: whether a case has an answer,
-// whether an observable is defined, an observable of 0 and 1 such as `jammed`.
+// Model of a probability as a function of the factors, fitted to cases with outcome 0 or 1: whether a case has an
+// answer, whether an observable is defined, or an observable such as `jammed`.
 //
 //   P(1 at x) = Phi(f(x)),   f a Gaussian process of constant mean, Matern 5/2, one length per feature
 //
 // The mean of f is unknown, N(0, 2^2). f follows from the cases by expectation propagation (Rasmussen & Williams 2006,
-// section 3.6: response/expectation.hpp), which keeps the probabilities calibrated where the Laplace approximation of
-// their section 3.4 draws them to 1/2 (Kuss & Rasmussen 2005, J. Mach. Learn. Res. 6, 1679). Cases at one place are
-// counted together, so that replicates count as what they are. P is the average over the likely lengths and s^2
-// (response/likely_hyperparameters.hpp): one best guess places a sharp border too surely. Of more than 200 places the
-// best guess stands alone, from 200 of them, half of these with the rarer outcome.
+// section 3.6: response/expectation.hpp), which keeps the probabilities calibrated; the Laplace approximation of their
+// section 3.4 pulls them to 1/2 (Kuss & Rasmussen 2005, J. Mach. Learn. Res. 6, 1679). Cases at one place are one
+// binomial observation. P is the average over the likely lengths and s^2 (response/likely_hyperparameters.hpp), because
+// the best lengths alone would make a sharp border too certain. With more than 200 places only the best hyperparameters
+// are used, fitted to 200 places of which half have the rarer outcome.
 //
 //   P(x) = Phi(m/sqrt(1 + v)),  f(x) ~ N(m, v)                                                          (eq. 3.82)
 //   error^2 = E Phi(f)^2 - P^2 = Phi(h) - 2 T(h, 1/sqrt(1 + 2 v)) - P^2,  h = m/sqrt(1 + v),  T Owen's function
 //
-// P and E Phi(f)^2 are averaged; m and v of a prediction are of the normal f that has these averages. A single run
-// scatters by sqrt(P (1 - P)). Of more than 1,000 places a subset that fills the space is used. Nothing is drawn.
+// P and E Phi(f)^2 are averaged; m and v of a prediction belong to the normal f with these averages. A single run
+// scatters by sqrt(P (1 - P)). If there are more than 1,000 places, a space-filling subset is used. No random numbers
+// are used.
 #pragma once
 
 #include "stats/response_model.hpp"
@@ -27,28 +28,29 @@
 namespace grainsweep::stats {
 
 struct ProbabilityQuality {
-    std::size_t cases = 0;     ///< that were seen
-    std::size_t ones = 0;      ///< of them
+    std::size_t cases = 0;     ///< cases in the fit
+    std::size_t ones = 0;      ///< cases with the value 1
     std::size_t rests_on = 0;  ///< cases in the model
-    /// Mean square of 1 or 0 minus the probability that the other places predict (Brier 1950), and the same of the
-    /// share of ones alone.
+    /// Mean square of the outcome (1 or 0) minus the probability predicted from the other places (Brier 1950), and the
+    /// same with the share of ones as prediction.
     double brier = 0, brier_of_share = 0;
-    std::vector<double> lengths;  ///< per feature, in widths of the box
+    std::vector<double> lengths;  ///< one per feature, in widths of the box
 };
 
-/// Cheap to copy.
+/// Fitted model. Cheap to copy.
 class ProbabilityModel {
 public:
     struct State;
     explicit ProbabilityModel(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 
-    /// Features in their own units. `latent` of every prediction is set, `freedom` infinite.
+    /// Returns predictions at features in their own units. `latent` of every prediction is set, `freedom` is infinite.
     [[nodiscard]] std::vector<Prediction> predict(Rows points) const;
-    /// Probabilities only.
+    /// Returns only the probabilities.
     [[nodiscard]] std::vector<double> probabilities(Rows points) const;
-    /// Whether P is at least 1/2 under the likeliest hyperparameters, at a cost of n per point.
+    /// Returns whether P is at least 1/2 with the most likely hyperparameters. Cost: n per point.
     [[nodiscard]] std::vector<bool> likely(Rows points) const;
-    /// The model with cases added, hyperparameters as they are; a value between 0 and 1 is a share of a case.
+    /// Returns the model with cases added and the same hyperparameters. A value between 0 and 1 is a fraction of a
+    /// case.
     [[nodiscard]] ProbabilityModel with_cases(Rows points, std::span<const double> values) const;
 
     [[nodiscard]] const ProbabilityQuality& quality() const;
@@ -58,12 +60,12 @@ private:
     std::shared_ptr<const State> state_;
 };
 
-/// Whether a response is a probability's: every finite value is 0 or 1, and both occur.
+/// Returns whether every finite value is 0 or 1, and both occur.
 [[nodiscard]] bool only_zero_and_one(std::span<const double> values);
 
-/// Fits. `values`: 0 or 1 of each row of `points`; one that is not finite is left out. `low`, `high`: box of the
-/// features. Refuses a feature that is not finite, and equations that are singular. Throws std::invalid_argument where
-/// sizes do not match, the box is empty, or a value is neither 0 nor 1.
+/// Fits a model. `values`: 0 or 1 for each row of `points`; a value that is not finite is left out. `low`, `high`: box
+/// of the features. Refuses a feature that is not finite, and singular equations. Throws std::invalid_argument if sizes
+/// do not match, the box is empty, or a value is neither 0 nor 1.
 [[nodiscard]] std::variant<ProbabilityModel, Refusal> fit_probability(Rows points, std::span<const double> values,
                                                                       std::span<const double> low,
                                                                       std::span<const double> high);

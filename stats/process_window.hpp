@@ -1,22 +1,21 @@
-// Where a condition on several responses holds, and what a case there would gain.
+// Probability that a condition on several responses holds, and the expected improvement of a further case.
 //
-// Predictions of different responses are taken as independent of one another.
+// Predictions of different responses are taken as independent.
 //
 //   P(condition at x) = integral over the responses y_k = mean_k(x) + e_k(x) t,  t of Student's distribution
-//       e_k = standard error of the mean (is the mean response inside?), or of a single run with its scatter; degrees
-//       of freedom as Prediction says (all of one model alike)
+//       e_k = standard error of the mean, or of a single run including its scatter; degrees of freedom: Prediction
 //
-// A response that is a probability (stats/probability_model.hpp) is Phi(f), f normal; each single run of it is 1 or 0.
+// A response that is a probability (stats/probability_model.hpp) is Phi(f), f normal; a single run of it is 1 or 0.
 //
-// It is integrated over 1,024 Sobol points, the same for all x, so that contours are smooth (error about 0.002).
+// The integral uses 1,024 Sobol points, the same for all x, so that contours are smooth (error about 0.002).
 //
 // Next cases: augmented expected improvement of Huang, Allen, Notz & Zeng (2006), J. Global Optim. 34, 441, eq. 12
 // times the probability that the condition holds (Schonlau, Welch & Jones 1998):
 //
 //   A(x) = P(x) [ (m - m*) Phi(u) + s phi(u) ] (1 - g/sqrt(s^2 + g^2)),   u = (m - m*)/s
 //
-// m, s, g: mean, its error and scatter of one run of the objective (maximised); m*: mean at the effective best, the
-// setting of largest m - s among those where the condition is more likely met than not.
+// m, s, g: mean of the objective (maximised), its error, and the scatter of one run. m*: mean at the effective best,
+// the setting with the largest m - s among the settings where the condition holds with P > 1/2.
 #pragma once
 
 #include "stats/response_model.hpp"
@@ -28,22 +27,23 @@
 
 namespace grainsweep::stats {
 
-/// What a condition is about: the mean response, or each single run.
+/// Quantity that a condition refers to: the mean response, or a single run.
 enum class Judged { mean, single_run };
 
-/// One value per model, in their order -> whether the condition holds.
+/// Function that returns whether the condition holds; one value per model, in their order.
 using Condition = std::function<bool(std::span<const double> responses)>;
 
-/// Errors of the responses at the integration points, in standard errors: quantiles of each model's distribution. One
-/// serves all probabilities of models with these degrees of freedom; making it takes longer than a probability.
+/// Errors of the responses at the integration points, in standard errors: quantiles of each model's distribution. The
+/// object can be used for all models with these degrees of freedom; making it takes longer than computing a
+/// probability.
 class SampledErrors {
 public:
-    /// One number of degrees of freedom per model (ResponseModel::freedom), in their order.
+    /// `freedom`: degrees of freedom of each model (ResponseModel::freedom), in their order.
     explicit SampledErrors(std::span<const double> freedom);
 
     [[nodiscard]] std::size_t models() const { return models_; }
     [[nodiscard]] std::size_t points() const;
-    /// One error per model at an integration point.
+    /// Returns one error per model at an integration point.
     [[nodiscard]] std::span<const double> at(std::size_t point) const {
         return std::span(errors_).subspan(point * models_, models_);
     }
@@ -53,17 +53,18 @@ private:
     std::vector<double> errors_;  ///< (points, models)
 };
 
-/// Probability that a condition holds at each point: predictions[k][i] of model k at point i. Throws
-/// std::invalid_argument where `errors` is of another number of models.
+/// Returns the probability that a condition holds at each point: predictions[k][i] of model k at point i. Throws
+/// std::invalid_argument if `errors` has another number of models.
 [[nodiscard]] std::vector<double> probability_of(std::span<const std::vector<Prediction>> predictions,
                                                  const Condition& condition, Judged judged,
                                                  const SampledErrors& errors);
 
-/// A(x) of every point. Where the condition is nowhere more likely than not: P alone.
+/// Returns A(x) of every point. If P > 1/2 nowhere, returns P.
 [[nodiscard]] std::vector<double> expected_improvement(std::span<const Prediction> objective,
                                                        std::span<const double> probability, bool maximise);
 
-/// Indices of the points that no other point beats in one figure without losing in the other, by growing first figure.
+/// Returns the indices of the points that are not dominated (no other point is better in one value and not worse in the
+/// other), by ascending first value.
 [[nodiscard]] std::vector<std::size_t> trade_off_front(std::span<const double> first, bool maximise_first,
                                                        std::span<const double> second, bool maximise_second);
 

@@ -1,6 +1,6 @@
-// Random numbers addressed, not consumed: a draw is a pure function of (seed, stream, counter).
+// Addressed random numbers: a draw is a pure function of (seed, stream, counter).
 //
-// Any worker, in any order, on any machine gets the same numbers; nothing has to be stored to resume.
+// Every worker gets the same numbers, in any order and on any machine, and no state must be stored to resume.
 // Mixing: SplitMix64 (Steele, Lea & Flood 2014, doi 10.1145/2714064.2660195), chained over the address.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace grainsweep::stats {
 
-/// One output of SplitMix64 started from state x.
+/// Returns one output of SplitMix64 started from state x.
 [[nodiscard]] constexpr std::uint64_t splitmix64(std::uint64_t x) {
     x += 0x9E3779B97F4A7C15ULL;
     x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -17,19 +17,19 @@ namespace grainsweep::stats {
     return x ^ (x >> 31U);
 }
 
-/// 64 random bits at an address.
+/// Returns 64 random bits at an address.
 [[nodiscard]] constexpr std::uint64_t bits_at(std::uint64_t seed, std::uint64_t stream, std::uint64_t counter) {
     std::uint64_t h = splitmix64(seed);
     h = splitmix64(h ^ stream);
     return splitmix64(h ^ counter);
 }
 
-/// Uniform in [0, 1): the upper 53 bits over 2^53.
+/// Returns a number in [0, 1): the upper 53 bits divided by 2^53.
 [[nodiscard]] constexpr double to_unit(std::uint64_t bits) {
     return static_cast<double>(bits >> 11U) * 0x1.0p-53;
 }
 
-/// All draws of one purpose: uniform(counter) in [0, 1).
+/// Stream: all draws of one purpose; uniform(counter) is in [0, 1).
 class Stream {
 public:
     constexpr Stream(std::uint64_t seed, std::uint64_t stream) : seed_(seed), stream_(stream) {}
@@ -41,7 +41,7 @@ private:
     std::uint64_t stream_;
 };
 
-/// A SplitMix64 sequence for the rare places that need an unknown number of draws (rejection, shuffles).
+/// SplitMix64 sequence for an unknown number of draws (rejection, shuffles).
 class Generator {
 public:
     explicit constexpr Generator(std::uint64_t state) : state_(state) {}
@@ -51,14 +51,14 @@ public:
         return out;
     }
     constexpr double uniform() { return to_unit(next()); }
-    /// Uniform in 0 ... n-1 without bias, by rejection; n >= 1.
+    /// Returns a number in 0 ... n-1, uniform without bias by rejection; n >= 1.
     std::uint64_t below(std::uint64_t n);
 
 private:
     std::uint64_t state_;
 };
 
-/// Fisher-Yates from the last place down: the same permutation of 0 ... n-1 on every platform.
+/// Returns a permutation of 0 ... n-1, the same on every platform (Fisher-Yates from the last place down).
 [[nodiscard]] std::vector<std::uint32_t> permutation(std::uint32_t n, Generator generator);
 
 }  // namespace grainsweep::stats

@@ -1,4 +1,4 @@
-// Response models of several responses of the same points, fitted side by side.
+// Parallel fits of several responses of the same points.
 #pragma once
 
 #include "stats/response_model.hpp"
@@ -10,11 +10,11 @@
 
 namespace grainsweep::stats {
 
-/// How many threads fit_responses() takes at most; at the start 1.
+/// Sets the largest number of threads of fit_responses(); initially 1.
 void allow_fits_at_once(std::size_t count);
 
-/// fit_response() of every row of `values`, in their order, several at once. Fits are independent of one another: the
-/// same bits as one after another. Throws what fit_response() throws.
+/// Returns fit_response() of every row of `values`, in their order, several at the same time. The fits are independent,
+/// so their bits do not depend on the number of threads. Throws like fit_response().
 [[nodiscard]] std::vector<std::variant<ResponseModel, Refusal>> fit_responses(
     Rows points, std::span<const std::vector<double>> values, const ResponseModelOptions& options = {});
 

@@ -1,8 +1,7 @@
-// A growing sample cut into 8 consecutive stretches of equal length, and its statistics without each of them:
-// what the delete-a-group jackknife (confidence.hpp) needs.
+// Growing sample cut into 8 consecutive stretches of equal length, and its statistics without each of them, for the
+// delete-a-group jackknife (confidence.hpp).
 //
-// The sample is kept sorted with the position of each value, so that all eight medians come from one walk over
-// the sorted values instead of eight selections.
+// The sample is stored sorted, with the position of each value, so that one pass gives all eight medians.
 #pragma once
 
 #include "stats/moments.hpp"
@@ -17,11 +16,12 @@ class StretchedSample {
 public:
     static constexpr std::size_t stretches = 8;
 
-    /// Finite values only.
+    /// Adds a finite value.
     void add(double value) { values_.push_back(value); }
     [[nodiscard]] std::size_t size() const { return values_.size(); }
 
-    /// Entry g: the statistics of all values but those of positions n g/8 ... n (g+1)/8 - 1. At least 16 values.
+    /// Returns in entry g the statistics of all values except positions n g/8 ... n (g+1)/8 - 1. Requires at least 16
+    /// values.
     [[nodiscard]] std::array<Summary, stretches> leave_one_out();
 
 private:
@@ -34,7 +34,7 @@ private:
     [[nodiscard]] std::size_t first_of(std::size_t stretch) const { return values_.size() * stretch / stretches; }
 
     std::vector<double> values_;
-    std::vector<Ranked> ranked_;  ///< sorted by value; what is new joins at the next question
+    std::vector<Ranked> ranked_;  ///< sorted by value; new values are merged at the next call of leave_one_out()
 };
 
 }  // namespace grainsweep::stats

@@ -1,4 +1,4 @@
-// What a statistic is where it has no value: too few values, or none that differ.
+// Value of an undefined statistic: too few values, or all are equal.
 #pragma once
 
 #include <limits>

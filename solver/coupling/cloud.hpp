@@ -1,4 +1,4 @@
-// The particles of a suspension: equal spheres, one column per property.
+// Particles of a suspension: equal spheres, one column per property.
 #pragma once
 
 #include "solver/coupling/walls.hpp"
@@ -16,7 +16,8 @@ struct Cloud {
     [[nodiscard]] std::size_t size() const { return position.size(); }
 };
 
-/// n particles at rest, uniformly random where their centres may be; draw 3 p + d places coordinate d of particle p.
+/// Returns n particles at rest, with centres uniformly random in the permitted space; draw 3 p + d gives coordinate d
+/// of particle p.
 [[nodiscard]] inline Cloud random_cloud(std::size_t n, const Walls& walls, const stats::Stream& random) {
     Cloud cloud;
     for (std::size_t p = 0; p < n; ++p) {

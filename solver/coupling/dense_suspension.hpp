@@ -1,14 +1,14 @@
-// Fluid and particles that exclude each other's volume, advanced together:
-//   1. forces of the particles on the fluid at their predicted middle positions (levels.hpp, force form), less what
-//      the particles do to each other
+// Fluid and particles that displace each other's volume, advanced together:
+//   1. forces of the particles on the fluid at their predicted middle positions (levels.hpp, force form), without the
+//      forces between particles
 //   2. the fluid step for the volume flux of both (shared_space.hpp)
 //   3. the particles, in the fluid between them, with their interaction
 //   4. their volume in the cells and the flux that brought it there (solids_volume.hpp)
 //
-// Interaction is what the level adds: SolidsPressure<AlgebraicTemperature> (ddpm),
-// SolidsPressure<TransportedTemperature> (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem).
-// Terms with phi_p and dV_p/dt lag by one step and make the scheme first order in the step, with phi_p as a factor. For
-// phi_p -> 0 it is the scheme of suspension.hpp with TwoWay<ForceForm>.
+// The level adds an Interaction: SolidsPressure<AlgebraicTemperature> (ddpm), SolidsPressure<TransportedTemperature>
+// (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem).
+// Terms with phi_p and dV_p/dt lag by one step. Their error is of first order in the step, with the factor phi_p. For
+// phi_p -> 0 the scheme equals that of suspension.hpp with TwoWay<ForceForm>.
 #pragma once
 
 #include "solver/coupling/levels.hpp"
@@ -46,7 +46,7 @@ public:
         solids_.start(cloud_.position);
     }
 
-    /// Threads that compute a step from now on; no bit depends on their number.
+    /// Sets the threads that compute a step; no bit depends on their number.
     void use(const Slabs& slabs) {
         slabs_ = slabs;
         fluid_.use(slabs);
@@ -71,14 +71,14 @@ public:
         solids_.carry(dt);
     }
 
-    /// Its velocity is the volume flux of fluid and particles together.
+    /// Returns the fluid solver, whose velocity is the volume flux of fluid and particles together.
     [[nodiscard]] const flow::Flow<Heat>& fluid() const { return fluid_; }
     [[nodiscard]] const Cloud& cloud() const { return cloud_; }
     [[nodiscard]] const Interaction& interaction() const { return interaction_; }
     [[nodiscard]] const SolidsVolume& solids() const { return solids_; }
-    /// Of the last step; what other particles and walls did is part of what was given.
+    /// Returns the budget of the last step; `given` includes the effect of other particles and walls.
     [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
-    /// Momentum flux of the fluid alone, J - j, on face m of component d, as the last step left it.
+    /// Returns the momentum flux of the fluid alone, J - j, on face m of component d, after the last step.
     [[nodiscard]] double fluid_flux(std::size_t d, std::size_t m) const {
         return fluid_.velocity()[d].values()[m] - flux_before_[d].values()[m];
     }
@@ -117,7 +117,7 @@ private:
         [[nodiscard]] Surroundings operator()(std::size_t p) const {
             return {all.stencils_[p].gather(all.between_), all.stencils_[p].gather(all.acceleration_), vibration, {}};
         }
-        /// rot u/2 at x by differences over a diameter, or what of it is inside the box.
+        /// Returns rot u/2 at x by differences over a diameter, or the part of it inside the box.
         [[nodiscard]] Vec3 rotation(const Vec3& x) const {
             const double r = all.motion_.sphere().radius();
             std::array<Vec3, 3> slope;
@@ -188,7 +188,7 @@ private:
     FaceDeposit deposit_;
     SolidsVolume solids_;
     MomentumBudget budget_;
-    std::vector<Vec3> transmitted_;  // per volume: force of other particles and walls less inertia, in the last step
+    std::vector<Vec3> transmitted_;  // per volume: force of other particles and walls minus inertia, in the last step
     FaceVectors source_, flux_before_;
     FaceVectors velocity_, acceleration_;
     FaceVectors between_ = flow::face_vectors(fluid_.grid());  // velocity of the fluid between the particles

@@ -1,5 +1,5 @@
-// Exponential and logarithm written out in additions and multiplications, so that compilers make vectors of them and
-// every processor returns the same bits. Errors are below 2 units in the last place (tests compare with the library).
+// Exponential and logarithm as additions and multiplications, so that compilers can vectorise them and every processor
+// returns the same bits. Errors are below 2 units in the last place (compared with the library in tests).
 //
 // e^x: x = n ln 2 + r, |r| <= ln 2/2, e^r - 1 by its Taylor series to r^13. ln x: x = 2^e m, sqrt(1/2) <= m < sqrt 2,
 // ln m = 2 artanh s, s = (m - 1)/(m + 1), by its series to s^21 (Abramowitz & Stegun 1964, 4.2.1 and 4.1.27).
@@ -13,7 +13,7 @@ namespace grainsweep::coupling {
 inline constexpr double ln2_high = 0x1.62e42fee00000p-1;  // exact when multiplied by an exponent
 inline constexpr double ln2_low = 0x1.a39ef35793c76p-33;
 
-/// c0 + x (c1 + x (c2 + ...)).
+/// Returns c0 + x (c1 + x (c2 + ...)).
 template <double First, double... Rest>
 [[nodiscard, gnu::always_inline]] inline double polynomial(double x) {
     if constexpr (sizeof...(Rest) == 0)
@@ -22,16 +22,16 @@ template <double First, double... Rest>
         return First + x * polynomial<Rest...>(x);
 }
 
-/// e^x = scale (1 + rest).
+/// Result of exponential(): e^x = scale (1 + rest).
 struct Exponential {
     double scale, rest;
 
     [[nodiscard, gnu::always_inline]] double value() const { return scale + scale * rest; }
-    /// e^x - 1, accurate near zero.
+    /// Returns e^x - 1, accurate near zero.
     [[nodiscard, gnu::always_inline]] double less_one() const { return scale * rest + (scale - 1); }
 };
 
-/// For x < 700; below -700 it is e^-700. What is no number stays none.
+/// Returns e^x for x < 700; below -700 it is e^-700. NaN stays NaN.
 [[gnu::always_inline]] inline Exponential exponential(double x) {
     constexpr double to_integer = 0x1.8p52;  // added, it leaves the nearest integer in the low bits
     x = x < -700 ? -700 : x;
@@ -44,7 +44,7 @@ struct Exponential {
     return {std::bit_cast<double>(exponent << 52), r + r * r * tail};
 }
 
-/// For normal x > 0.
+/// Returns ln x for normal x > 0.
 [[gnu::always_inline]] inline double logarithm(double x) {
     constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcd;
     constexpr std::uint64_t bias = 1023;

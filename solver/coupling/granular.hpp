@@ -1,4 +1,4 @@
-// Kinetic theory of a granular phase: how hard particles that collide at random push, drag and conduct.
+// Kinetic theory of a granular phase: pressure, viscosity and conductivity of randomly colliding particles.
 //
 // Units: L, L^2/alpha, density of the fluid; Theta in (alpha/L)^2. a = phi_p, xi density ratio, d diameter, e
 // restitution, a_max random close packing.
@@ -12,7 +12,7 @@
 //                            (1 + 12/5 h^2 (4 h - 3) a g0 + 16/(15 pi) (41 - 33 h) h a g0),  h = (1 + e)/2   (ibid.)
 //   dissipation          gamma = 12 (1 - e^2) g0 xi a^2 Theta^(3/2)/(d sqrt(pi))                        (Lun et al.)
 //   drag                 3 K Theta,  K = a Pr/St                                                      (Stokes)
-// Each is returned per its power of Theta, so that the balance of Theta can be solved for it.
+// Each function returns its quantity divided by its power of Theta, so that the balance can be solved for Theta.
 #pragma once
 
 #include "solver/coupling/motion.hpp"
@@ -34,15 +34,15 @@ struct Granular {
         return {sphere.density_ratio, 2 * sphere.radius(), restitution, packing_limit, sphere.prandtl / sphere.stokes};
     }
 
-    /// g0, a held below a_max: at most 3e4.
+    /// Returns g0, with a limited to below a_max: at most 3e4.
     [[nodiscard]] double radial_distribution(double a) const {
         return 1 / (1 - std::cbrt(std::min(a / packing_limit, 0.9999)));
     }
-    /// p_s/Theta
+    /// Returns p_s/Theta.
     [[nodiscard]] double pressure(double a) const {
         return density_ratio * a * (1 + 2 * (1 + restitution) * a * radial_distribution(a));
     }
-    /// mu/sqrt(Theta)
+    /// Returns mu/sqrt(Theta).
     [[nodiscard]] double viscosity(double a) const {
         const double ag = a * radial_distribution(a);
         const double e = restitution;
@@ -50,7 +50,7 @@ struct Granular {
         const double flying = root_pi / (6 * (3 - e)) * (1 + 0.4 * (1 + e) * (3 * e - 1) * ag);
         return density_ratio * a * diameter * (colliding + flying);
     }
-    /// k/sqrt(Theta)
+    /// Returns k/sqrt(Theta).
     [[nodiscard]] double conductivity(double a) const {
         const double ag = a * radial_distribution(a);
         const double h = 0.5 * (1 + restitution);
@@ -58,16 +58,16 @@ struct Granular {
         return 15 * density_ratio * a * diameter * root_pi / (4 * slow) *
                (1 + 2.4 * h * h * (4 * h - 3) * ag + 16 / (15 * std::numbers::pi) * slow * h * ag);
     }
-    /// gamma/Theta^(3/2)
+    /// Returns gamma/Theta^(3/2).
     [[nodiscard]] double dissipation(double a) const {
         const double e = restitution;
         return 12 * (1 - e * e) * radial_distribution(a) * density_ratio * a * a * std::numbers::inv_sqrtpi / diameter;
     }
 
-    /// Theta where production equals dissipation, for strain S = sym grad v with S:S = `shear` and div v =
+    /// Returns Theta at which production equals dissipation, for strain S = sym grad v with S:S = `shear` and div v =
     /// `expansion`: the positive root s = sqrt(Theta) of
     ///   G s^2 + (P div v + 3 K) s - Q = 0,   Q = 2 M (S:S - (div v)^2/3),
-    /// written without cancellation. 0 without production; `most` where nothing limits it.
+    /// written without cancellation. 0 without production; `most` if Theta is unlimited.
     [[nodiscard]] double balance(double a, double shear, double expansion, double most) const {
         const double q = 2 * viscosity(a) * std::max(0.0, shear - expansion * expansion / 3);
         if (!(q > 0)) return 0;

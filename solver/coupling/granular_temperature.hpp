@@ -1,4 +1,4 @@
-// The granular temperature Theta of the cells, a third of the variance of particle velocities, in two ways:
+// Granular temperature Theta of the cells, a third of the variance of particle velocities, by two methods:
 //
 //   AlgebraicTemperature    production = dissipation in every cell (granular.hpp, balance)
 //   TransportedTemperature  (3/2) [ d(xi a Theta)/dt + div(xi j Theta) ]
@@ -6,8 +6,8 @@
 // (Lun et al. 1984; Ding & Gidaspow 1990, doi 10.1002/aic.690360404; drag sink as in Fluent's eq. for a dilute gas).
 //
 // j is the exact particle flux of solids_volume.hpp, so upwinding j Theta keeps a uniform Theta uniform. Sinks are
-// implicit with gamma = G sqrt(Theta^n) Theta^{n+1}: they relax within a thousandth of a step here. First order in
-// time. Cells thinner than `thinnest` have no collisions: Theta stays at its least value there.
+// implicit with gamma = G sqrt(Theta^n) Theta^{n+1}, because they relax within a thousandth of a step. The method is
+// first order in time. Cells with a fraction below `thinnest` have no collisions: Theta has its smallest value there.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -20,14 +20,15 @@
 
 namespace grainsweep::coupling {
 
-/// How the particles of a cell deform: S:S and div v of their mean velocity, central differences.
+/// Strain rate of the particles of a cell: S:S and div v of their mean velocity, by central differences.
 struct Straining {
     flow::Field shear, expansion;
 
     explicit Straining(const flow::Grid& grid) : shear(grid), expansion(grid) {}
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
-    /// One-sided beside cells thinner than `thinnest`, which have too few particles for a mean velocity.
+    /// Computes the strain rate. Differences are one-sided beside cells with a fraction below `thinnest`, which have
+    /// too few particles for a mean velocity.
     void measure(const flow::Grid& grid, const flow::Field& fraction, const std::array<flow::Field, 3>& mean_velocity,
                  double thinnest);
 
@@ -44,7 +45,7 @@ struct TemperatureBounds {
 class AlgebraicTemperature {
 public:
     AlgebraicTemperature(const flow::Grid& grid, const Granular& grains, const TemperatureBounds& bounds);
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
     void advance(const SolidsVolume& solids, const Straining& straining, double dt);
     void rest(const SolidsVolume&) {}
@@ -63,13 +64,13 @@ private:
 class TransportedTemperature {
 public:
     TransportedTemperature(const flow::Grid& grid, const Granular& grains, const TemperatureBounds& bounds);
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
-    /// From the fraction before to the fraction of `solids`, whose flux joins them.
+    /// Advances from the previous fraction to the fraction of `solids`, with its flux.
     void advance(const SolidsVolume& solids, const Straining& straining, double dt);
-    /// A step in which no cell has collisions.
+    /// Makes a step in which no cell has collisions.
     void rest(const SolidsVolume& solids);
-    /// Theta everywhere, instead of its least value at the start.
+    /// Sets Theta everywhere, instead of its smallest value at the start.
     void set(double theta);
     [[nodiscard]] const flow::Field& values() const { return values_; }
     void save(std::vector<std::byte>& into) const;

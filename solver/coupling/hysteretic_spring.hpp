@@ -1,10 +1,11 @@
-// The hysteretic linear spring: a normal contact force with a stiffer branch of unloading (Walton & Braun 1986,
+// Hysteretic linear spring: a normal contact force that is stiffer in unloading (Walton & Braun 1986,
 // doi 10.1122/1.549893).
 //
-// Loading follows K_l s, unloading and reloading the stiffer K_u = K_l/e^2, never above the first nor below 1e-3 of it:
+// Loading follows K_l s. Unloading and reloading follow the stiffer K_u = K_l/e^2, limited to between 1e-3 K_l s and
+// K_l s:
 //   s grows:   F = min(F + K_u ds, K_l s)
 //   s shrinks: F = max(F + K_u ds, 1e-3 K_l s)
-// A head-on pair leaves with e times its speed, whatever that was, after a contact of
+// A head-on pair separates with e times its speed, for any speed, after a contact of duration
 //   (pi/2) (sqrt(m*/K_l) + sqrt(m*/K_u)).
 // Tangential: F_t = -K_l xi, xi the displacement in contact turned with the plane, |F_t| <= mu F (Cundall & Strack
 // 1979, doi 10.1680/geot.1979.29.1.47); sliding keeps xi at mu F/K_l.
@@ -19,7 +20,7 @@ namespace grainsweep::coupling {
 
 using geometry::Vec3;
 
-/// History of a contact.
+/// Memory of a contact.
 struct SpringMemory {
     double overlap = 0;
     double force = 0;
@@ -33,7 +34,7 @@ struct HystereticSpring {
 
     [[nodiscard]] double unloading() const { return stiffness / (restitution * restitution); }
 
-    /// Normal force at overlap s > 0; a fresh memory is the beginning of contact.
+    /// Returns the normal force at overlap s > 0; a new memory means the beginning of contact.
     double push(double s, SpringMemory& memory) const {
         const double change = unloading() * (s - memory.overlap);
         memory.force = change >= 0 ? std::min(memory.force + change, stiffness * s)
@@ -42,8 +43,8 @@ struct HystereticSpring {
         return memory.force;
     }
 
-    /// Tangential force on i under the normal force at hand; slip: tangential displacement of i against j in this
-    /// step, n the normal from j to i.
+    /// Returns the tangential force on i for the present normal force. slip: tangential displacement of i relative to j
+    /// in this step; n: normal from j to i.
     Vec3 drag(const Vec3& n, const Vec3& slip, SpringMemory& memory) const {
         using namespace geometry;
         Vec3& xi = memory.tangential;

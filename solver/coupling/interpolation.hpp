@@ -1,21 +1,21 @@
-// Values at a particle from values on staggered faces, and the transpose: a particle's force onto the faces.
+// Interpolation from staggered faces to a particle, and its transpose: the force of a particle onto the faces.
 //
-// Trilinear: linear between faces along the component's own axis, between cell centres across it; on a no-slip wall the
-// value is the wall's.
+// Trilinear: linear between faces along the component's own axis, and between cell centres across it. On a no-slip wall
+// the value equals the value of the wall.
 //
 // Solenoidal: with s the smooth grid coordinate (faces at integers), the volume fluxes F = U h_j h_k are interpolated
-// by a quadratic B-spline along their own axis and linearly across it, and u = F/(y'(s) z'(s)). Differentiated, the
-// spline gives differences of fluxes times linear hats, so
+// by a quadratic B-spline along their own axis and linearly across it, and u = F/(y'(s) z'(s)). The derivative of the
+// spline is a sum of flux differences times linear hats, so
 //     div u (x) = 1/(x' y' z') sum over cells of (net flux out of the cell) hat(s_x) hat(s_y) hat(s_z) = 0:
-// the interpolated field has exactly the divergence of the discrete one, and no flow through walls. In the half cell
-// beside a wall the own factor is linear and the factors across are constant. Second order; the spline smooths by
-// h^2/8 u''.
+// The interpolated field has exactly the divergence of the discrete field, and no flow through walls. In the half cell
+// beside a wall, the factor along the own axis is linear and the factors across are constant. The interpolation is of
+// second order; the spline smooths by h^2/8 u''.
 //
-// Beside a no-slip wall, closer than h/2, trilinear keeps the shear and compresses what turns there, solenoidal keeps
-// the volume and slips (tests/unit/coupling_interpolation.cpp has both in closed form). Particles that touch walls with
-// their centres stay there: thermovibration run 21 (uniform 40^3, W/Omega = 0.45 h), t = 0.32, four clouds of scatter
-// 0.006: K on 10^3 cells is 0.249 trilinear, 0.264 solenoidal; a normal velocity quadratic in the wall's cell, which
-// keeps shear and volume within h/2, lies between (0.259, six clouds).
+// Closer than h/2 to a no-slip wall, trilinear interpolation has the right shear but is not free of divergence;
+// solenoidal interpolation conserves volume but slips (both in closed form in tests/unit/coupling_interpolation.cpp).
+// The difference matters for particles whose centres touch walls. Example: thermovibration run 21 (uniform 40^3,
+// W/Omega = 0.45 h), t = 0.32, four clouds with scatter 0.006. K on 10^3 cells is 0.249 trilinear and 0.264 solenoidal.
+// A normal velocity quadratic in the wall's cell, with the right shear and volume within h/2, gives 0.259 (six clouds).
 #pragma once
 
 #include "solver/coupling/spreading.hpp"
@@ -39,7 +39,7 @@ struct AxisWeights {
     std::array<double, Count> weight{};
 };
 
-/// `place` is where x lies on the axis, find(axis, x), found once for both.
+/// Trilinear kernel. `place`: find(axis, x), computed once for own and across.
 struct Trilinear {
     static constexpr Hats hats = Hats::linear;
     [[nodiscard]] static int find(const flow::Axis& axis, double x) { return axis.cell_at(x); }
@@ -94,7 +94,7 @@ public:
         }
     }
 
-    /// Calls body(index of the node in the field, weight) for every node of component D in these planes.
+    /// Calls body(index of the node in the field, weight) for every node of component D in `planes`.
     template <int D, class Body>
     void visit(const flow::Field& shape, Body body, const flow::Planes& planes = {}) const {
         const auto& wx = along<D, 0>();
@@ -113,7 +113,7 @@ public:
         return {component<0>(field[0]), component<1>(field[1]), component<2>(field[2])};
     }
 
-    /// Adds `amount` of component d onto the nodes, ghosts included (fold_ghosts brings those inside), in these planes.
+    /// Adds `amount` of component d to the nodes in `planes`, including ghosts; fold_ghosts moves these inside.
     void scatter(const Vec3& amount, flow::FaceVectors& onto, const flow::Planes& planes = {}) const {
         deposit<0>(amount[0], onto[0], planes);
         deposit<1>(amount[1], onto[1], planes);
@@ -127,7 +127,7 @@ public:
             onto, [&](std::ptrdiff_t at, double weight) { values[at] += weight * amount; }, planes);
     }
 
-    /// The planes its nodes lie in, of any component.
+    /// Returns the planes that contain its nodes, of any component.
     [[nodiscard]] flow::Planes planes() const {
         const auto& own = own_[2];
         const auto& across = across_[2];
@@ -159,30 +159,32 @@ private:
         across_{};
 };
 
-/// The transpose of flow::fill_ghosts without its constants: adds what lies on ghosts to the values they copy, so that
-/// scatter and fold_ghosts are together the transpose of fill_ghosts and gather. What falls on a wall the wall takes.
+/// Applies the transpose of flow::fill_ghosts without its constants: adds the values on ghosts to the values that they
+/// copy. Then scatter and fold_ghosts together are the transpose of fill_ghosts and gather. Deposits on a wall are
+/// removed.
 void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, const Slabs& slabs = {});
 
-/// Edges of the three components of a field that passes no wall and does not change along a wall's normal.
+/// Returns the edges of the three components of a field that does not pass walls and does not change along a wall's
+/// normal.
 [[nodiscard]] std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides);
 
-/// Turns deposits on the faces into values per volume, spread over the width of the kernel. Walls reflect what is
-/// tangential to them, as they do the particles' volume: a uniform cloud is a uniform force, which the pressure
-/// carries.
+/// Deposit of forces on the faces, converted to values per volume and spread over the width of the kernel. Walls
+/// reflect tangential components, like the volume of the particles. So a uniform cloud gives a uniform force, which the
+/// pressure balances.
 class FaceDeposit {
 public:
     /// width, hats: see spreading.hpp.
     FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width, Hats hats = Hats::linear);
 
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
 
     static void clear(flow::Field& field, const Slabs& slabs);
     static void clear(flow::FaceVectors& faces, const Slabs& slabs = {});
-    /// Extensive deposit, ghosts included -> per volume of each face's control volume.
+    /// Converts an extensive deposit, including ghosts, to values per volume of each face's control volume.
     void spread(flow::FaceVectors& faces);
-    /// A field on the faces spread as deposits are, ghosts filled as its transpose folds them: particles gather from it
-    /// exactly what they would have deposited on it.
+    /// Spreads a field on the faces by the transpose of `spread`, and fills ghosts by the transpose of fold_ghosts, so
+    /// that gathering is exactly the transpose of depositing.
     void spread_transposed(flow::FaceVectors& faces);
 
 private:
@@ -193,7 +195,7 @@ private:
     Slabs slabs_;
 };
 
-/// The axes along which a box is periodic.
+/// Returns the axes along which a box is periodic.
 [[nodiscard]] std::array<bool, 3> periodic_axes(const flow::Sides& sides);
 
 }  // namespace grainsweep::coupling

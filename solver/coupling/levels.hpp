@@ -1,20 +1,21 @@
-// Levels of coupling between particles and fluid. A level is a type; what it does not do is not compiled.
+// Levels of coupling between particles and fluid. Each level is a type, so code that a level does not need is not
+// compiled.
 //
 // One-way: the particles do not act on the fluid.
 //
-// Two-way, force form: each particle acts on the fluid with the opposite of what the fluid does to it beyond the
-// hydrostatic pressure. With F the sum of drag, added mass and pressure-gradient force, the particle's own equation
-// of motion gives F = v_p [xi dV/dt - (xi - 1) gamma s e], so
+// Two-way, force form: each particle exerts on the fluid the opposite of the fluid's force on it, except the
+// hydrostatic part. With F the sum of drag, added mass and pressure-gradient force, the particle's equation of motion
+// gives F = v_p [xi dV/dt - (xi - 1) gamma s e], so
 //     s_m = -sum k v_p [ xi dV_p/dt - (xi - 1) gamma s(t) e ]
-// (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756, for a Boussinesq fluid: the vibrational
-// buoyancy of the cloud is part of it and dominates; k is the kernel of spreading.hpp). Written through the balance
-// instead of the drag law it has no stiffness: the large term is known exactly, dV_p/dt is that of the step before.
-// That term is a share xi phi_p of the whole and lags by a step to a step and a half. So the force is of first order in
-// the step, with that share as its factor. It is stable below a share of about 1.
+// with k the kernel of spreading.hpp (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756). For a
+// Boussinesq fluid it includes the vibrational buoyancy of the cloud, which dominates. This form has no stiffness,
+// unlike the drag law: the large term is exact, and dV_p/dt comes from the step before. The dV_p/dt term is a share xi
+// phi_p of the whole and lags by a step to a step and a half. So the error of the force is of first order in the step,
+// times this share. The scheme is stable for a share below about 1.
 //
 // Two-way, equation 9 of Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3) as printed:
 //     s_m = -(1/fluid fraction) sum k v_p xi dV_p/dt.
-// Right for particles without body force; here it leaves out the reaction to the vibrational buoyancy.
+// It is right for particles without body force; here it omits the reaction to the vibrational buoyancy.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -35,8 +36,8 @@ struct OneWay {
     static constexpr bool mirrored = false;
 };
 
-/// One-way coupling in a fluid that is its own mirror image in x. Only the half x < 0 of the flow exists, closed by a
-/// plane of symmetry (FreeSlip). Particles beyond it take the mirrored values.
+/// One-way coupling in a fluid that is symmetric in x. Only the half x < 0 of the flow is computed, bounded by a plane
+/// of symmetry (FreeSlip). Particles beyond the plane use mirrored values.
 struct OneWayMirrored {
     static constexpr bool acts_on_fluid = false;
     static constexpr bool mirrored = true;
@@ -45,7 +46,7 @@ struct OneWayMirrored {
         x[0] = -std::abs(x[0]);
         return x;
     }
-    /// Fluid values at x from those at its image below the plane.
+    /// Converts fluid values at the image of x below the plane to values at x.
     static void turn(const Vec3& x, Surroundings& around) {
         if (!(x[0] > 0)) return;
         around.velocity[0] = -around.velocity[0];
@@ -73,21 +74,21 @@ struct EquationNine {
     }
 };
 
-/// Sums over all particles along the vibration, in units of rho alpha^2: what they gave the fluid in the last step, and
-/// the vibrational buoyancy (xi - 1) gamma s N v_p. In the force form the difference is the inertia of the particles,
-/// sum xi v_p dV_p/dt.
+/// Momentum budget: sums over all particles along the vibration, in units of rho alpha^2. They are the force on the
+/// fluid in the last step, and the vibrational buoyancy (xi - 1) gamma s N v_p. In the force form the difference is the
+/// inertia of the particles, sum xi v_p dV_p/dt.
 struct MomentumBudget {
     double given = 0;
     double drive = 0;
 };
 
-/// Deposits particle forces on the faces as accelerations of the fluid.
+/// Two-way coupling: deposits particle forces on the faces as accelerations of the fluid.
 template <class Form>
 class TwoWay {
 public:
     static constexpr bool acts_on_fluid = true;
     static constexpr bool mirrored = false;
-    /// Least share of a cell that is fluid: random close packing leaves 1 - 0.63.
+    /// Smallest share of fluid in a cell: 1 - 0.63, random close packing.
     static constexpr double least_fluid = 0.37;
 
     /// kernel_width, hats: see spreading.hpp.
@@ -101,13 +102,13 @@ public:
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
     }
 
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) {
         slabs_ = slabs;
         deposit_.use(slabs);
     }
 
-    /// Acceleration of the fluid by the particles with these stencils, at vibration s.
+    /// Returns the acceleration of the fluid by the particles with these stencils, at vibration s.
     template <class Stencils>
     const flow::FaceVectors& source(const Stencils& stencils, double vibration) {
         FaceDeposit::clear(source_, slabs_);
@@ -135,11 +136,11 @@ public:
         return source_;
     }
 
-    /// Motion of particle p in this step, before it touched any wall.
+    /// Stores dV/dt of particle p in this step, before contact with walls.
     void remember(std::size_t p, const Vec3& rate) { rate_[p] = rate; }
     [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
 
-    /// What particle p gives the fluid in this step.
+    /// Returns the force of particle p on the fluid in this step.
     [[nodiscard]] Vec3 force(std::size_t p, double vibration) const {
         return Form::force_on_fluid(sphere_, rate_[p], vibration);
     }

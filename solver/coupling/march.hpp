@@ -1,6 +1,5 @@
-// Moves a cloud through one time step, a block of particles at a time. It finds the cell of each particle, gathers the
-// fluid there, and solves the equation of motion for the block in vectors (motion.hpp). Blocks
-// change no bit: the same as one by one.
+// Advance of a cloud by one time step, in blocks of particles. For each block it finds the cells, gathers the fluid
+// values, and solves the equation of motion in vectors (motion.hpp). Blocks change no bit.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -14,9 +13,9 @@
 
 namespace grainsweep::coupling {
 
-/// `order` names the particles; locate(p) -> its Stencil in the middle of the step; gather(p, stencil) -> Surroundings;
-/// moved(p, velocity before) follows the step of particle p. vibration: s(t) in the middle of the step, of all. Each of
-/// them touches what is p's alone: blocks are shared among threads.
+/// Advances the particles in `order`. locate(p) returns the Stencil in the middle of the step, gather(p, stencil) the
+/// Surroundings; moved(p, velocity before) is called after the step of particle p. vibration: s(t) in the middle of the
+/// step. Threads share the blocks, so these functions may access only data of particle p.
 template <class Drag, class Order, class Locate, class Gather, class Moved>
 void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Order& order, Locate locate, Gather gather,
            Moved moved, const Slabs& slabs = {}) {
@@ -52,7 +51,7 @@ void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Ord
     });
 }
 
-/// ... and turned back by walls after `moved`.
+/// Advances the particles and reflects them at walls after `moved`.
 template <class Drag, class Order, class Locate, class Gather, class Moved>
 void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double vibration, const Order& order,
            Locate locate, Gather gather, Moved moved, const Slabs& slabs = {}) {
@@ -65,14 +64,14 @@ void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double 
         slabs);
 }
 
-/// Where particle p is predicted in the middle of a step, X + V dt/2.
+/// Returns the predicted position of particle p in the middle of a step, X + V dt/2.
 [[nodiscard]] inline Vec3 predicted(const Cloud& cloud, std::size_t p, double dt, const Walls& walls) {
     Vec3 x = cloud.position[p];
     for (std::size_t d = 0; d < 3; ++d) x[d] += 0.5 * dt * cloud.velocity[p][d];
     return walls.clipped(x);
 }
 
-/// All particles in their own order; around(p) -> Surroundings.
+/// Advances all particles in their own order; around(p) returns the Surroundings.
 template <class Drag, class Around, class Moved>
 void march_all(Cloud& cloud, const Motion<Drag>& motion, double vibration, Around around, Moved moved,
                const Slabs& slabs = {}) {

@@ -1,19 +1,18 @@
-// The motion of one small sphere in a vibrated fluid (length L, time L^2/alpha, density of the fluid):
+// Motion of one small sphere in a vibrated fluid (length L, time L^2/alpha, density of the fluid):
 //
 //   (xi + 1/2) dV/dt = 3/2 Du/Dt + f(Re_p) (Pr/St) (u - V) + (xi - 1) gamma s(t) e + a,   dX/dt = V
 //
-// (Maxey & Riley 1983, doi 10.1063/1.864230, without Faxen terms, and without the history force, whose relative size is
-// R/sqrt(2 nu/omega): it would change the slip by 8 to 10 % in the runs of configs/lappa2024_run*, mostly its phase;
-// added mass 1/2 on the left-hand side, where it belongs: taken explicitly it multiplies errors by 1/(2 xi) per step).
-// xi density ratio, St = 2/9 (R/L)^2, gamma amplitude of the vibrational acceleration, `a` any other force per volume
-// of the sphere.
+// (Maxey & Riley 1983, doi 10.1063/1.864230, without Faxen terms and history force). xi: density ratio; St = 2/9
+// (R/L)^2; gamma: amplitude of the vibrational acceleration; `a`: any other force per volume of the sphere. The history
+// force has the relative size R/sqrt(2 nu/omega). It would change the slip by 8 to 10 % in the runs of
+// configs/lappa2024_run*, mostly its phase. The added mass 1/2 is on the left-hand side: an explicit term would
+// multiply errors by 1/(2 xi) per step.
 //
-// One step with the fluid frozen at its middle is solved exactly, so relaxation times far below the step are
-// harmless:
+// A step with the fluid values of its middle is solved exactly, so relaxation times far below the step are no problem:
 //   tau = (xi + 1/2) St/(f Pr),  Vinf = u + tau [3/2 Du/Dt + (xi - 1) gamma s e + a]/(xi + 1/2),  E = exp(-dt/tau)
 //   X += Vinf dt + (V - Vinf) tau (1 - E),   V = Vinf + (V - Vinf) E
-// f follows the slip in the middle of the step (one correction). Positions are second order for dt << tau and
-// for dt >> tau, where V is then the velocity of the middle of the step.
+// f uses the slip in the middle of the step (one correction). Positions are of second order for dt << tau and for dt >>
+// tau; in the second case V is the velocity of the middle of the step.
 #pragma once
 
 #include "solver/coupling/drag.hpp"
@@ -38,7 +37,7 @@ struct Sphere {
     }
 };
 
-/// The fluid at the sphere in the middle of a step.
+/// Fluid at the sphere in the middle of a step.
 struct Surroundings {
     Vec3 velocity{};       ///< u
     Vec3 acceleration{};   ///< Du/Dt
@@ -46,7 +45,7 @@ struct Surroundings {
     Vec3 other{};          ///< a
 };
 
-/// Many spheres side by side, one a lane, in the same vibration: [axis][lane].
+/// Lanes of spheres in the same vibration: [axis][lane].
 struct Lanes {
     static constexpr std::size_t size = 64;
     using Row = std::array<double, size>;
@@ -54,12 +53,12 @@ struct Lanes {
     alignas(64) std::array<Row, 3> fluid_velocity, pull;  ///< pull: 3/2 Du/Dt + a
 };
 
-/// What does not change from step to step.
+/// Constants of all steps.
 struct MotionConstants {
     double dt, mass, free_tau, reynolds;  ///< step, xi + 1/2, tau of Stokes' drag, Re_p of slip 1
 };
 
-/// tau at the slip of a sphere of velocity v in a fluid of velocity u.
+/// Returns tau at the slip of a sphere of velocity v in a fluid of velocity u.
 template <class Drag>
 [[nodiscard, gnu::always_inline]] inline double relaxation(const MotionConstants& c, const Vec3& u, const Vec3& v) {
     const double slip =
@@ -67,7 +66,7 @@ template <class Drag>
     return c.free_tau / Drag::factor(c.reynolds * slip);
 }
 
-/// tau at the slip in the middle of a step that begins with velocity v.
+/// Returns tau at the slip in the middle of a step that begins with velocity v.
 template <class Drag>
 [[nodiscard, gnu::always_inline]] inline double step_relaxation(const MotionConstants& c, const Vec3& v, const Vec3& u,
                                                                 const Vec3& q) {
@@ -81,7 +80,7 @@ template <class Drag>
     return relaxation<Drag>(c, u, middle);
 }
 
-/// (x, v) after one step in a fluid of velocity u; q: the acceleration by all but the drag.
+/// Advances (x, v) by one step in a fluid of velocity u; q: acceleration without drag.
 template <class Drag>
 [[gnu::always_inline]] inline void advance_one(const MotionConstants& c, Vec3& x, Vec3& v, const Vec3& u,
                                                const Vec3& q) {
@@ -95,7 +94,7 @@ template <class Drag>
     }
 }
 
-/// advance_one on the first `count` lanes; push: the acceleration of vibration (motion.cpp).
+/// Applies advance_one to the first `count` lanes; push: acceleration by vibration (motion.cpp).
 void advance_lanes(StokesDrag law, const MotionConstants& constants, const Vec3& push, Lanes& lanes, std::size_t count);
 void advance_lanes(SchillerNaumann law, const MotionConstants& constants, const Vec3& push, Lanes& lanes,
                    std::size_t count);
@@ -112,17 +111,17 @@ public:
     void advance(Vec3& x, Vec3& v, const Surroundings& around) const {
         advance_one<Drag>(constants_, x, v, around.velocity, pull(around));
     }
-    /// tau of that step for a sphere of velocity v before it.
+    /// Returns tau of the step of a sphere with velocity v before it.
     [[nodiscard]] double step_relaxation(const Vec3& v, const Surroundings& around) const {
         return coupling::step_relaxation<Drag>(constants_, v, around.velocity, pull(around));
     }
 
-    /// The same for many, in vectors: the same bits as one by one.
+    /// Advances many spheres in vectors, with the same bits as one by one.
     void advance(Lanes& lanes, std::size_t count, double vibration) const {
         advance_lanes(Drag{}, constants_, vibrated(vibration), lanes, count);
     }
 
-    /// tau = (xi + 1/2) St/(f Pr) at the slip of a sphere of velocity v in a fluid of velocity u.
+    /// Returns tau = (xi + 1/2) St/(f Pr) at the slip of a sphere of velocity v in a fluid of velocity u.
     [[nodiscard]] double relaxation(const Vec3& u, const Vec3& v) const {
         return coupling::relaxation<Drag>(constants_, u, v);
     }
@@ -131,7 +130,7 @@ public:
     [[nodiscard]] double time_step() const { return constants_.dt; }
 
 private:
-    // Acceleration by all but the drag.
+    // Returns the acceleration without drag.
     [[nodiscard]] Vec3 pull(const Surroundings& around) const {
         Vec3 q = vibrated(around.vibration);
         for (std::size_t d = 0; d < 3; ++d) q[d] += (1.5 * around.acceleration[d] + around.other[d]) / constants_.mass;

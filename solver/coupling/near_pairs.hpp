@@ -1,4 +1,4 @@
-// Pairs of particles nearer than a range, across periodic sides too.
+// Pairs of particles nearer than a range, also across periodic sides.
 #pragma once
 
 #include "solver/coupling/walls.hpp"
@@ -16,9 +16,9 @@ class NearPairs {
 public:
     explicit NearPairs(const Walls& box) : domain_{box.low, box.high, box.periodic} {}
 
-    /// All pairs i < j with |x_i - x_j| < range, ascending. Finite positions inside the box.
+    /// Returns all pairs i < j with |x_i - x_j| < range, ascending. Positions must be finite and inside the box.
     const std::vector<Pair>& find(const std::vector<Vec3>& position, double range);
-    /// x_i - x_j by the shortest way.
+    /// Returns the shortest x_i - x_j.
     [[nodiscard]] Vec3 separation(const Vec3& xi, const Vec3& xj) const { return domain_.separation(xi, xj); }
 
 private:

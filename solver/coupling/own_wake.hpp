@@ -1,17 +1,19 @@
-// The flow that each particle makes for itself, known in closed form, taken out of the fluid it feels.
+// Own wake: the flow that each particle causes at its own place, in closed form, subtracted from the gathered fluid
+// velocity.
 //
-// A point force spread over a Gaussian of variance s2 gives the fluid at its own place, by the unsteady Stokes equation
-// in infinite space,
+// By the unsteady Stokes equation in infinite space, a force spread over a Gaussian of variance s2 causes at its own
+// place the velocity
 //     u(t) = integral of F(t') G(t - t') dt',   G(T) = (nu T + s2/2)^(-3/2)/(12 pi^(3/2)),
-// F per density of the fluid; steady u = F/(6 pi nu) sqrt(2/pi)/sqrt(s2). The drag law needs the fluid without it:
-// otherwise a sphere of radius R settles too fast by R sqrt(2/pi)/sqrt(s2), 10 % at s = 8 R (Horwitz & Mani 2016, doi
-// 10.1016/j.jcp.2016.04.034; the Gaussian's history as in Evrard, Denner & van Wachem 2020, doi
-// 10.1016/j.jcp.2020.109591). As x^(-3/2) = 2/sqrt(pi) times the integral of sqrt(k) exp(-k x) over k, G is a sum of
-// exponentials, and the integral a few numbers per particle, each decaying at its rate nu k and fed by F.
+// F per density of the fluid; steady u = F/(6 pi nu) sqrt(2/pi)/sqrt(s2). The drag law needs the velocity without this
+// part. Otherwise a sphere of radius R settles too fast by R sqrt(2/pi)/sqrt(s2), 10 % at s = 8 R (Horwitz & Mani 2016,
+// doi 10.1016/j.jcp.2016.04.034; the Gaussian's history as in Evrard, Denner & van Wachem 2020, doi
+// 10.1016/j.jcp.2020.109591). Because x^(-3/2) = 2/sqrt(pi) times the integral of sqrt(k) exp(-k x) over k, G is
+// approximated by a sum of exponentials. Each particle then needs only a few numbers, with decay rates nu k and source
+// F.
 //
 // A no-slip wall at distance z reduces the steady u as for a point force: by F/(6 pi nu z) times 9/16 along the wall
-// and 9/8 across it (Happel & Brenner 1983, ch. 7). The additional decay nu (9/16 m/z)^2 of every number does
-// so to first order in s/z, m = 1 along and 2 across, and leaves nothing of u at the wall. Decays of several walls add.
+// and 9/8 across it (Happel & Brenner 1983, ch. 7). An additional decay nu (9/16 m/z)^2 of every number, m = 1 along
+// and 2 across, gives this reduction to first order in s/z, and u = 0 at the wall. Decays of several walls add.
 #pragma once
 
 #include "solver/coupling/levels.hpp"
@@ -28,15 +30,15 @@
 
 namespace grainsweep::coupling {
 
-/// The sum of exponentials for a variance s2: u = sum of weight q, dq/dt = F - rate q.
+/// Sum of exponentials for a variance s2: u = sum of weight q, dq/dt = F - rate q.
 class WakeModes {
 public:
-    /// Of neighbouring wavenumbers; 3 gives G within 0.4 %.
+    /// Ratio of neighbouring wavenumbers; 3 gives G within 0.4 %.
     static constexpr double ratio = 3;
     static constexpr std::size_t count = 14;
     using Values = std::array<double, count>;
 
-    /// least_variance > 0: s2 is nowhere smaller; viscosity nu > 0.
+    /// least_variance > 0: smallest s2 anywhere; viscosity nu > 0.
     WakeModes(double least_variance, double viscosity) : least_variance_(least_variance) {
         double square = 40 / least_variance;  // k
         for (std::size_t m = count; m-- > 0; square /= ratio) {
@@ -63,13 +65,13 @@ private:
     Values rate_{}, weight_{};
 };
 
-/// Two-way coupling in which no particle feels what it does to the fluid itself. Form: see levels.hpp.
+/// Two-way coupling in which the drag of a particle does not include its own wake. Form: see levels.hpp.
 template <class Form>
 class TwoWayWithoutOwnWake : public TwoWay<Form> {
 public:
     static constexpr bool subtracts_own_wake = true;
 
-    /// dt: time step; the others as of TwoWay.
+    /// dt: time step; other arguments as of TwoWay.
     TwoWayWithoutOwnWake(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles,
                          double kernel_width, double dt, Hats hats = Hats::linear)
         : TwoWay<Form>(grid, sides, sphere, particles, kernel_width, hats),
@@ -85,7 +87,7 @@ public:
         }
     }
 
-    /// Takes its wake out of what particle p gathered at x in the middle of the step, in this vibration.
+    /// Subtracts the wake of particle p from the fluid gathered at x in the middle of the step, in this vibration.
     void subtract(std::size_t p, const Vec3& x, double vibration, const Walls& walls, Surroundings& around) {
         const Vec3 force = this->force(p, vibration);
         const double variance = variance_at(x);
@@ -117,7 +119,8 @@ public:
 private:
     using Wake = std::array<WakeModes::Values, 3>;
 
-    // Of what is deposited over the width, no narrower than a cell of width h, and gathered linearly between its nodes.
+    // Returns the variance of a deposit over the width, at least a cell of width h, plus the variance of linear
+    // gathering.
     [[nodiscard]] double variance_of(double h) const { return std::max(width_ * width_, h * h / 6) + h * h / 6; }
     [[nodiscard]] double variance_at(const Vec3& x) const {
         double sum = 0;
@@ -132,7 +135,7 @@ private:
         for (int d = 0; d < 3; ++d) least += variance_of(grid_[d].width(1)) / 3;  // cells are smallest beside walls
         return least;
     }
-    // Walls reflect what is spread along them, which a wake of width s sees below z = s.
+    // Walls reflect tangential deposits, which affects a wake of width s below z = s.
     [[nodiscard]] Vec3 kept_beside(const Vec3& x, const Walls& walls, double variance) const {
         const double least = 0.1 * sphere_.radius();
         Vec3 closeness{};  // sum of (m/z)^2

@@ -1,10 +1,10 @@
-// A flow that repeats every period, stored as its mean and two harmonics, and particles carried by it:
+// Periodic flow, stored as its mean and two harmonics, and particles carried by it:
 //   V(x, t) = V0 + Vc1 cos wt + Vs1 sin wt + Vc2 cos 2wt + Vs2 sin 2wt,  and the same for the acceleration DV/Dt.
 //
-// One-way particles do not change the flow, so one periodic flow serves every case with the same fluid. Each
-// node keeps its ten numbers side by side; a particle gathers the amplitudes once per step and evaluates them at the
-// phase of the step, whose cost does not depend on the grid. Fetching them is what it costs, so they are kept in
-// single precision: an error of 6e-8 beside the percent of the grid's.
+// One-way particles do not change the flow, so all cases with the same fluid share one periodic flow. Each node stores
+// its ten numbers contiguously. A particle gathers the amplitudes once per step and evaluates them at the phase of the
+// step, at a cost that does not depend on the grid. The cost is memory access, so the numbers have single precision: an
+// error of 6e-8, while the grid's error is about one percent.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -20,7 +20,7 @@
 
 namespace grainsweep::coupling {
 
-/// The harmonics of a flow while its period goes by.
+/// Accumulator of the harmonics of a flow during a period.
 class PeriodSum {
 public:
     static constexpr std::size_t terms = 5;
@@ -30,7 +30,7 @@ public:
         for (auto& nodes : amplitudes_) nodes.assign(size_, Node{});
     }
 
-    /// The share of one of `samples` equal steps of a period, taken at `phase` (rad); fields with ghosts.
+    /// Adds one of `samples` equal steps of a period, at `phase` (rad); fields with ghosts.
     void add(double phase, int samples, const flow::FaceVectors& velocity, const flow::FaceVectors& acceleration) {
         const std::array<double, terms> basis = shares(phase, samples);
         for (std::size_t d = 0; d < 3; ++d)
@@ -76,14 +76,14 @@ public:
                     amplitudes_[d][m][t / 4][t % 4] = static_cast<float>(period.amplitudes()[d][m][t]);
     }
 
-    /// Velocity and acceleration at a particle at `phase`.
+    /// Returns velocity and acceleration at a particle at `phase`.
     template <class Kernel>
     [[nodiscard]] Surroundings at(const Stencil<Kernel>& stencil, double phase) const {
         const double c = std::cos(phase);
         const double s = std::sin(phase);
         return at(stencil, {1, c, s, c * c - s * s, 2 * s * c});
     }
-    /// The same with the basis functions 1, cos, sin, cos 2, sin 2 of the phase at hand.
+    /// Returns the same from the basis functions 1, cos, sin, cos 2, sin 2 of the phase.
     template <class Kernel>
     [[nodiscard]] Surroundings at(const Stencil<Kernel>& stencil, const std::array<double, terms>& basis) const {
         Surroundings around;
@@ -93,7 +93,7 @@ public:
         return around;
     }
 
-    /// The velocity on all faces at `phase`, ghosts included.
+    /// Computes the velocity on all faces at `phase`, including ghosts.
     void velocity(double phase, flow::FaceVectors& into) const {
         const double c = std::cos(phase);
         const double s = std::sin(phase);
@@ -116,7 +116,7 @@ public:
 
 private:
     using Four = float __attribute__((vector_size(16)));
-    using Node = std::array<Four, 3>;  // velocity, then acceleration; two places are free
+    using Node = std::array<Four, 3>;  // velocity, then acceleration; two entries are unused
 
     template <int D, class Kernel>
     void component(const Stencil<Kernel>& stencil, const std::array<double, terms>& basis, Surroundings& around) const {

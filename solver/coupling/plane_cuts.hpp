@@ -1,6 +1,6 @@
-// Adds the contributions of many particles to one field. Each thread owns some planes of the field, visits all
-// particles and adds what falls on its own planes. So every value is summed in the order of the particles, with any
-// number of threads. The planes are cut so that about as many particles fall to each.
+// Parallel addition of the contributions of many particles to one field. Each thread owns some planes of the field,
+// visits all particles and adds to its own planes. So every value is summed in the order of the particles, with any
+// number of threads. The planes are divided so that each thread has about the same number of particles.
 #pragma once
 
 #include "solver/coupling/each.hpp"
@@ -13,7 +13,7 @@ namespace grainsweep::coupling {
 
 class PlaneCuts {
 public:
-    /// touched(p): the planes that particle p adds to, of a field that has so many.
+    /// Makes the division. touched(p): planes to which particle p adds, in a field of `planes` planes.
     template <class Touched>
     void make(std::size_t particles, int planes, const Slabs& slabs, Touched touched) {
         particles_ = particles;
@@ -32,7 +32,7 @@ public:
         }
     }
 
-    /// Calls add(p, own) for particles in their order; what it adds outside of the planes `own` is to be left out.
+    /// Calls add(p, own) for particles in their order; `add` must add only to the planes `own`.
     template <class Add>
     void each(const Slabs& slabs, Add add) const {
         if (slabs.count() == 1) {
@@ -51,7 +51,7 @@ private:
     std::size_t particles_ = 0;
     std::vector<flow::Planes> touched_;
     std::vector<std::size_t> counts_;  // particles by their first plane
-    std::vector<int> cuts_;            // where the planes of each slab begin, and the end
+    std::vector<int> cuts_;            // first plane of each slab, and the end
 };
 
 }  // namespace grainsweep::coupling

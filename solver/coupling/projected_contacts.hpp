@@ -1,13 +1,13 @@
-// Four-way coupling without springs: in a viscous fluid a contact only stops the approach of two spheres.
+// Four-way coupling without springs. In a viscous fluid a contact only stops the approach of two spheres.
 //
-// Collision Stokes numbers far below 10 allow no rebound (Joseph et al. 2001, doi 10.1017/S0022112001003470). So after
-// each step, passes through the pairs remove overlaps, half by each partner and wholly at walls. The velocity changes
-// by that displacement divided by the step (position-based dynamics, Mueller et al. 2007, doi
-// 10.1016/j.jvcir.2007.01.005). The momentum that a particle needs over the step to
-// end dx further and dx/dt faster, against its inertia and its drag, whose integral knows the displacement alone,
-//   f dt = (xi + 1/2) dx/dt + (xi + 1/2)/tau dx   per volume,   tau that of its step (motion.hpp),
-// is a contact's, not the fluid's, and is left out of what the fluid gets: what rests on a wall gives it nothing. Two
-// spheres push each other alike, with the mean of their tau^-1.
+// At collision Stokes numbers far below 10 there is no rebound (Joseph et al. 2001, doi 10.1017/S0022112001003470).
+// After each step, passes through the pairs remove overlaps: each partner moves by half of the overlap, and at walls
+// the particle moves by all of it. The velocity changes by the displacement divided by the step (position-based
+// dynamics, Mueller et al. 2007, doi 10.1016/j.jvcir.2007.01.005). A displacement dx and a velocity change dx/dt,
+// against inertia and drag, need the momentum
+//   f dt = (xi + 1/2) dx/dt + (xi + 1/2)/tau dx   per volume,   tau of the step (motion.hpp).
+// This momentum comes from the contact and is not part of the force on the fluid: a particle resting on a wall exerts
+// no force on the fluid. The forces of two spheres on each other are opposite, with the mean of their tau^-1.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -23,21 +23,21 @@
 
 namespace grainsweep::coupling {
 
-/// Removes overlaps by displacement; at most `sweeps` over all pairs.
+/// Removal of overlaps by displacement.
 class OverlapRemoval {
 public:
     OverlapRemoval(const Walls& walls, double diameter) : walls_(walls), diameter_(diameter), near_(walls) {}
 
-    /// i was moved by `by`; j, where it is no wall, by the opposite.
+    /// Displacement of i by `by`, and of j, unless it is a wall, by the opposite.
     struct Move {
         static constexpr std::uint32_t wall = 0xFFFFFFFFU;
         std::uint32_t i, j;
         Vec3 by;
     };
 
-    /// Returns the largest overlap left, in diameters.
+    /// Removes overlaps in at most `sweeps` passes over all pairs. Returns the largest remaining overlap, in diameters.
     double apply(std::vector<Vec3>& positions, int sweeps);
-    /// Of the last apply, in their order.
+    /// Returns the displacements of the last apply(), in their order.
     [[nodiscard]] const std::vector<Move>& moves() const { return moves_; }
 
 private:
@@ -50,7 +50,7 @@ private:
 class ProjectedContacts {
 public:
     ProjectedContacts(const Sphere& sphere, const Walls& walls);
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
 
     template <class Motion, class Stencils, class Around>
@@ -70,7 +70,7 @@ public:
     void restore(std::span<const std::byte>&) {}
 
 private:
-    // tau(p) is evaluated only for particles that were moved.
+    // Removes overlaps; tau(p) is evaluated only for displaced particles.
     template <class Tau>
     void separate(Cloud& cloud, double time_step, Tau tau, std::vector<Vec3>& transmitted) {
         if (!remove_overlaps(cloud)) return;  // the run reports it
@@ -98,14 +98,14 @@ private:
             cloud.position[p] = walls_.clipped(cloud.position[p]);
         }
     }
-    /// False, and nothing done: a position is no number.
+    /// Returns false without any change if a position is NaN.
     bool remove_overlaps(Cloud& cloud);
 
     double density_ratio_;
     Walls walls_;
     OverlapRemoval removal_;
     std::vector<Vec3> before_, force_;
-    std::vector<double> stiffness_;  // f/dx of the particles asked for, else 0
+    std::vector<double> stiffness_;  // f/dx of displaced particles, else 0
     std::vector<Surroundings> surroundings_;
     Slabs slabs_;
 };

@@ -1,11 +1,11 @@
-// Particles as a dense phase: what they do to each other is a pressure of their own (DDPM).
+// Particles as a dense phase: their interaction is a solids pressure (DDPM).
 //
-// Force per volume of a sphere, besides what the fluid does:
+// Force per volume of a sphere, in addition to the force of the fluid:
 //   a = -(1/phi_p) grad p_s,   p_s = xi phi_p Theta (1 + 2 (1 + e) phi_p g0)                 (granular.hpp)
-// (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF), and no cell over the packing limit
-// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the fraction is below the
-// one of two particles at one place, far from walls, there are no collisions and no stress. The
-// displacement by the stress in one step is held below a tenth of a cell.
+// (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF). The packing limit applies in
+// addition (packing_limit.hpp). The type of Theta is a template argument: granular_temperature.hpp. Below the fraction
+// of two particles at one place, far from walls, there are no collisions and no stress. The displacement by the stress
+// in one step is limited to a tenth of a cell.
 #pragma once
 
 #include "solver/coupling/each.hpp"
@@ -18,8 +18,8 @@
 
 namespace grainsweep::coupling {
 
-/// Particles that do not touch: moved, their reaction transmitted, turned back by walls. push(p): force per volume
-/// besides the fluid's.
+/// Advances particles without contacts, stores their reaction in `transmitted`, and reflects them at walls. push(p):
+/// force per volume in addition to the force of the fluid.
 template <class Motion, class Around, class Push>
 void advance_free(Cloud& cloud, const Motion& motion, const Walls& walls, const Around& around, Push push,
                   std::vector<Vec3>& transmitted, const Slabs& slabs) {
@@ -60,7 +60,7 @@ public:
             for (int i = 1; i <= grid.cells(d); ++i) smallest_ = std::min(smallest_, grid[d].width(i));
     }
 
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) {
         slabs_ = slabs;
         deposit_.use(slabs);
@@ -70,8 +70,8 @@ public:
         straining_.use(slabs);
     }
 
-    /// Advances every particle; `around(p)` is the fluid at stencils[p].
-    /// transmitted[p]: the stress less the inertia of the particle, per volume.
+    /// Advances every particle; `around(p)` is the fluid at stencils[p]. transmitted[p]: stress minus inertia of the
+    /// particle, per volume.
     template <class Motion, class Stencils, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume& solids, const Stencils& stencils,
               const Around& around, std::vector<Vec3>& transmitted) {
@@ -87,7 +87,7 @@ public:
         advance_free(cloud, motion, walls, around, push, transmitted, slabs_);
     }
 
-    /// After walls: the packing limit. `solids` is left at the final positions.
+    /// Applies the packing limit after walls. `solids` then has the final positions.
     void settle(Cloud& cloud, const Walls& walls, SolidsVolume& solids) {
         packed_.place(cloud.position);
         if (limit_.restore(cloud.position, walls, packed_) == 0) return;
@@ -95,7 +95,7 @@ public:
         if (stepped_) ++limited_;
     }
 
-    /// Steps in which the packing limit moved particles.
+    /// Returns the number of steps in which the packing limit moved particles.
     [[nodiscard]] std::int64_t limited_steps() const { return limited_; }
 
     void save(std::vector<std::byte>& into) const {
@@ -108,8 +108,8 @@ public:
     }
 
 private:
-    // The stress is divided by the fraction that the particles themselves have on a face, and is spread and gathered as
-    // that fraction was deposited. So the sum over the particles equals the sum of -grad p_s over the faces.
+    // Computes the stress. It is divided by the particles' own fraction on a face, and spread and gathered in the same
+    // way as this fraction was deposited. So the sum over the particles equals the sum of -grad p_s over the faces.
     template <class Stencils>
     void find_stress(const Cloud& cloud, SolidsVolume& solids, const Stencils& stencils, double dt) {
         stressed_ = solids.largest_fraction() > thinnest_;
@@ -134,7 +134,7 @@ private:
         for (int d = 0; d < 3; ++d) find_stress_along(d);
         deposit_.spread_transposed(stress_);
     }
-    // From the fraction on the faces in stress_.
+    // Computes component d from the fraction on the faces in stress_.
     void find_stress_along(int d) {
         flow::Field& stress = stress_[static_cast<std::size_t>(d)];
         const auto stride = stress.stride(d);
@@ -155,7 +155,7 @@ private:
     double mobility_;
     double smallest_ = 1;
     PackingLimit limit_;
-    SolidsVolume packed_;  // for the limit alone
+    SolidsVolume packed_;  // used by the limit only
     Temperature temperature_;
     Straining straining_;
     std::array<flow::Field, 3> mean_velocity_;
@@ -164,7 +164,7 @@ private:
     PlaneCuts cuts_;
     Slabs slabs_;
     bool stressed_ = false;
-    bool stepped_ = false;  // what the start took is no step
+    bool stepped_ = false;  // false at the start, which does not count as a step
     std::int64_t limited_ = 0;
 };
 

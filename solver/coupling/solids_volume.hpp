@@ -1,10 +1,10 @@
-// The volume of the particles on the grid: fraction phi_p of each cell and flux j through each face.
+// Volume of the particles on the grid: fraction phi_p of each cell and flux j through each face.
 //
 // A particle's volume is shared among the cell centres around it by trilinear weights, then spread over the width of
-// the kernel (spreading.hpp). The flux is the one that carries each particle's shares from its old to its new
-// place: the density decomposition of Esirkepov 2001 (doi 10.1016/S0010-4655(00)00228-9, eq. 23), so that
+// the kernel (spreading.hpp). The flux moves each particle's shares from its old to its new place by the density
+// decomposition of Esirkepov 2001 (doi 10.1016/S0010-4655(00)00228-9, eq. 23), so that
 //   phi_p(new) = phi_p(old) - dt div j
-// holds in every cell to round-off, however the particles moved, on any tensor-product grid; spreading both keeps it.
+// holds in every cell to round-off, for any motion and any tensor-product grid, also after spreading.
 #pragma once
 
 #include "solver/coupling/interpolation.hpp"
@@ -15,8 +15,8 @@
 
 namespace grainsweep::coupling {
 
-/// Returns the fraction that a lone particle makes at its place, far from walls: v_p/(2 pi w^2)^(3/2). The width is at
-/// least that of a linear deposit in a mean cell; the result is at least v_p over the box.
+/// Returns the fraction of a single particle at its place, far from walls: v_p/(2 pi w^2)^(3/2). The width is at least
+/// the width of a linear deposit in a mean cell; the result is at least v_p divided by the volume of the box.
 [[nodiscard]] double lone_fraction(const flow::Grid& grid, double particle_volume, double kernel_width);
 
 class SolidsVolume {
@@ -24,30 +24,30 @@ public:
     /// kernel_width: see spreading.hpp.
     SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, double kernel_width);
 
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
 
-    /// phi_p of particles that start from `positions` (inside the box), ghosts filled.
+    /// Computes phi_p of particles that start from `positions` (inside the box), ghosts filled.
     void start(std::span<const Vec3> positions);
-    /// phi_p of the same particles now at `positions`; the last call before `carry` counts.
+    /// Computes phi_p of the same particles at `positions`; carry() uses the last call.
     void place(std::span<const Vec3> positions);
-    /// j of the particles that went in dt from where they started or were last carried to, to where they are now
-    /// (the shortest way along periodic axes).
+    /// Computes j of the particles for their motion in dt from the positions of start() or of the last carry() to the
+    /// present ones (the shortest way along periodic axes).
     void carry(double dt);
-    /// Mean of a particle property over the particles of a cell, weighted like phi_p: sum v_p w q / sum v_p w;
-    /// 0 where there are none. Ghosts filled with zero gradient.
+    /// Computes the mean of a particle property in each cell, weighted like phi_p: sum v_p w q / sum v_p w; 0 without
+    /// particles. Ghosts have zero gradient.
     void mean(std::span<const Vec3> property, std::array<flow::Field, 3>& into);
 
     [[nodiscard]] const flow::Field& fraction() const { return fraction_; }
     [[nodiscard]] const flow::FaceVectors& flux() const { return flux_; }
-    /// Restores what the next step reads; the fraction follows from the positions.
+    /// Returns the flux, to be restored for the next step; the fraction follows from the positions.
     [[nodiscard]] flow::FaceVectors& flux() { return flux_; }
     [[nodiscard]] const flow::Edges& edges() const { return edges_; }
     [[nodiscard]] double largest_fraction() const;
 
 private:
-    // Places of the particles. Weights of two neighbouring cells per axis, `first` and the one after, the first in
-    // 0 ... n+1 (folded later): found once for three uses.
+    // Places of the particles: weights of two neighbouring cells per axis, `first` (0 ... n+1, folded later) and the
+    // next. Computed once for three uses.
     struct Placement {
         std::vector<Vec3> position;
         std::vector<std::array<AxisWeights<2>, 3>> weights;
@@ -59,9 +59,10 @@ private:
     };
     [[nodiscard]] int inside(int d, int cell) const;  // folded at walls, wrapped along periodic axes
     [[nodiscard]] flow::Planes planes_of(const AxisWeights<2>& along_z) const;
-    [[nodiscard]] flow::Planes planes_between(std::size_t p) const;  // where it was last carried to, and is now
+    [[nodiscard]] flow::Planes planes_between(std::size_t p) const;  // planes of its position at the last carry() and
+                                                                     // now
     void locate(std::size_t p);
-    // body(p, place in the field, volume of p there), of each place in the order of the particles.
+    // Calls body(p, index in the field, volume of p there) for each index in the order of the particles.
     template <class Body>
     void deposit(Body body);
     void fill(int d, std::size_t p, Shares& shares) const;
@@ -74,7 +75,7 @@ private:
     Spreading over_cells_;
     std::vector<Spreading> over_faces_;
     Spreading::Scratch scratch_;
-    Placement placed_before_, placed_;  // when last carried; now
+    Placement placed_before_, placed_;  // at the last carry(); now
     flow::Field fraction_;
     flow::FaceVectors flux_;
     PlaneCuts cuts_;

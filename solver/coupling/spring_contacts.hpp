@@ -1,13 +1,13 @@
-// Four-way coupling by soft spheres: particles and walls push each other apart (CFD-DEM).
+// Four-way coupling by soft spheres with repulsive contacts (CFD-DEM).
 //
-// Contacts are hysteretic springs with friction (hysteretic_spring.hpp) that act besides the fluid:
+// Contacts are hysteretic springs with friction (hysteretic_spring.hpp), in addition to the fluid's force:
 //   (xi + 1/2) dV/dt = ... + F/v_p,   (2/5) xi v_p R^2 dw/dt = T - 8 pi Pr R^3 (w - rot u/2)
-// (Stokes torque: Happel & Brenner 1965, ch. 5-9). They are short against the fluid's step. So only the particles that
-// can meet something are advanced in sub-steps of a twentieth of a contact, with forces in the middle of each
-// (leapfrog). Inside a sub-step drag relaxes exponentially, with the factor of the slip at the beginning.
+// (Stokes torque: Happel & Brenner 1965, ch. 5-9). Contacts are much shorter than the fluid's step. So only particles
+// that can have a contact are advanced in sub-steps of a twentieth of a contact, with forces in the middle of each
+// (leapfrog). In a sub-step drag relaxes exponentially, with the factor of the slip at its beginning.
 //
-// Candidates: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall, and
-// particles that either could then hit. All others go the free path of motion.hpp.
+// Candidates are pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall,
+// and particles that a candidate could then hit. All others follow the free path of motion.hpp.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -31,15 +31,15 @@ public:
     SpringContacts(const Sphere& sphere, const Walls& walls, const HystereticSpring& spring, std::size_t particles,
                    double steps_per_contact = 20);
 
-    /// The softest spring that keeps overlaps below the share `overlap` of a diameter under the vibrational force and
-    /// under an impact at the slip speed it causes, and whose contacts do not outlast a step.
+    /// Returns the stiffness of the softest suitable spring. Overlaps stay below the share `overlap` of a diameter,
+    /// under the vibrational force and under an impact at its slip speed. Contacts last at most one step.
     [[nodiscard]] static double stiffness(const Sphere& sphere, double overlap, double time_step);
 
-    /// Threads that compute from now on; no bit depends on their number.
+    /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
 
     /// Advances every particle; `around(p)` is the fluid at its place, around.rotation(x) half its vorticity.
-    /// transmitted[p]: force of the contacts less the inertia of the particle, per volume.
+    /// transmitted[p]: force of the contacts minus inertia of the particle, per volume.
     template <class Motion, class Stencils, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Stencils&, const Around& around,
               std::vector<Vec3>& transmitted) {
@@ -91,7 +91,7 @@ private:
     double mass_, inertia_, rotation_drag_;  // effective mass (xi + 1/2) v_p; (2/5) xi v_p R^2; 8 pi Pr R^3
     std::vector<Vec3> position_, velocity_;  // before the step
     std::vector<Vec3> spin_;
-    std::vector<std::int64_t> idle_;  // steps since a particle last touched anything: its spin relaxes meanwhile
+    std::vector<std::int64_t> idle_;  // steps since the last contact of a particle, in which its spin relaxes
     std::vector<Surroundings> surroundings_;
     std::vector<Active> active_;
     std::vector<std::uint32_t> slot_;  // per particle, index among the active ones + 1, or 0

@@ -1,4 +1,4 @@
-// Fluid and particles advanced together, one step after the other:
+// Fluid and particles, advanced together step by step:
 //   1. forces of the particles on the fluid, at their predicted middle positions X + V dt/2 (two-way levels only)
 //   2. the fluid step
 //   3. the particles, with the fluid in the middle of the step gathered at the same positions
@@ -29,7 +29,7 @@ public:
           velocity_(flow::face_vectors(fluid_.grid())),
           acceleration_(velocity_) {}
 
-    /// Threads that compute a step from now on; no bit depends on their number.
+    /// Sets the threads that compute a step; no bit depends on their number.
     void use(const Slabs& slabs) {
         slabs_ = slabs;
         fluid_.use(slabs);
@@ -79,7 +79,7 @@ public:
     [[nodiscard]] const flow::Flow<Heat>& fluid() const { return fluid_; }
     [[nodiscard]] const Cloud& cloud() const { return cloud_; }
     [[nodiscard]] const Level& level() const { return level_; }
-    /// Of the last step.
+    /// Returns the budget of the last step.
     [[nodiscard]] const MomentumBudget& budget() const requires(Level::acts_on_fluid) { return level_.budget(); }
 
     void save(std::vector<std::byte>& into) const {
@@ -113,7 +113,7 @@ private:
     flow::FaceVectors velocity_, acceleration_;
     VisitOrder order_;
     Slabs slabs_;
-    std::vector<Stencil<Kernel>> stencils_;  // levels that act on the fluid only
+    std::vector<Stencil<Kernel>> stencils_;  // only for levels that act on the fluid
 };
 
 }  // namespace grainsweep::coupling

@@ -1,5 +1,5 @@
-// The order in which particles are visited: neighbours in space one after the other, so that the field values they
-// gather are still in the cache. Each particle's motion depends on itself alone, so the order changes no bit.
+// Order of visits to the particles: neighbours in space follow each other, so that the field values that they gather
+// are still in the cache. The motions of different particles are independent, so the order changes no bit.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -15,7 +15,7 @@ namespace grainsweep::coupling {
 
 class VisitOrder {
 public:
-    /// The order, sorted anew every `lifetime` calls: few particles leave their cell meanwhile.
+    /// Returns the order, sorted anew every `lifetime` calls, because few particles leave their cell between two sorts.
     const std::vector<std::uint32_t>& of(const Cloud& cloud, const flow::Grid& grid) {
         if (order_.size() != cloud.size() || age_ >= lifetime) sort(cloud, grid);
         ++age_;

@@ -1,4 +1,4 @@
-// What a particle does at the sides of the box.
+// Reflection of particles at the sides of the box.
 #pragma once
 
 #include "solver/coupling/interpolation.hpp"
@@ -9,8 +9,8 @@
 
 namespace grainsweep::coupling {
 
-/// Reflection about planes at distance `contact` inside the sides (the radius, or 0 for a contact of the centre):
-/// the displacement beyond the plane and the normal velocity are turned and multiplied by the restitution.
+/// Planes at distance `contact` inside the sides (the radius, or 0 for a contact of the centre). The displacement
+/// beyond a plane and the normal velocity are reversed and multiplied by the restitution.
 /// Periodic axes wrap.
 struct Walls {
     std::array<double, 3> low{}, high{};
@@ -37,14 +37,14 @@ struct Walls {
         }
     }
 
-    /// Between the contact planes; periodic axes are left alone.
+    /// Returns the position limited to between the contact planes; periodic axes do not change.
     [[nodiscard]] Vec3 inside(Vec3 x) const {
         for (std::size_t d = 0; d < 3; ++d)
             if (!periodic[d]) x[d] = std::clamp(x[d], low[d] + contact, high[d] - contact);
         return x;
     }
 
-    /// Into the closed box, contact plane included.
+    /// Returns the position limited to the closed box between the contact planes.
     [[nodiscard]] Vec3 clipped(Vec3 x) const {
         for (std::size_t d = 0; d < 3; ++d)
             if (!periodic[d])

@@ -1,4 +1,4 @@
-// Which material two touching bodies have: by the kinds of spheres, and by walls.
+// Material of a contact, by the kinds of the spheres and by the wall.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -9,8 +9,8 @@
 
 namespace grainsweep::dem {
 
-/// Kinds are those of the Setup. Where it has none but frozen spheres whose contacts differ, frozen spheres are a
-/// second kind.
+/// Materials of all contacts. Kinds are those of the Setup. If it has no kinds, and contacts with frozen spheres
+/// differ, frozen spheres are a second kind.
 class ContactTable {
 public:
     explicit ContactTable(const Setup& setup);
@@ -19,9 +19,10 @@ public:
     [[nodiscard]] std::uint8_t kind_of(const Sphere& sphere) const {
         return frozen_differ_ ? (sphere.mobile ? 0 : 1) : sphere.kind;
     }
-    /// Of contacts of each pair, at place_of_pair().
+    /// Returns the materials of the contacts of each pair, at place_of_pair().
     [[nodiscard]] const std::vector<Material>& pairs() const { return pairs_; }
-    /// Of a sphere's contact with a wall. Throws std::invalid_argument where the wall lacks the material.
+    /// Returns the material of a sphere's contact with a wall. Throws std::invalid_argument if the wall lacks the
+    /// material.
     [[nodiscard]] Material at_wall(const Wall& wall, std::size_t kind) const;
 
 private:
@@ -30,7 +31,7 @@ private:
     std::vector<Material> pairs_;
 };
 
-/// Calls visit(sphere) for each sphere of the start, and for the smallest and the largest of all that may be added.
+/// Calls visit(sphere) for each sphere of the start, and for the smallest and the largest that may be added.
 template <class Visit>
 void for_each_extreme_sphere(const Setup& setup, Visit&& visit) {
     for (const Sphere& sphere : setup.spheres) visit(sphere);
@@ -40,18 +41,18 @@ void for_each_extreme_sphere(const Setup& setup, Visit&& visit) {
             visit(sphere);
         }
 }
-/// Radius of the smallest and of the largest of them, m; 0 where there are none.
+/// Smallest and largest radius of these spheres, m; 0 if there are none.
 struct Radii {
     double smallest = 0, largest = 0;
     [[nodiscard]] bool differ() const { return smallest != largest; }
 };
 [[nodiscard]] Radii radii_of(const Setup& setup);
 
-/// Materials of all contacts that a setup may have: between particles, then wall by wall.
+/// Returns the materials of all contacts that a setup may have: between particles, then wall by wall.
 [[nodiscard]] std::vector<Material> materials_of(const Setup& setup);
-/// Density of a sphere, kg/m3.
+/// Returns the density of a sphere, kg/m3.
 [[nodiscard]] double density_of(const Setup& setup, const Sphere& sphere);
-/// Whether masses of equal spheres are equal.
+/// Returns whether all spheres have the same density.
 [[nodiscard]] bool equally_dense(const Setup& setup);
 
 }  // namespace grainsweep::dem

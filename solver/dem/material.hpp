@@ -1,12 +1,12 @@
-// The parameters of a powder, and what contact laws need of them.
+// Material parameters of a powder, and derived constants of the contact laws.
 //
 //     1/E* = 2 (1 - nu^2)/E          1/G* = 4 (2 - nu)(1 + nu)/E         beta = ln e / sqrt(ln^2 e + pi^2)
 //
-// of one material; of two
+// For one material as above; for two materials
 //
 //     1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b        1/G* = 2 (2 - nu_a)(1 + nu_a)/E_a + 2 (2 - nu_b)(1 + nu_b)/E_b
 //
-// Hertz (1882), Mindlin (1949); a linear law has its stiffness given instead (laws/linear.hpp). (Wu 2020, eq. 2, prints
+// Hertz (1882), Mindlin (1949); a linear law has a given stiffness instead (laws/linear.hpp). (Wu 2020, eq. 2, prints
 // (1 - nu)^2: a misprint. Gupta, eq. 11, drops the sign of beta, which is negative for e < 1.)
 #pragma once
 
@@ -16,23 +16,23 @@ namespace grainsweep::dem {
 
 struct Surface;  // walls/wall.hpp
 
-/// Most kinds of spheres with materials of their own.
+/// Largest number of kinds of spheres with different materials.
 inline constexpr unsigned kinds_at_most = 8;
 
-/// How touching bodies repel each other: hertz by their elastic constants (laws/hertz.hpp), linear by a spring of given
-/// stiffness (laws/linear.hpp). All contacts of a case have the same.
+/// Law of repulsion: hertz by elastic constants (laws/hertz.hpp), linear by a spring of given stiffness
+/// (laws/linear.hpp). All contacts of a case have the same law.
 enum class NormalLaw { hertz, linear };
 
-/// How touching bodies attract each other. Cohesion energy density times a contact area of overlap d, to first order in
-/// d for equal spheres. sjkr: pi R d (LIGGGHTS 3.8 `sjkr`); sjkr2: 2 pi R d; paper: pi R d/4 (Gupta, eq. 15).
+/// Law of attraction. By cohesion energy density times a contact area, here to first order in the overlap d of equal
+/// spheres. sjkr: pi R d (LIGGGHTS 3.8 `sjkr`); sjkr2: 2 pi R d; paper: pi R d/4 (Gupta, eq. 15).
 /// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp). By liquid bridges: capillary (laws/capillary.hpp).
 enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt, capillary };
 
-/// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
+/// Normal force in Coulomb's limit: the contact force without the cohesive part, or the net force.
 enum class FrictionLimit { contact, net };
 
-/// Rolling resistance. epsd: elastic-plastic spring with a dashpot (laws/rolling.hpp). epsd_liggghts: the same,
-/// turned at walls as in LIGGGHTS 3.8. cdt: torque of constant size against the relative rotation
+/// Law of rolling resistance. epsd: elastic-plastic spring with a dashpot (laws/rolling.hpp). epsd_liggghts: the same,
+/// with the relative rotation at walls of LIGGGHTS 3.8. cdt: torque of constant size against the relative rotation
 /// (laws/constant_torque.hpp).
 enum class RollingLaw { epsd, epsd_liggghts, cdt };
 
@@ -44,7 +44,7 @@ enum class RollingLaw { epsd, epsd_liggghts, cdt };
     return !acts_by_surface_energy(law) && law != CohesionLaw::capillary;
 }
 
-/// Of a liquid bridge over that of a sphere: larger ones meet one another.
+/// Largest volume of a liquid bridge divided by the volume of a sphere; larger bridges would merge.
 inline constexpr double largest_bridge = 0.03;
 
 /// Elastic constants of a body.
@@ -55,30 +55,33 @@ struct Elasticity {
     bool operator==(const Elasticity&) const = default;
 };
 
-/// One material for particles and walls; the Surface of a wall, or of frozen spheres, may differ in part. Or how bodies
-/// of two materials touch.
+/// Material of particles and walls, or of the contact between two materials. The Surface of a wall, or of frozen
+/// spheres, may differ in part.
 struct Material {
     double youngs_modulus = 21e6;  ///< Pa
     double poisson_ratio = 0.3;
-    std::optional<Elasticity> partner{};  ///< of the other body, where it is of another material
+    std::optional<Elasticity> partner{};  ///< of the other body, if it has another material
     NormalLaw normal_law = NormalLaw::hertz;
     double stiffness = 0;                        ///< of the linear law, N/m
-    double tangential_ratio = 2.0 / 7;           ///< likewise, of the tangential spring over the normal one
-    std::optional<double> tangential_damping{};  ///< likewise, of the dampers; tangential_ratio where none is given
+    double tangential_ratio = 2.0 / 7;           ///< of the linear law: tangential stiffness divided by normal
+                                                 ///< stiffness
+    std::optional<double> tangential_damping{};  ///< of the linear law: ratio of the dampers; empty: tangential_ratio
     double density = 7980;                       ///< kg/m3
     double restitution = 0.5;                    ///< (0, 1]
-    double friction = 0.2;  ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
-    /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
+    double friction = 0.2;                       ///< Coulomb, particle-particle and particle-wall; 0: no tangential law
+    /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance
     double rolling_friction = 0;
     RollingLaw rolling_law = RollingLaw::epsd;
-    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; not of cdt, and only while the spring holds:
-    /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
+    /// eta_r, damping of the rolling spring divided by critical damping, [0, 1]; not for cdt, and only below the
+    /// spring's limit. A particle that has stopped rolling oscillates on its spring; 0.3 ends this within about one
+    /// period
     double rolling_damping = 0.3;
-    double cohesion = 0;          ///< cohesion energy density of sjkr, sjkr2, paper, J/m3; 0: none of them at all
-    double surface_energy = 0;    ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none of them at all
-    double surface_tension = 0;   ///< of capillary, N/m; 0: no bridges at all
-    double contact_angle = 0;     ///< likewise, rad, [0, pi/2)
-    double bridge_volume = 2e-4;  ///< likewise, of a bridge over that of a sphere of its bodies' harmonic mean radius
+    double cohesion = 0;          ///< cohesion energy density of sjkr, sjkr2, paper, J/m3; 0: none
+    double surface_energy = 0;    ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none
+    double surface_tension = 0;   ///< of capillary, N/m; 0: no bridges
+    double contact_angle = 0;     ///< of capillary, rad, [0, pi/2)
+    double bridge_volume = 2e-4;  ///< of capillary: volume of a bridge divided by the volume of a sphere of its bodies'
+                                  ///< harmonic mean radius
     CohesionLaw cohesion_law = CohesionLaw::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
 
@@ -87,14 +90,15 @@ struct Material {
 
 [[nodiscard]] double effective_modulus(const Material& material);        ///< E*, Pa
 [[nodiscard]] double effective_shear_modulus(const Material& material);  ///< G*, Pa
-/// dF_n/dd without damping: of hertz over the radius of the contact, 2 E*, Pa; of linear k, N/m.
+/// Returns dF_n/dd without damping: for hertz divided by the radius of the contact, 2 E*, Pa; for linear k, N/m.
 [[nodiscard]] double normal_slope(const Material& material);
 [[nodiscard]] double damping_ratio(double restitution);  ///< beta, <= 0; restitution in (0, 1]
-/// -2 sqrt(5/6) beta: a damper of this times sqrt(S m*), S = dF/dd, makes restitution independent of the impact speed.
+/// Returns -2 sqrt(5/6) beta. A damper of this factor times sqrt(S m*), S = dF/dd, makes restitution independent of the
+/// impact speed.
 [[nodiscard]] double damping_factor(double restitution);
 [[nodiscard]] double sphere_mass(double radius, double density);  ///< kg
 
-/// The material as it is in contacts with a wall, or frozen spheres, of this surface.
+/// Returns the material of contacts with a wall, or frozen spheres, of this surface.
 [[nodiscard]] Material at_surface(const Material& material, const Surface& surface);
 
 }  // namespace grainsweep::dem

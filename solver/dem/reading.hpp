@@ -1,5 +1,5 @@
-// Reading of a contact of the present state: its touch, at the velocities that the laws see and at full-step
-// velocities, and the response of the laws.
+// Reading of a contact of the present state: its touch at the velocities of the laws and at full-step velocities, and
+// the response of the laws.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -13,7 +13,7 @@ struct Velocities {
     Vec3 spin{};      ///< rad/s
 };
 
-/// Velocities of i against its partner.
+/// Velocities of i relative to its partner.
 struct RelativeMotion {
     Vec3 velocity{};  ///< v_i - v_j, m/s
     Vec3 surface{};   ///< (R_i - d/2) w_i + (R_j - d/2) w_j, m/s
@@ -31,7 +31,7 @@ struct RelativeMotion {
     return {i.velocity - wall, (t.radius_i - t.overlap / 2) * i.spin, i.spin};
 }
 
-/// The touch at these velocities.
+/// Returns the touch at these velocities.
 template <Partner partner>
 [[nodiscard]] Touch<partner> moving(Touch<partner> t, const RelativeMotion& m) {
     using namespace geometry;
@@ -40,7 +40,8 @@ template <Partner partner>
     t.turning = m.turning;
     return t;
 }
-/// The same as the last step saw it, which has cut the memories since; `rounding`: relative, of its forces.
+/// Returns the touch as in the last step, which has cut the memories since. `rounding`: relative rounding error of its
+/// forces.
 template <Partner partner>
 [[nodiscard]] Touch<partner> as_in_step(const Touch<partner>& t, const RelativeMotion& before, double rounding) {
     Touch<partner> seen = moving(t, before);
@@ -49,7 +50,7 @@ template <Partner partner>
     return seen;
 }
 
-/// The contact by its laws: its force at `seen`, the rest at `now`.
+/// Returns the contact: its force at `seen`, all other members at `now`.
 template <Partner partner>
 [[nodiscard]] ContactForce read_contact(const AnyContact& laws, const Touch<partner>& seen, const Touch<partner>& now,
                                         const double* memory, std::int32_t first, std::int32_t second) {
@@ -65,7 +66,8 @@ template <Partner partner>
             .slip = now.slip,
             .slides = r.slides || r.resistance == Vec3{},
             .normal_power = -r.normal * now.normal_velocity,
-            .tangential_power = dot(r.resistance, now.slip) + dot(r.rolling, now.turning)};
+            .tangential_power = dot(r.resistance, now.slip) + dot(r.rolling, now.turning),
+            .stored = laws.energy(now, memory)};
 }
 
 }  // namespace grainsweep::dem

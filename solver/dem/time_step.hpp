@@ -5,24 +5,24 @@
 //     Hertz      t_c = 2.87 (m*^2 / (R* E*^2 v))^(1/5), duration of the elastic impact at relative speed v
 //                                            (Hertz 1882; Johnson 1985, Contact Mechanics, eq. 11.24)
 //     linear     t_c = pi sqrt(m*/k), duration of the elastic impact at any speed
-// A step should be a fraction of those of its law. All in SI; radius, speed > 0.
+// A time step should be a fraction of the times of its law. All in SI; radius, speed > 0.
 #pragma once
 
 #include "solver/dem/engine.hpp"
 
 namespace grainsweep::dem {
 
-/// Time of a surface wave around the smallest sphere, s.
+/// Returns the time of a surface wave around the smallest sphere, s.
 [[nodiscard]] double rayleigh_time(const Material& material, double radius);
 
-/// Duration of the elastic impact of two equal spheres at relative speed `speed`, s. It is the shortest one among
-/// spheres of at least this radius; an impact on a wall lasts 2^(1/5) = 1.15 times as long.
+/// Returns the duration of the elastic impact of two equal spheres at relative speed `speed`, s. It is the shortest
+/// among spheres of at least this radius. An impact on a wall lasts 2^(1/5) = 1.15 times as long.
 [[nodiscard]] double hertz_contact_time(const Material& material, double radius, double speed);
 
-/// The same of the linear law: 2^(1/2) times as long on a wall, and longer with damping.
+/// Returns the same for the linear law. An impact on a wall lasts 2^(1/2) times as long; damping makes it longer.
 [[nodiscard]] double linear_contact_time(const Material& material, double radius);
 
-/// The shortest of the times that limit a step with the material's law, s.
+/// Returns the shortest of the times that limit a step with the material's law, s.
 [[nodiscard]] double shortest_time(const Material& material, double radius, double speed);
 
 }  // namespace grainsweep::dem

@@ -1,4 +1,4 @@
-// One direction of a tensor-product grid: where cells begin, how wide they are.
+// Axis of a tensor-product grid: positions and widths of its cells.
 //
 // Uniform: x(s) = low + (high - low) s/n.
 // Clustered towards both ends: x(s) = middle + (high - low)/2 tanh(c (2 s/n - 1))/tanh(c), s = 0 ... n,
@@ -15,7 +15,7 @@
 
 namespace grainsweep::flow {
 
-/// A position on an axis: the cell it lies in and the distance from that cell's lower face in cells, [0, 1].
+/// Position on an axis: its cell, and the distance from the lower face of the cell in cells, [0, 1].
 struct Place {
     int cell = 1;
     double offset = 0;
@@ -23,13 +23,13 @@ struct Place {
 
 class Axis {
 public:
-    /// n >= 1 equal cells between low and high. Throws std::invalid_argument.
+    /// Returns n >= 1 equal cells between low and high. Throws std::invalid_argument.
     [[nodiscard]] static Axis uniform(int cells, double low, double high);
-    /// clustering > 0 narrows the cells at both ends; 0 is uniform. Throws std::invalid_argument.
+    /// Returns cells that are narrower at both ends for clustering > 0; 0 is uniform. Throws std::invalid_argument.
     [[nodiscard]] static Axis clustered(int cells, double low, double high, double clustering);
 
-    /// The cells below the middle of an axis of an even number; faces, centres and widths are the same bits. Throws
-    /// std::invalid_argument.
+    /// Returns the cells below the middle of an axis with an even number of cells; faces, centres and widths have the
+    /// same bits. Throws std::invalid_argument.
     [[nodiscard]] Axis lower_half() const;
 
     [[nodiscard]] int cells() const { return cells_; }
@@ -41,15 +41,15 @@ public:
     [[nodiscard]] double face(int f) const { return faces_[static_cast<std::size_t>(f)]; }      ///< f = 0 ... n+2
     [[nodiscard]] double centre(int i) const { return centres_[static_cast<std::size_t>(i)]; }  ///< i = 0 ... n+1
     [[nodiscard]] double width(int i) const { return widths_[static_cast<std::size_t>(i)]; }    ///< i = 0 ... n+1
-    /// Distance of the two cell centres beside face f, f = 1 ... n+1.
+    /// Returns the distance between the two cell centres beside face f, f = 1 ... n+1.
     [[nodiscard]] double spacing(int f) const { return centre(f) - centre(f - 1); }
 
-    /// The reciprocals of both, kept for interpolation.
+    /// Return the reciprocals of width and spacing, stored for interpolation.
     [[nodiscard]] double per_width(int i) const { return per_width_[static_cast<std::size_t>(i)]; }
     [[nodiscard]] double per_spacing(int f) const { return per_spacing_[static_cast<std::size_t>(f)]; }
 
-    /// Cell of a position; positions outside, and what is no number, go to a cell at an end. A table and no logarithm:
-    /// bins finer than the smallest cell hold the first cell they may lie in.
+    /// Returns the cell of a position; positions outside, and NaN, get a cell at an end. A table replaces a logarithm:
+    /// bins finer than the smallest cell store the first cell that they overlap.
     [[nodiscard]] int cell_at(double x) const {
         const double bin = (x - low_) * bins_per_length_;
         const auto last = static_cast<double>(first_cell_.size() - 1);
@@ -57,16 +57,16 @@ public:
         while (cell < cells_ && x >= face(cell + 1)) ++cell;
         return cell;
     }
-    /// Cell and smooth offset s of a position in [low, high]; positions outside go to the nearest end.
+    /// Returns the cell and smooth offset s of a position in [low, high]; positions outside get the nearest end.
     [[nodiscard]] Place locate(double x) const {
         const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
         const double in_cells = 0.5 * ((clustering_ > 0 ? unclustered(t) : t) + 1) * mapped_;
-        // Written so that a position that is no number still yields a place that exists.
+        // NaN also gives an existing cell.
         const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
         const double offset = in_cells - cell;
         return {cell + 1, offset >= 0 ? offset : 0};
     }
-    /// dx/ds of the smooth map at a position (the local cell width).
+    /// Returns dx/ds of the smooth map at a position (the local cell width).
     [[nodiscard]] double stretch(double x) const {
         const double equal = 2 * half_ / mapped_;
         if (clustering_ == 0) return equal;
@@ -78,7 +78,7 @@ private:
     Axis(int cells, double low, double high, double clustering);
     void measure();
 
-    // artanh(t tanh c)/c, the inverse of the clustering.
+    // Returns artanh(t tanh c)/c, the inverse of the clustering.
     [[nodiscard]] double unclustered(double t) const {
         const double a = t * tanh_;
         return std::clamp(0.5 * std::log((1 + a) / (1 - a)) / clustering_, -1.0, 1.0);

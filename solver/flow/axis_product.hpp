@@ -1,8 +1,9 @@
-// A matrix applied along one axis of a field: every line a -> M a.
+// Matrix applied along one axis of a field: every line a -> M a.
 //
 // The matrices here are exponentials and inverses of second differences: dense, but their entries fall off like a
-// Gaussian or an exponential with the distance from the diagonal. Entries below 1e-17 of the largest are skipped, block
-// of rows by block of rows: a line of n values changes by less than n 1e-17 of its largest, less than rounding does.
+// Gaussian or an exponential with the distance from the diagonal. Entries below 1e-17 of the largest are skipped,
+// separately for each block of rows. A line of n values changes by less than n 1e-17 of its largest value, which is
+// less than rounding.
 #pragma once
 
 #include "solver/flow/field.hpp"
@@ -23,17 +24,17 @@ public:
     /// skipped.
     AxisProduct(const Grid& grid, int direction, const Eigen::MatrixXd& matrix, double negligible = 1e-17);
 
-    /// Inner values of `to` from those of `from`, another field; ghosts are left alone.
+    /// Computes the inner values of `to` from those of `from`, another field; ghosts do not change.
     void apply(const Field& from, Field& to, const Slabs& slabs = {}) const;
-    /// Only the lines with places first ... last on the axis across(), from 1 on.
+    /// Computes only the lines with indices first ... last on the axis across(), from 1.
     void apply(const Field& from, Field& to, int first, int last) const;
-    /// The axis whose places the lines are taken by: z, or y for lines along z.
+    /// Returns the axis along which the lines are numbered: z, or y for lines along z.
     [[nodiscard]] int across() const { return direction_ == 2 ? 1 : 2; }
-    /// Share of the matrix that is multiplied.
+    /// Returns the share of the matrix that is multiplied.
     [[nodiscard]] double kept() const;
 
 private:
-    /// Rows of the matrix and the columns between which they are not negligible.
+    /// Rows of the matrix, and the range of columns in which their entries are not negligible.
     struct Block {
         std::ptrdiff_t row = 0, rows = 0, column = 0, columns = 0;
     };

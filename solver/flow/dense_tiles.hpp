@@ -1,5 +1,5 @@
-// The product of dense_product.hpp in tiles that stay in registers, for one width of vectors. Included by one file per
-// instruction set and internal to each; multiplications and additions are separate everywhere, so all give the same
+// Product of dense_product.hpp in tiles that stay in registers, for one width of vectors. One file per instruction set
+// includes it, with internal linkage. Multiplications and additions are never fused, so all versions give the same
 // bits.
 #pragma once
 
@@ -22,7 +22,7 @@ struct Operands {
     std::ptrdiff_t c_row;
 };
 
-// Rows x Vectors vectors of C at once.
+// Computes Rows x Vectors vectors of C.
 template <class Vector, int Rows, int Vectors>
 [[gnu::always_inline]] inline void tile(const Operands& o, std::ptrdiff_t row, std::ptrdiff_t column) {
     constexpr int lanes = sizeof(Vector) / sizeof(double);
@@ -69,7 +69,7 @@ template <class Wide, int Rows>
     last_columns<Rows>(o, row, column, columns);
 }
 
-// The narrow panel of B (depth x panel) stays in the first-level cache while the rows of A pass by.
+// Loops over the rows of A while a narrow panel of B (depth x panel) stays in the first-level cache.
 template <class Wide, int Rows>
 void product(std::ptrdiff_t rows, std::ptrdiff_t columns, Operands o) {
     constexpr std::ptrdiff_t panel = 40;

@@ -10,7 +10,7 @@
 
 namespace grainsweep::flow {
 
-/// Three axes; the box is their product.
+/// Grid of three axes; the box is their product.
 struct Grid {
     std::array<Axis, 3> axes;
 
@@ -22,7 +22,8 @@ struct Grid {
     }
 };
 
-/// One value per cell or per face of one direction, ghosts included: shape (nx+2, ny+2, nz+2), indices from 0.
+/// Field with one value per cell, or per face of one direction, including ghosts: shape (nx+2, ny+2, nz+2), indices
+/// from 0.
 class Field {
 public:
     Field() = default;
@@ -32,7 +33,7 @@ public:
           values_(static_cast<std::size_t>(plane_ * (grid.cells(2) + 2)), 0.0) {}
 
     [[nodiscard]] std::ptrdiff_t index(int i, int j, int k) const { return i + j * row_ + k * plane_; }
-    /// Distance in memory between neighbours along a direction.
+    /// Returns the distance in memory between neighbours along a direction.
     [[nodiscard]] std::ptrdiff_t stride(int d) const { return d == 0 ? 1 : d == 1 ? row_ : plane_; }
 
     [[nodiscard]] double& operator()(int i, int j, int k) { return values_[static_cast<std::size_t>(index(i, j, k))]; }
@@ -51,13 +52,13 @@ private:
     std::vector<double> values_;
 };
 
-/// Planes k = first ... last of a field; as far as it has them.
+/// Planes k = first ... last of a field, as far as they exist.
 struct Planes {
     int first = 0;
     int last = std::numeric_limits<int>::max() / 2;
 };
 
-/// A vector on the faces: component d is on the faces of direction d.
+/// Vector field on the faces: component d is on the faces of direction d.
 using FaceVectors = std::array<Field, 3>;
 
 [[nodiscard]] inline FaceVectors face_vectors(const Grid& grid) {

@@ -8,9 +8,13 @@
 // Boussinesq flow in a vibrated cavity (length L, time L^2/alpha, theta = (T - T0)/DT; Gershuni & Lyubimov 1998);
 // s = 1 is natural convection under steady gravity. `a` is any other acceleration given on the faces.
 //
-// Scheme: staggered grid, central differences (transport.hpp); Adams-Bashforth convection (Euler in the first
-// step), Crank-Nicolson diffusion factored by direction (implicit_diffusion.hpp); incremental projection in
-// rotational form (Timmermans, Minev & van de Vosse 1996; Brown, Cortez & Minion 2001, doi 10.1006/jcph.2001.6715):
+// Scheme on a staggered grid:
+//   space       central differences (transport.hpp)
+//   convection  Adams-Bashforth, Euler in the first step
+//   diffusion   Crank-Nicolson, factored by direction (implicit_diffusion.hpp)
+//   pressure    incremental projection in rotational form (Timmermans, Minev & van de Vosse 1996; Brown, Cortez &
+//               Minion 2001, doi 10.1006/jcph.2001.6715)
+//
 //   theta^{n+1} from (3);  theta^{n+1/2} = (theta^n + theta^{n+1})/2
 //   (1 - nu dt/2 lap)(V* - V^n) = dt [ 3/2 C^n - 1/2 C^{n-1} + nu lap V^n - grad p + B theta^{n+1/2} s e_g + a ]
 //   lap q = div V*/dt,  V^{n+1} = V* - dt grad q,  p += q - nu/2 div V*
@@ -45,22 +49,22 @@ using VectorFunction = std::function<std::array<double, 3>(double x, double y, d
 template <class Heat>
 class Flow {
 public:
-    /// Throws std::invalid_argument on an impossible setup.
+    /// Throws std::invalid_argument for an impossible setup.
     Flow(const FlowSetup& setup, const Heat& heat);
 
-    /// Initial values, sampled at faces and cell centres; fluid at rest and temperature 0 otherwise.
+    /// Sets initial values, sampled at faces and cell centres. Without them the fluid is at rest and the temperature 0.
     void set_velocity(const VectorFunction& velocity);
     void set_temperature(const ScalarFunction& temperature) requires std::same_as<Heat, Boussinesq> {
         heat_.set(temperature);
     }
 
-    /// Threads that compute a step from now on; no bit depends on their number.
+    /// Sets the threads that compute a step; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
 
-    /// One time step; `acceleration` (ghosts ignored) holds at the middle of the step.
+    /// Advances by one time step; `acceleration` (ghosts ignored) is the value at the middle of the step.
     void step();
     void step(const FaceVectors& acceleration);
-    /// ... and only the share 1 - `occupied` of each cell (ghosts filled) is moved by heat.
+    /// Advances by one time step in which buoyancy acts only on the share 1 - `occupied` of each cell (ghosts filled).
     void step(const FaceVectors& acceleration, const Field& occupied);
 
     [[nodiscard]] const Grid& grid() const { return setup_.grid; }
@@ -75,11 +79,11 @@ public:
         return heat_.temperature();
     }
 
-    /// What a particle between the last two time levels feels, on the faces, ghosts filled:
+    /// Computes the flow between the last two time levels for particles, on the faces, ghosts filled:
     /// velocity (V^n + V^{n+1})/2 and fluid acceleration DV/Dt = (V^{n+1} - V^n)/dt - (3/2 C^n - 1/2 C^{n-1}).
     void midpoint(FaceVectors& velocity, FaceVectors& acceleration) const;
 
-    /// Largest |div V| over the cells.
+    /// Returns the largest |div V| of the cells.
     [[nodiscard]] double largest_divergence() const;
 
     struct Fastest {
@@ -87,12 +91,13 @@ public:
         int component = 0;
         std::array<double, 3> position{};
     };
-    /// The face with the largest Courant number, or the first with a value that is no number.
+    /// Returns the face with the largest Courant number, or the first with NaN.
     [[nodiscard]] Fastest fastest() const;
 
-    /// Complete state; a flow of the same setup restored from it continues bit for bit.
+    /// Saves the complete state; a flow of the same setup restored from it continues with the same bits.
     void save(std::vector<std::byte>& into) const;
-    /// Takes its part off the front of `from`. Throws std::invalid_argument when there is too little.
+    /// Restores the state and removes its bytes from the front of `from`. Throws std::invalid_argument if there are too
+    /// few.
     void restore(std::span<const std::byte>& from);
 
 private:

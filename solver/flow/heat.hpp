@@ -21,10 +21,10 @@ struct Vibration {
     [[nodiscard]] double at(double time) const { return frequency == 0 ? 1 : std::sin(frequency * time + phase); }
 };
 
-/// The fluid has no temperature: no field, no equation, no force.
+/// Fluid without temperature: no field, no equation, no force.
 struct NoHeat {};
 
-/// The fluid carries heat and heat moves the fluid.
+/// Fluid with temperature and buoyancy.
 struct Boussinesq {
     double diffusivity = 1;  ///< kappa
     ThermalSides sides{};
@@ -35,7 +35,7 @@ struct Boussinesq {
 
 using ScalarFunction = std::function<double(double x, double y, double z)>;
 
-/// What a kind of heat needs per step; NoHeat needs nothing.
+/// State of a kind of heat; empty for NoHeat.
 template <class Heat>
 class HeatState;
 
@@ -55,11 +55,11 @@ template <>
 class HeatState<Boussinesq> {
 public:
     HeatState(const Grid& grid, const Sides& sides, double time_step, const Boussinesq& heat);
-    void start();  ///< makes theta^{n+1/2} = theta^n and fills ghosts
+    void start();  ///< sets theta^{n+1/2} = theta^n and fills ghosts
     void step(const FaceVectors& velocity, bool first, const Slabs& slabs);
     /// Adds the buoyancy acceleration B theta^{n+1/2} s(time) to component d.
     void add_force(int d, double time, Field& acceleration, const Planes& planes) const;
-    /// Subtracts the same of the share `occupied` of each cell, ghosts filled.
+    /// Subtracts this acceleration for the share `occupied` of each cell, ghosts filled.
     void remove_force(int d, double time, const Field& occupied, Field& acceleration, const Planes& planes) const;
     void save(std::vector<std::byte>& into) const;
     void restore(std::span<const std::byte>& from);
@@ -76,7 +76,7 @@ private:
     Weights weights_;
     std::array<std::vector<double>, 3> face_lower_;  // share of the lower cell in a value interpolated to a face
     ImplicitDiffusion diffusion_;
-    Field temperature_, middle_;  // theta^n; sum theta^n + theta^{n+1} over 2
+    Field temperature_, middle_;  // theta^n; (theta^n + theta^{n+1})/2
     std::array<Field, 2> convection_;
     Field right_, change_;
 };

@@ -1,4 +1,4 @@
-// What the equations of the flow share: the rows of unknowns of a field and the weights of the step.
+// Loops over the rows of unknowns of a field, and the weights of the step.
 #pragma once
 
 #include "solver/flow/field.hpp"
@@ -30,7 +30,7 @@ void each_slab(const Slabs& slabs, const std::array<int, 3>& cells, Body body) {
     });
 }
 
-/// to[m] = value(m) for all values of these planes of a field.
+/// Sets to[m] = value(m) for all values of these planes of a field.
 template <class Value>
 void set_planes(Field& to, const Planes& planes, Value value) {
     double* const values = to.data();
@@ -42,16 +42,16 @@ void set_planes(Field& to, const Planes& planes, Value value) {
     return {grid.cells(0), grid.cells(1), grid.cells(2)};
 }
 
-/// Where row (j, k) begins in values without ghosts.
+/// Returns the start of row (j, k) in values without ghosts.
 [[nodiscard]] inline std::ptrdiff_t compact_row(const std::array<int, 3>& cells, int j, int k) {
     return (static_cast<std::ptrdiff_t>(k - 1) * cells[1] + (j - 1)) * cells[0];
 }
 
-/// Of C^n and C^{n-1}.
+/// Weights of C^n and C^{n-1}.
 struct StepWeights {
     double now, before;
 };
-/// Adams-Bashforth of second order; the first step has no past and takes Euler.
+/// Returns the weights of second-order Adams-Bashforth, or of Euler in the first step.
 [[nodiscard]] inline StepWeights convection_weights(bool first) {
     return first ? StepWeights{1.0, 0.0} : StepWeights{1.5, -0.5};
 }

@@ -17,8 +17,8 @@ struct SecondDifference {
     SecondDifference(const Axis& axis, const Edge& edge);
 };
 
-/// L as a matrix on indices 1 ... n with the ghosts eliminated (their constants belong to the right-hand side);
-/// rows and columns of values that are known, not solved for, are zero.
+/// Returns L as a matrix on indices 1 ... n with the ghosts eliminated (their constants belong to the right-hand side).
+/// Rows and columns of known values are zero.
 [[nodiscard]] Eigen::MatrixXd second_difference_matrix(const Axis& axis, const Edge& edge);
 
 }  // namespace grainsweep::flow

@@ -1,4 +1,4 @@
-// The same function compiled for wider vectors, chosen by the loader.
+// Clones of a function for wider vectors, chosen by the loader.
 //
 // The kernels marked with this work element by element. They use additions, products, quotients, square roots and bits,
 // which round the same way everywhere. No sum is reordered and nothing is fused (-ffp-contract=off, AVX2 without FMA),

@@ -1,7 +1,7 @@
-// Bar without end along y: front - thickness <= x <= front, bottom <= z <= top, the two lower edges rounded.
+// Infinite bar along y: front - thickness <= x <= front, bottom <= z <= top, with two rounded lower edges.
 //
-// The surface is that of the set of points within edge_radius of the bar shrunk by it, below its upper part;
-// edge_radius = 0 gives sharp edges. A point has one closest point: face, edge and corner never act together.
+// The lower part of the solid is the set of points within edge_radius of the bar shrunk by edge_radius; edge_radius = 0
+// gives sharp edges. A point has only one closest point: face, edge and corner never act together.
 #pragma once
 
 #include "solver/geometry/closest.hpp"
@@ -12,13 +12,13 @@
 
 namespace grainsweep::geometry {
 
-/// A bar in units, x from its middle, z from a centre.
+/// Bar in units of its user; x from its middle, z from a centre.
 struct BarNumbers {
     double half_width, bottom, top, edge_radius;
 };
 
-/// Below bottom + edge_radius the closest point of a bar thinner by edge_radius on each side, from which the rounded
-/// edge keeps its radius. A centre inside is pushed out through the nearest face.
+/// Returns the closest point. Below bottom + edge_radius it is computed from a bar thinner by edge_radius on each side.
+/// A centre inside is pushed out through the nearest face.
 template <class R>
 [[gnu::always_inline]] inline Near<R> near(const BarNumbers& b, R x, R, R z) {
     using namespace number;
@@ -54,7 +54,7 @@ struct Bar {
         visit(s.front), visit(s.thickness), visit(s.bottom), visit(s.top), visit(s.edge_radius);
     }
     [[nodiscard]] double rear() const { return front - thickness; }
-    /// Exact for every point; on the medial axis inside the solid the front face comes first.
+    /// Returns the exact closest point; on the medial axis inside the solid, the point on the front face.
     [[nodiscard]] Closest closest(const Vec3& x) const;
     [[nodiscard]] Bar moved(const Vec3& by) const {
         return {front + by[0], thickness, bottom + by[2], top + by[2], edge_radius};
@@ -66,7 +66,7 @@ struct Bar {
     [[nodiscard]] Extent extent(std::size_t axis) const;
     using Numbers = BarNumbers;
     [[nodiscard]] Numbers numbers(const Vec3& centre, double unit, Vec3& origin) const;
-    /// What is wrong with it, in one sentence; empty: nothing.
+    /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] std::string flaw() const;
 };
 

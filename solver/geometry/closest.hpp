@@ -1,4 +1,4 @@
-// The closest point of a boundary to the centre of a sphere: its distance, and the direction of its normal force.
+// Closest point of a boundary to the centre of a sphere: distance, and direction of the normal force.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -13,7 +13,7 @@ struct Closest {
     Vec3 normal{};        ///< unit, from the surface to the point
 };
 
-/// Where the particles are, seen from a surface that closes around an axis.
+/// Side of the particles, for a surface that closes around an axis.
 enum class Side : std::int32_t { inside, outside };
 
 /// Extent of a solid along one axis, m.

@@ -23,10 +23,10 @@ struct Cone {
     [[nodiscard]] bool unchanged_by_shift(const Vec3&) const { return false; }
     [[nodiscard]] bool unchanged_by_turn(const Vec3& on_axis, const Vec3& turn) const;
     [[nodiscard]] Extent extent(std::size_t along) const;
-    /// What is wrong with it, in one sentence; empty: nothing.
+    /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] std::string flaw() const;
 
-    /// In units of `unit` m.
+    /// Returns the meridian in units of `unit` m.
     [[nodiscard]] Meridian meridian(double unit) const;
     using Numbers = Meridian;
     [[nodiscard]] Numbers numbers(const Vec3& centre, double unit, Vec3& origin) const {

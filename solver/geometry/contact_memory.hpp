@@ -1,11 +1,14 @@
-// Which contact with a surface goes on from which of the step before, for what friction remembers.
+// Matching of contacts with a surface between two steps, for the memory of friction.
 //
-// A contact is a place on the sphere, known by its normal, and not a triangle: between two steps the normal of a
-// contact turns by the distance moved over the radius. So pairs are formed by the least angle between normals, the
-// least first, each contact at most once, up to largest_turn. On a flat square cut by a diagonal the normal stays, and
-// the memory passes from one triangle to the other. Over a convex edge the normal turns step by step and the memory
-// stays. In a concave edge the new contact starts empty beside the old one. Over a shallow concave edge that is passed
-// within one step the memory continues, turned. From a floor to a wall it does not.
+// A contact is identified by its normal, not by its triangle. Between two steps the normal of a contact rotates by the
+// distance moved divided by the radius. So contacts are matched by the angle between normals, the smallest angle first,
+// each contact at most once, up to largest_turn. Examples:
+//
+//   flat square of two triangles   the normal stays, and the memory moves to the other triangle
+//   convex edge                    the normal rotates step by step, and the memory continues
+//   concave edge                   the new contact starts without memory beside the old one
+//   shallow concave edge           if it is passed within one step, the memory continues, rotated
+//   floor to wall                  the memory does not continue
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -15,16 +18,17 @@
 
 namespace grainsweep::geometry {
 
-/// Angle between the normals of one contact in two steps, rad: beyond, it is another contact.
+/// Largest angle between the normals of one contact in two steps, rad.
 inline constexpr double largest_turn = 0.5;
 
 inline constexpr std::uint32_t no_contact = 0xFFFFFFFF;
 
-/// from[k]: the one of `before` that now[k] goes on from, or no_contact. Normals are unit vectors in the frame of the
-/// surface. A sphere has few contacts with it: the cost grows with the cube of their number.
+/// Sets from[k] to the index in `before` of the contact that now[k] continues, or to no_contact. Normals are unit
+/// vectors in the frame of the surface. The cost grows with the cube of the number of contacts, which is small.
 void match_contacts(std::span<const Vec3> before, std::span<const Vec3> now, std::span<std::uint32_t> from);
 
-/// The vector turned by the rotation that takes one unit vector to another one, not opposite, in their common plane.
+/// Returns the vector rotated by the rotation, in their common plane, from one unit vector to another that is not
+/// opposite.
 [[nodiscard]] Vec3 turned(const Vec3& vector, const Vec3& from, const Vec3& to);
 
 }  // namespace grainsweep::geometry

@@ -1,5 +1,5 @@
-// Circular cylinder: a drum from inside, a roller from outside; with a length, a bore through a plate or a solid with
-// flat ends. Its surface turns and slides in itself, so that a turning drum stays where it is.
+// Circular cylinder: a drum from inside, a roller from outside. With a length it is a bore through a plate, or a solid
+// with flat ends. Rotation about its axis and sliding along it do not move the surface.
 #pragma once
 
 #include "solver/geometry/closest.hpp"
@@ -10,7 +10,7 @@
 namespace grainsweep::geometry {
 
 struct Cylinder {
-    Vec3 point{};        ///< on the axis, of one with ends: its middle
+    Vec3 point{};        ///< on the axis; with ends: the middle
     Vec3 axis{0, 0, 1};  ///< unit
     double radius = 0;   ///< m
     Side side = Side::inside;
@@ -24,12 +24,12 @@ struct Cylinder {
     [[nodiscard]] bool unchanged_by_shift(const Vec3& direction) const;
     [[nodiscard]] bool unchanged_by_turn(const Vec3& on_axis, const Vec3& turn) const;
     [[nodiscard]] Extent extent(std::size_t along) const;
-    /// What is wrong with it, in one sentence; empty: nothing.
+    /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] std::string flaw() const;
 
-    /// Where s = 0: the middle, of one with ends the centre of the first.
+    /// Returns the point s = 0: the middle, or with ends the centre of the first end.
     [[nodiscard]] Vec3 foot() const;
-    /// In units of `unit` m.
+    /// Returns the meridian in units of `unit` m.
     [[nodiscard]] Meridian meridian(double unit) const;
     using Numbers = Meridian;
     [[nodiscard]] Numbers numbers(const Vec3& centre, double unit, Vec3& origin) const {

@@ -1,4 +1,4 @@
-// A box whose faces are periodic or open, per axis.
+// Box whose faces are periodic or open, per axis.
 //
 // A pair across a periodic face is written with the image of j: its position plus a whole number of periods,
 // -1, 0 or 1 per axis. The 27 images are numbered (ix + 1) + 3 (iy + 1) + 9 (iz + 1); number 13 is j itself.
@@ -19,7 +19,7 @@ struct Domain {
 
     [[nodiscard]] double length(std::size_t axis) const { return high[axis] - low[axis]; }
 
-    /// Periods to add so that x lies in [low, high) along periodic axes, as a displacement (m).
+    /// Returns the displacement (m, whole periods) that moves x into [low, high) along periodic axes.
     [[nodiscard]] Vec3 wrapping(const Vec3& x) const {
         Vec3 shift{};
         for (std::size_t k = 0; k < 3; ++k)
@@ -28,14 +28,14 @@ struct Domain {
         return shift;
     }
 
-    /// True where x is beyond an open face.
+    /// Returns whether x is beyond an open face.
     [[nodiscard]] bool outside(const Vec3& x) const {
         for (std::size_t k = 0; k < 3; ++k)
             if (!periodic[k] && !(x[k] >= low[k] && x[k] <= high[k])) return true;
         return false;
     }
 
-    /// The shortest of a - b over all images.
+    /// Returns the shortest a - b of all images.
     [[nodiscard]] Vec3 separation(const Vec3& a, const Vec3& b) const {
         Vec3 d = a - b;
         for (std::size_t k = 0; k < 3; ++k)
@@ -43,7 +43,7 @@ struct Domain {
         return d;
     }
 
-    /// Displacement (m) of each of the 27 images.
+    /// Returns the displacement (m) of each of the 27 images.
     [[nodiscard]] std::array<Vec3, 27> image_shifts() const {
         std::array<Vec3, 27> shifts{};
         for (std::size_t c = 0; c < 27; ++c) {

@@ -1,9 +1,9 @@
-// The surface f = 0 inside a box as triangles, for pictures.
+// Surface f = 0 inside a box as triangles, for pictures.
 //
 // Surface nets (Gibson 1998, doi 10.1007/BFb0056277). Every cell of a grid in which f changes sign has a corner, at the
-// mean of the places where its edges cross the surface. Every such edge has a quadrilateral around it. On the
-// faces of the box the cells are flat, so that the surface ends there and its rim lies in them. Corners are off the
-// surface by O(h^2). Where two sheets pass through one cell they share its corner.
+// mean of the points where its edges cross the surface. Every such edge has a quadrilateral around it. On the faces of
+// the box the cells are flat, so that the rim of the surface lies in the faces. The error of the corners is O(h^2). If
+// two sheets pass through one cell, they share its corner.
 #pragma once
 
 #include "solver/geometry/triangle_surface.hpp"
@@ -12,8 +12,8 @@
 
 namespace grainsweep::geometry {
 
-/// Triangles are counter-clockwise seen from where f > 0.
-/// cells >= 1: of the grid along each axis of the box. Throws std::invalid_argument otherwise.
+/// Returns triangles that are counter-clockwise as seen from the side f > 0. cells >= 1: of the grid along each axis of
+/// the box. Throws std::invalid_argument otherwise.
 [[nodiscard]] TriangleSurface level_surface(const std::function<double(const Vec3&)>& f, const Vec3& low,
                                             const Vec3& high, int cells);
 

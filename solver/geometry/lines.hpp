@@ -1,4 +1,4 @@
-// Whether directions and lines agree, up to the rounding of the numbers they were given by.
+// Comparison of directions and lines, up to the rounding of their numbers.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -16,7 +16,7 @@ inline constexpr double alignment_rounding = 1e-12;
 [[nodiscard]] inline bool perpendicular(const Vec3& unit, const Vec3& direction) {
     return std::abs(dot(unit, direction)) <= alignment_rounding * norm(direction);
 }
-/// Whether `point` lies on the line through `on` along `unit`, judged by a length of the case.
+/// Returns whether `point` lies on the line through `on` along `unit`, relative to a length of the case.
 [[nodiscard]] inline bool on_line(const Vec3& point, const Vec3& on, const Vec3& unit, double length) {
     return norm(cross(point - on, unit)) <= alignment_rounding * length;
 }

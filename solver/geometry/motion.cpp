@@ -89,9 +89,12 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
         a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
 }
 
+Pose turned_pose(const Flight& m) {
+    return {.turned = true, .rows = rows_of(m.turned), .shift = {}};
+}
+
 /// Angular momentum along an axis of inertia, which the body has turned.
-double momentum_along(const Flight& m, std::size_t axis) {
-    const Pose pose{.turned = true, .rows = rows_of(m.turned), .shift = {}};
+double momentum_along(const Flight& m, const Pose& pose, std::size_t axis) {
     return dot(pose.turn(m.axes[axis]), m.angular_momentum);
 }
 
@@ -102,7 +105,7 @@ void turn_freely(Flight& m, double span) {
     constexpr std::array<double, 5> shares = {0.5, 0.5, 1, 0.5, 0.5};
     for (std::size_t k = 0; k < order.size(); ++k) {
         const std::size_t axis = order[k];
-        const double half = shares[k] * span * momentum_along(m, axis) / m.inertia[axis] / 2;
+        const double half = shares[k] * span * momentum_along(m, turned_pose(m), axis) / m.inertia[axis] / 2;
         const double s = std::sin(half);
         m.turned = product(m.turned, {std::cos(half), s * m.axes[axis][0], s * m.axes[axis][1], s * m.axes[axis][2]});
     }
@@ -187,42 +190,105 @@ bool turns(const Motion& motion) {
 }
 
 Vec3 spin_of(const Flight& m) {
+    const Pose pose = turned_pose(m);
     Vec3 spin{};
-    for (std::size_t k = 0; k < 3; ++k) spin += momentum_along(m, k) / m.inertia[k] * m.axes[k];
-    return Pose{.turned = true, .rows = rows_of(m.turned), .shift = {}}.turn(spin);
+    for (std::size_t k = 0; k < 3; ++k) spin += momentum_along(m, pose, k) / m.inertia[k] * m.axes[k];
+    return pose.turn(spin);
 }
 
-void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
-          double span) {
+namespace {
+
+double turning_energy(const Flight& m) {
+    return dot(m.angular_momentum, spin_of(m)) / 2;
+}
+
+double kinetic_energy_of(const auto&) {
+    return 0;
+}
+double kinetic_energy_of(const Press& m) {
+    return m.mass / 2 * m.speed * m.speed;
+}
+double kinetic_energy_of(const Drive& m) {
+    return m.inertia / 2 * m.speed * m.speed;
+}
+double kinetic_energy_of(const Flight& m) {
+    return m.mass / 2 * dot(m.velocity, m.velocity) + turning_energy(m);
+}
+
+/// Of a press or a drive: `load` and `own` are forces along its way, or moments about its axis.
+void kick_along(auto& m, double inertia, double load, double own, double time, double span, BodyEnergy& energy) {
+    const double before = m.speed;
+    if (!runs(m, time)) {
+        m.speed = 0;
+        energy.bounds -= inertia / 2 * before * before;
+        return;
+    }
+    const double after = m.speed + span * ((own + load) / inertia);
+    m.speed = std::clamp(after, -m.fastest, m.fastest);
+    const double mean = (before + m.speed) / 2;
+    energy.contacts += span * load * mean;
+    energy.own += span * own * mean;
+    energy.bounds += inertia * (m.speed - after) * mean;
+}
+
+void kick_flight(Flight& m, const Vec3& force, const Vec3& moment, double time, double span, BodyEnergy& energy) {
+    if (!runs(m, time)) {
+        energy.bounds -= kinetic_energy_of(m);
+        m.velocity = m.angular_momentum = {};
+        return;
+    }
+    const Vec3 velocity = m.velocity, spin = spin_of(m);
+    for (std::size_t k = 0; k < 3; ++k) m.velocity[k] += m.freedom[k] * span / m.mass * (m.force[k] + force[k]);
+    m.angular_momentum += span * (m.moment + moment);
+    const Vec3 free_velocity = m.velocity, free_momentum = m.angular_momentum;
+    if (const double speed = norm(m.velocity); speed > m.fastest) m.velocity = m.fastest / speed * m.velocity;
+    Vec3 spin_after = spin_of(m);
+    if (const double turn = norm(spin_after); turn > m.fastest_turn) {
+        m.angular_momentum = m.fastest_turn / turn * m.angular_momentum;
+        spin_after = spin_of(m);
+    }
+    const Vec3 mean = 0.5 * (velocity + m.velocity), mean_spin = 0.5 * (spin + spin_after);
+    for (std::size_t k = 0; k < 3; ++k) {
+        energy.contacts += span * m.freedom[k] * force[k] * mean[k];
+        energy.own += span * m.freedom[k] * m.force[k] * mean[k];
+    }
+    energy.contacts += span * dot(moment, mean_spin);
+    energy.own += span * dot(m.moment, mean_spin);
+    energy.bounds +=
+        m.mass * dot(m.velocity - free_velocity, mean) + dot(m.angular_momentum - free_momentum, mean_spin);
+}
+
+}  // namespace
+
+double kinetic_energy(std::span<const Motion> motions) {
+    double energy = 0;
+    for (const Motion& motion : motions)
+        energy += std::visit([](const auto& m) { return kinetic_energy_of(m); }, motion);
+    return energy;
+}
+
+void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span,
+          BodyEnergy& energy) {
     const Vec3 shift = displacement_of(motions, time);
     const auto moment_about = [&](const Vec3& point) { return moment + cross(about - shift - point, force); };
-    const auto set = [&](auto& m, double acceleration) {
-        m.speed = runs(m, time) ? std::clamp(m.speed + span * acceleration, -m.fastest, m.fastest) : 0;
-    };
     for (Motion& motion : motions) {
-        if (auto* m = std::get_if<Press>(&motion)) set(*m, (m->force + dot(force, m->along)) / m->mass);
+        if (auto* m = std::get_if<Press>(&motion))
+            kick_along(*m, m->mass, dot(force, m->along), m->force, time, span, energy);
         if (auto* m = std::get_if<Drive>(&motion))
-            set(*m, (m->moment + dot(moment_about(m->point), m->axis)) / m->inertia);
-        auto* m = std::get_if<Flight>(&motion);
-        if (m == nullptr) continue;
-        if (!runs(*m, time)) {
-            m->velocity = m->angular_momentum = {};
-            continue;
-        }
-        for (std::size_t k = 0; k < 3; ++k) m->velocity[k] += m->freedom[k] * span / m->mass * (m->force[k] + force[k]);
-        m->angular_momentum += span * (m->moment + moment_about(m->centre));
-        if (const double speed = norm(m->velocity); speed > m->fastest) m->velocity = m->fastest / speed * m->velocity;
-        if (const double spin = norm(spin_of(*m)); spin > m->fastest_turn)
-            m->angular_momentum = m->fastest_turn / spin * m->angular_momentum;
+            kick_along(*m, m->inertia, dot(moment_about(m->point), m->axis), m->moment, time, span, energy);
+        if (auto* m = std::get_if<Flight>(&motion)) kick_flight(*m, force, moment_about(m->centre), time, span, energy);
     }
 }
 
-void drift(Motion& motion, double span) {
+void drift(Motion& motion, double span, BodyEnergy& energy) {
     if (auto* m = std::get_if<Press>(&motion)) m->way += span * m->speed;
     if (auto* m = std::get_if<Drive>(&motion)) m->way += span * m->speed;
     if (auto* m = std::get_if<Flight>(&motion)) {
         m->way += span * m->velocity;
-        if (m->angular_momentum != Vec3{}) turn_freely(*m, span);
+        if (m->angular_momentum == Vec3{}) return;
+        const double before = turning_energy(*m);
+        turn_freely(*m, span);
+        energy.turning += turning_energy(*m) - before;
     }
 }
 

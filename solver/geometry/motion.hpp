@@ -1,20 +1,21 @@
-// Motions of a rigid body. Prescribed ones in closed form: no step adds to another, so that nothing drifts. Free ones
-// follow from what acts on the body; their way and speed are state, which an engine advances with the particles.
+// Motions of a rigid body. Prescribed motions have a closed form, so errors of steps do not add up. Free motions follow
+// from the load on the body; their travel and speed are state, which an engine advances with the particles.
 //
 //     translation   d = v s                                     s = min(max(t, start), end) - start
-//     vibration     d = A (sin(2 pi f s + phase) - sin(phase))  the body starts where it is given
+//     vibration     d = A (sin(2 pi f s + phase) - sin(phase))  so d = 0 at the start
 //     rotation      by the angle w s, right hand, about an axis through a point
 //     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
 //     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
 //     flight        d = way, turned by q   m dv/dt = F + load, dL/dt = M + moment of the load about the centre of mass
 //
-// A list is added up: displacements to D, rotations one after the other, and all points of rotations travel with D:
+// A list of motions is combined: displacements are added to D, rotations follow one another, and all points of
+// rotations move with D:
 //
 //     x = D + T_n(... T_1(X)),   T_k(X) = o_k + R_k (X - o_k)
 //
-// so that a later rotation carries the axes of those before it (a stirrer on its own shaft, then around the vessel).
-// Velocity of the material: v(x) = dD/dt + sum_k w_k x (x - o_k), with axes and points where they are by then.
-// Nothing turns a body after a drive or a flight, so that their axes and centres are where the load acts.
+// So a later rotation moves the axes of earlier ones (a stirrer on its own shaft, then around the vessel). Velocity of
+// the material: v(x) = dD/dt + sum_k w_k x (x - o_k), with the present axes and points. No rotation may follow a drive
+// or a flight, so that their axes and centres are the actual ones.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -37,7 +38,7 @@ struct Vibration {
     Vec3 amplitude{};                                                 ///< m
     double frequency = 0;                                             ///< Hz
     double phase = 0;                                                 ///< rad
-    double start = 0, end = std::numeric_limits<double>::infinity();  ///< s; where it ends, it stays
+    double start = 0, end = std::numeric_limits<double>::infinity();  ///< s; after the end the body stays
 
     static void fields(auto& m, auto&& visit) {
         visit(m.amplitude), visit(m.frequency), visit(m.phase), visit(m.start), visit(m.end);
@@ -55,7 +56,7 @@ struct Rotation {
     }
 };
 
-/// A body on which a force acts, free to move along one direction between `start` and `end`; held outside of them.
+/// Press: a force moves the body along one direction between `start` and `end`; at other times the body is held.
 struct Press {
     Vec3 along{0, 0, -1};                                             ///< unit
     double force = 0;                                                 ///< N, along
@@ -71,7 +72,7 @@ struct Press {
     }
 };
 
-/// A body on which a moment acts, free to turn about an axis.
+/// Drive: a moment rotates the body about an axis.
 struct Drive {
     Vec3 point{};                                                     ///< on the axis, m
     Vec3 axis{0, 0, 1};                                               ///< unit
@@ -88,12 +89,12 @@ struct Drive {
     }
 };
 
-/// A rigid body that turns about its centre of mass and shifts along the axes that are free, between `start` and `end`;
-/// held outside of them.
+/// Flight: the body rotates about its centre of mass and moves along the free axes, between `start` and `end`; at other
+/// times it is held.
 struct Flight {
-    Vec3 centre{};                                                    ///< of mass, where the body is given, m
+    Vec3 centre{};                                                    ///< centre of mass in the original position, m
     double mass = 1;                                                  ///< kg
-    std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};      ///< of inertia, as the body is given; unit
+    std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};      ///< principal axes in the original position; unit
     Vec3 inertia{1, 1, 1};                                            ///< about them, kg m2
     Vec3 freedom{1, 1, 1};                                            ///< 0: its centre is held along this axis
     Vec3 force{}, moment{};                                           ///< N, with the weight; N m
@@ -116,14 +117,26 @@ struct Flight {
 
 using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flight>;
 
-/// What an engine advances: Press, Drive and Flight.
+/// Returns whether an engine advances the motion: Press, Drive and Flight.
 [[nodiscard]] bool is_free(const Motion& motion);
-/// Whether it turns the body: Rotation, Drive and Flight.
+/// Returns whether the motion rotates the body: Rotation, Drive and Flight.
 [[nodiscard]] bool turns(const Motion& motion);
-/// Angular velocity of a flight, rad/s.
+/// Returns the angular velocity of a flight, rad/s.
 [[nodiscard]] Vec3 spin_of(const Flight& flight);
 
-/// Where a body stands: x = R X + shift.
+/// Booked changes of the kinetic energy of the free motions of a body, J. Their sum is kinetic_energy() to rounding for
+/// any time step: a kick changes m v^2/2 by its force times the mean of the speeds before and after it.
+struct BodyEnergy {
+    double start = 0;     ///< kinetic energy when the walls were set
+    double contacts = 0;  ///< work of the load
+    double own = 0;       ///< work of the force and moment of the motions themselves: press, drive, weight
+    double bounds = 0;    ///< work of limits of the speed, of holding the body, and of a change of its motions
+    double turning = 0;   ///< error of the integrator: a free turn keeps the energy to second order in the time step
+
+    [[nodiscard]] double sum() const { return start + contacts + own + bounds + turning; }
+};
+
+/// Pose of a body: x = R X + shift.
 struct Pose {
     bool turned = false;  ///< false: R = 1
     std::array<Vec3, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -135,32 +148,34 @@ struct Pose {
     [[nodiscard]] Vec3 to_body(const Vec3& x) const { return turned ? turn_back(x - shift) : x - shift; }
 };
 
-/// How a body moves: v(x) = velocity + spin x (x - pivot).
+/// Velocity field of a body: v(x) = velocity + spin x (x - pivot).
 struct Twist {
     Vec3 velocity{};     ///< m/s
     bool turns = false;  ///< false: no spin
     Vec3 spin{};         ///< rad/s
-    Vec3 pivot{};        ///< m; the point of the last rotation, where it is by now
+    Vec3 pivot{};        ///< m; present point of the last rotation
 
     [[nodiscard]] Vec3 at(const Vec3& x) const { return turns ? velocity + cross(spin, x - pivot) : velocity; }
 };
 
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);
-/// A motion counts from its start on, up to its end.
+/// Returns the velocity at a time; each motion acts from its start until before its end.
 [[nodiscard]] Twist twist_at(std::span<const Motion> motions, double time);
-/// The speeds of free motions after `span` under a load: force on the body, and its moment about a point, at `time`.
-/// Others stay as they are. A motion that is held at that time has no speed.
-void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
-          double span);
-/// The way of a free motion after `span`.
-void drift(Motion& motion, double span);
-/// Takes way and speed of the free motion of the same kind and number.
+/// Returns the kinetic energy of the free motions, J.
+[[nodiscard]] double kinetic_energy(std::span<const Motion> motions);
+/// Updates the speeds of free motions after `span` under a load: force on the body, and its moment about a point, at
+/// `time`. Other motions do not change. A motion that is held at this time has speed 0. Adds the changes to `energy`.
+void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span,
+          BodyEnergy& energy);
+/// Updates the travel of a free motion after `span`. Adds the change to `energy`.
+void drift(Motion& motion, double span, BodyEnergy& energy);
+/// Copies travel and speed from the free motion of the same kind and number.
 void take_state(Motion& motion, std::span<const Motion> from);
-/// Whether it moves anything at any time.
+/// Returns whether the motion never moves the body.
 [[nodiscard]] bool is_still(const Motion& motion);
-/// What is wrong with it, in one sentence; empty: nothing.
+/// Returns the error of a motion, in one sentence; empty: none.
 [[nodiscard]] std::string flaw(const Motion& motion);
-/// What is wrong with them together.
+/// Returns the error of a combination of motions.
 [[nodiscard]] std::string flaw(std::span<const Motion> motions);
 
 }  // namespace grainsweep::geometry

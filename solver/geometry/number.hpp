@@ -1,12 +1,12 @@
-// Number type R of the closest points of curved shapes, so that one text serves a number and vectors of numbers. R has
-// + - * /, and beside it fma, sqrt, min, max, where_less and like. Here for a single double.
+// Number type R of the closest points of curved shapes, so that one template serves a number and vectors of numbers. R
+// has + - * /, and the functions fma, sqrt, min, max, where_less and like. This header defines them for double.
 #pragma once
 
 #include <cmath>
 
 namespace grainsweep::geometry::number {
 
-/// `value` in the type of `example`.
+/// Returns `value` in the type of the first argument.
 [[gnu::always_inline]] inline double like(double, double value) {
     return value;
 }

@@ -9,7 +9,7 @@
 
 namespace grainsweep::geometry {
 
-/// A plane in units about a centre.
+/// Plane in units of its user, relative to a centre.
 struct PlaneNumbers {
     double normal[3];
     double offset;  ///< normal . point
@@ -24,7 +24,7 @@ template <class R>
 
 struct Plane {
     Vec3 point{};
-    Vec3 normal{0, 0, 1};  ///< unit; particles are on the side it points to
+    Vec3 normal{0, 0, 1};  ///< unit; points to the side of the particles
 
     static void fields(auto& s, auto&& visit) { visit(s.point), visit(s.normal); }
     [[nodiscard]] Closest closest(const Vec3& x) const { return {dot(x - point, normal), normal}; }
@@ -43,7 +43,7 @@ struct Plane {
         origin = {};
         return n;
     }
-    /// What is wrong with it, in one sentence; empty: nothing.
+    /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] std::string flaw() const {
         if (!finite(point) || !finite(normal)) return "a plane must be finite";
         return is_unit(normal) ? "" : "the normal of a plane must have unit length";

@@ -1,27 +1,28 @@
-// Closest point of a body of revolution whose meridian is a straight line between two flat ends: the frustum of a cone
-// or a cylinder from outside, or a bore of that shape in a plate.
+// Closest point of a body of revolution with a straight meridian and two flat ends: the frustum of a cone or a cylinder
+// from outside, or a bore of this shape in a plate.
 //
-// With rho, s the distance from the axis and the place along it, the solid is { g (rho - r(s)) >= 0, 0 <= s <= length
-// }, g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point it is convex; its boundary is a
-// segment and two rays. The closest of their closest points is the closest of all, because turning a boundary point
-// into the half plane of x brings it nearer. The normal points from there to x, or back where x is in the solid.
+// Coordinates: rho, the distance from the axis, and s, the position along it. The solid is { g (rho - r(s)) >= 0, 0 <=
+// s <= length }, g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point x the solid is convex;
+// its boundary is a segment and two rays. The closest point in this half plane is the closest of all, because rotating
+// a boundary point into the half plane brings it nearer to x. The normal points from the closest point to x, or the
+// opposite way if x is in the solid.
 #pragma once
 
 #include "solver/geometry/number.hpp"
 
 namespace grainsweep::geometry {
 
-/// The meridian, relative to the foot of the axis in the plane s = 0.
+/// Meridian, relative to the foot of the axis in the plane s = 0.
 struct Meridian {
     double axis[3];
     double base, end;      ///< radius at s = 0 and at s = length
     double length;         ///< infinite: a cylinder without ends
-    double along, across;  ///< unit vector from the base to the end: along the axis, away from it
+    double along, across;  ///< components of the unit vector from the base to the end, along the axis and away from it
     double slant;          ///< distance between both
     double side;           ///< g
 };
 
-/// Of a cylinder without ends; (x, y, z) from a point of its axis.
+/// Returns the closest point of a cylinder without ends; (x, y, z) from a point of its axis.
 template <class R>
 [[gnu::always_inline]] inline Near<R> near_cylinder(const Meridian& m, R x, R y, R z) {
     using namespace number;
@@ -33,7 +34,7 @@ template <class R>
     return {side * (like(x, m.base) - rho), outward * rx, outward * ry, outward * rz};
 }
 
-/// Of a body with ends; (x, y, z) from the foot of its axis.
+/// Returns the closest point of a body with ends; (x, y, z) from the foot of its axis.
 template <class R>
 [[gnu::always_inline]] inline Near<R> near_round_body(const Meridian& m, R x, R y, R z) {
     using namespace number;
@@ -43,14 +44,15 @@ template <class R>
     const R rx = x - s * ax, ry = y - s * ay, rz = z - s * az;
     const R rho = sqrt(fma(rx, rx, fma(ry, ry, rz * rz)));
 
-    // From the segment: height above it, outward normal g (-along, across) in (rho, s), and what lies beyond its ends.
+    // From the segment: height above it with the outward normal g (-along, across) in (rho, s), and the excess beyond
+    // its ends.
     const R along = like(x, m.along), across = like(x, m.across), from_base = rho - like(x, m.base);
     const R height = g * (across * s - along * from_base);
     const R place = fma(across, from_base, along * s);
     const R beyond = place - max(zero, min(place, like(x, m.slant)));
     R v_rho = fma(beyond, across, zero - g * height * along), v_s = fma(beyond, along, g * height * across);
     R least = fma(height, height, beyond * beyond);
-    // From the ends: rays of the solid's side.
+    // From the ends: rays on the side of the solid.
     const R to_end = s - like(x, m.length), from_end = rho - like(x, m.end);
     const R f_base = g * min(zero, g * from_base), f_end = g * min(zero, g * from_end);
     const R d_base = fma(f_base, f_base, s * s), d_end = fma(f_end, f_end, to_end * to_end);
@@ -62,7 +64,7 @@ template <class R>
     least = min(d_end, least);
 
     const R distance = sqrt(least);
-    // In the solid where the point is below the segment and between the ends.
+    // In the solid if the point is below the segment and between the ends.
     const R deepest = max(height, max(zero - s, to_end));
     const R sign = where_less(zero, deepest, one, zero - one);
     const R inverse = sign / max(distance, tiny);

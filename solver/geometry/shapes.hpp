@@ -1,27 +1,27 @@
-// The shapes a wall can have: the list. A shape lives in its body frame; all it owes is its closest point.
+// List of the shapes of walls. A shape is defined in its body frame by its closest points.
 //
-// A shape with one contact at a time has closest(x) and moved(by). One that may be touched in several places has
-// instead
+// A shape with only one contact at a time has closest(x) and moved(by). A shape that may be touched in several places
+// has instead
 //
 //     void touching(const Vec3& x, double reach, std::vector<Closest>& into) const    appends the places, nearest first
 //
-// whose contacts go on from step to step by their normals (contact_memory.hpp). One without an inside, that a centre
-// could pass, has crossed(from, to), the part of it that a point moving straight passes through, if any. One that is
-// more than an image of itself across a periodic face has repeated(domain, margin): itself and its images as far as a
-// centre in the domain finds them within the margin. One that can be made faster for spheres of known size has
-// prepared(reach).
+// Its contacts are matched between steps by their normals (contact_memory.hpp). Optional members:
 //
-// One with closest(x) may have the same for vectors of positions (number.hpp): Numbers, plain doubles in units of its
-// user's choice, numbers(centre, unit, origin), which gives them and what positions are then relative to, and
-// near(numbers, x, y, z).
+//   crossed(from, to)        of a shape without an inside: the part that a point moving straight passes through, if any
+//   repeated(domain, margin) the shape with its periodic images within the margin of a centre in the domain
+//   prepared(reach)          a faster form for spheres up to this radius
 //
-// A shape with touching consists of pieces, numbered from 0 on, so that a caller can keep the pieces near a centre. It
+// A shape with closest(x) may also have a form for vectors of positions (number.hpp). The type Numbers has plain
+// doubles in units of its user. numbers(centre, unit, origin) returns them and sets the origin of positions.
+// near(numbers, x, y, z) computes the closest point.
+//
+// A shape with touching consists of pieces, numbered from 0, so that a caller can store the pieces near a centre. It
 // has pieces(); near(x, reach, into), which lists the pieces nearer than the reach; and touching(x, reach, of, into),
-// whose pieces `of` must include at least all of these. For vectors of
-// positions: PieceNumbers, plain doubles, piece(number, unit), and near_piece(numbers, x, y, z).
+// where `of` must include all these pieces. For vectors of positions it has PieceNumbers, plain doubles, piece(number,
+// unit), and near_piece(numbers, x, y, z).
 //
-// All have: unchanged_by_shift, unchanged_by_turn (motions that leave its surface where it is), extent, flaw, and
-// fields, which visits what it is made of in one order, for checkpoints.
+// All shapes have unchanged_by_shift and unchanged_by_turn (motions that do not move the surface), extent, flaw, and
+// fields, which visits the members in a fixed order, for checkpoints.
 #pragma once
 
 #include "solver/geometry/bar.hpp"
@@ -42,37 +42,37 @@ namespace grainsweep::geometry {
 
 using Shape = std::variant<Plane, Bar, Cylinder, Cone, Mesh, Tube>;
 
-/// A shape that is touched in one place at most.
+/// Shape that is touched in one place at most.
 template <class S>
 concept SingleContact = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
     { shape.closest(x) } -> std::same_as<Closest>;
 };
 
-/// A shape without an inside.
+/// Shape without an inside.
 template <class S>
 concept Thin = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
     static_cast<bool>(shape.crossed(x, x));
 };
 
-/// A shape that goes on in its images across periodic faces.
+/// Shape that continues in its images across periodic faces.
 template <class S>
 concept Repeated = requires(const std::remove_cvref_t<S>& shape, const Domain& domain) {
     { shape.repeated(domain, 1.0) } -> std::same_as<std::remove_cvref_t<S>>;
 };
 
-/// A shape that is faster for spheres of radius up to a reach when it knows that.
+/// Shape with a faster form for spheres up to a known radius.
 template <class S>
 concept Preparable = requires(const std::remove_cvref_t<S>& shape) {
     { shape.prepared(1.0) } -> std::same_as<std::remove_cvref_t<S>>;
 };
 
-/// A shape whose closest points can be found for vectors of positions.
+/// Shape whose closest points can be computed for vectors of positions.
 template <class S>
 concept Vectorised = requires(const S& shape, const Vec3& centre, Vec3& origin) {
     { shape.numbers(centre, 1.0, origin) } -> std::same_as<typename S::Numbers>;
 };
 
-/// A shape made of pieces, of which a centre is near a few.
+/// Shape made of pieces.
 template <class S>
 concept Pieced = requires(const S& shape, const Vec3& x, std::span<const std::uint32_t> of,
                           std::vector<Closest>& places, std::vector<std::uint32_t>& pieces) {
@@ -82,7 +82,7 @@ concept Pieced = requires(const S& shape, const Vec3& x, std::span<const std::ui
     shape.touching(x, 1.0, of, places);
 };
 
-/// A shape that can be given displaced, so that its numbers round as if it had been given there.
+/// Shape that can be displaced by changing its numbers, with the same rounding as if it had been defined there.
 template <class S>
 concept Movable = requires(const S& shape, const Vec3& by) {
     { shape.moved(by) } -> std::same_as<S>;

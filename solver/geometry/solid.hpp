@@ -1,4 +1,4 @@
-// The body that a closed surface bounds.
+// Body that a closed surface bounds.
 #pragma once
 
 #include "solver/geometry/triangle_surface.hpp"
@@ -7,7 +7,7 @@
 
 namespace grainsweep::geometry {
 
-/// Volume, centre of mass and principal axes of inertia of a body of even density.
+/// Volume, centre of mass and principal axes of inertia of a body of uniform density.
 struct Solid {
     double volume = 0;  ///< m3
     Vec3 centre{};      ///< m
@@ -15,8 +15,9 @@ struct Solid {
     Vec3 inertia{};  ///< about them, divided by the density, m5
 };
 
-/// Sums tetrahedra between the triangles and one point (Tonon 2004, J. Math. Stat. 1, 8-11), whichever way round the
-/// triangles are. nullopt: an edge belongs to other than two triangles, the surface has one side only, or no volume.
+/// Returns the body as a sum of tetrahedra between the triangles and one point (Tonon 2004, J. Math. Stat. 1, 8-11),
+/// for any orientation of the triangles. Empty if an edge does not belong to exactly two triangles, or the surface has
+/// only one side or no volume.
 [[nodiscard]] std::optional<Solid> solid_of(const TriangleSurface& surface);
 
 }  // namespace grainsweep::geometry

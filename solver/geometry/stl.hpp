@@ -1,8 +1,8 @@
 // Triangles from an STL file, binary or ASCII.
 //
-// Which of the two it is, its length decides: a binary file is 80 bytes of any header, the number n of triangles and
-// 50 n bytes. A header that begins with "solid" makes no text of it. Normals in the file are not read: a triangle has
-// its own. STL repeats a corner for every triangle at it; the corners are welded.
+// The length of the file decides between the two: a binary file has 80 bytes of any header, the number n of triangles
+// and 50 n bytes. Its header may begin with "solid". Normals in the file are ignored and computed from the corners. STL
+// repeats a corner for every triangle; equal corners are welded.
 #pragma once
 
 #include "solver/geometry/weld.hpp"
@@ -12,11 +12,11 @@
 namespace grainsweep::geometry {
 
 struct StlSurface : WeldedSurface {
-    bool binary = false;  ///< what the file was
+    bool binary = false;  ///< the file was binary
 };
 
-/// The triangles in the contents of a file, m. scale > 0: m per unit of length in the file (files in mm: 1e-3).
-/// Throws std::invalid_argument with one sentence where the contents are no STL or have no triangle.
+/// Returns the triangles in the contents of a file, m. scale > 0: m per unit of length in the file (files in mm: 1e-3).
+/// Throws std::invalid_argument with one sentence if the contents are no STL or have no triangle.
 [[nodiscard]] StlSurface read_stl(std::string_view contents, double scale = 1);
 
 }  // namespace grainsweep::geometry

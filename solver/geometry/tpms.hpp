@@ -8,11 +8,11 @@
 //   frd        4 cos X cos Y cos Z - (cos 2X cos 2Y + cos 2Y cos 2Z + cos 2Z cos 2X)
 //   i2y        -2 (sin 2X cos Y sin Z + sin 2Z cos X sin Y + sin 2Y cos Z sin X)
 //              + cos 2X cos 2Y + cos 2Y cos 2Z + cos 2Z cos 2X
-// (Gupta, Ness & Haeri, table 2). The shell is |f| <= C with C = G sin(pi t / L). For schwarz_p, gyroid and
-// diamond G is the least |grad f| on f = 0, so that t is the largest local thickness of the shell to first
-// order; for the first two that is the study's own C. For the other three, where the study states none, G is
-// the figure of the reference runs; their least gradients are 3.3755, 2.5460 and 3.4641 = 2 sqrt 3, so the
-// largest thickness is 0.983, 0.975 and 0.937 of t.
+// (Gupta, Ness & Haeri, table 2). The shell is |f| <= C with C = G sin(pi t / L). For schwarz_p, gyroid and diamond G
+// is the smallest |grad f| on f = 0, so that t is the largest local thickness of the shell to first order; for the
+// first two this equals the study's C. For the other three the study states no C, and G is the value of the reference
+// runs. Their smallest gradients are 3.3755, 2.5460 and 3.4641 = 2 sqrt 3, so the largest thickness is 0.983, 0.975 and
+// 0.937 of t.
 #pragma once
 
 #include <array>
@@ -22,15 +22,15 @@ namespace grainsweep::geometry {
 
 enum class TpmsCell { schwarz_p, gyroid, diamond, iwp, frd, i2y };
 
-/// What is fixed about a cell.
+/// Traits of a cell.
 struct TpmsTraits {
     TpmsCell cell;
     std::string_view name;
-    int kept_side;          ///< sign of f on the side that is filled with powder unless asked otherwise
+    int kept_side;          ///< default sign of f on the side that is filled with powder
     double shell_gradient;  ///< G: C = G sin(pi t / L)
 };
 
-/// The six cells, in the order of the study's table 2.
+/// Traits of the six cells, in the order of the study's table 2.
 inline constexpr std::array<TpmsTraits, 6> tpms_cells = {{
     {TpmsCell::schwarz_p, "schwarz_p", +1, 1.0},
     {TpmsCell::gyroid, "gyroid", +1, 1.4142135623730951},
@@ -42,23 +42,23 @@ inline constexpr std::array<TpmsTraits, 6> tpms_cells = {{
 
 [[nodiscard]] const TpmsTraits& traits(TpmsCell cell);
 
-/// f at the bar coordinates X, Y, Z (any real numbers; the period is 2 pi).
+/// Returns f at the bar coordinates X, Y, Z (any real numbers; the period is 2 pi).
 [[nodiscard]] double tpms_value(TpmsCell cell, const std::array<double, 3>& bar);
 
-/// Where a point lies: in the shell (|f| <= C), on the side that is kept, or on the other side.
+/// Region of a point: in the shell (|f| <= C), on the kept side, or on the other side.
 enum class TpmsRegion { wall, kept, deleted };
 
-/// The shell of one cell of edge L and thickness t (same unit).
+/// Shell of one cell of edge L and thickness t (same unit).
 class TpmsShell {
 public:
     /// side: +1 or -1, the sign of f on the kept side. Throws std::invalid_argument unless
-    /// 0 < thickness < edge/2 (beyond it C would shrink again).
+    /// 0 < thickness < edge/2 (above it C would decrease).
     TpmsShell(TpmsCell cell, int side, double edge, double thickness);
 
-    /// f at a point of the cell, in the unit of the edge.
+    /// Returns f at a point of the cell, in the unit of the edge.
     [[nodiscard]] double value(const std::array<double, 3>& point) const;
     [[nodiscard]] TpmsRegion classify(const std::array<double, 3>& point) const;
-    /// C: half the range of f inside the shell.
+    /// Returns C, half the range of f inside the shell.
     [[nodiscard]] double level() const { return level_; }
     [[nodiscard]] int side() const { return side_; }
     [[nodiscard]] double edge() const { return edge_; }

@@ -1,7 +1,7 @@
-// One triangle: the point of it that is nearest to another point, and on which of its features that lies.
+// Triangle: its nearest point to another point, and the feature (face, side or corner) on which this point lies.
 //
-// A point whose foot on the plane lies in the triangle is nearest to its face, by the distance from the plane: exact
-// for needles and slivers too. For any other the nearest point is on one of the sides, whatever the angles are.
+// If the foot of a point on the plane lies in the triangle, the nearest point is this foot, also for needles and
+// slivers. Otherwise the nearest point is on one of the sides, for any angles.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -17,22 +17,22 @@ struct Nearest {
     Vec3 point{};
     double distance = 0;  ///< m, not negative
     Feature feature = Feature::face;
-    std::uint8_t number = 0;  ///< of a side (from corner 0 to 1, 1 to 2, 0 to 2) or of a corner
+    std::uint8_t number = 0;  ///< number of a side (from corner 0 to 1, 1 to 2, 0 to 2) or of a corner
 };
 
-/// Its corners ascend in x, y, z. So two triangles with a common side compute the same bits for a point on it, and no
-/// result depends on the order of corners in a file.
+/// Triangle whose corners ascend in x, y, z. So two triangles compute the same bits for a point on their common side,
+/// and no result depends on the order of corners in a file.
 struct Triangle {
     std::array<Vec3, 3> corner{};
     Vec3 normal{};  ///< unit; either side of the triangle is a wall
 
-    /// No two corners the same, not all on one line.
+    /// Returns the triangle of corners that are different and not on one line.
     [[nodiscard]] static Triangle of(std::array<Vec3, 3> corners);
 
-    /// Height of x above the plane on the side of the normal, m.
+    /// Returns the height of x above the plane on the side of the normal, m.
     [[nodiscard]] double height(const Vec3& x) const { return dot(normal, x - corner[0]); }
 
-    /// The foot of x on the plane lies in the triangle, its sides included.
+    /// Returns whether the foot of x on the plane lies in the triangle, including its sides.
     [[nodiscard]] bool below(const Vec3& x) const {
         const auto side = [&](std::size_t a, std::size_t b) {
             return dot(cross(corner[b] - corner[a], x - corner[a]), normal);

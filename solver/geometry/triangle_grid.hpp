@@ -1,5 +1,5 @@
-// Cubic cells over a set of triangles: each knows the triangles that reach into it, or come within a margin of it, by
-// their true extent.
+// Grid of cubic cells over a set of triangles. Each cell lists the triangles that reach into it or come within a margin
+// of it.
 #pragma once
 
 #include "solver/geometry/triangle.hpp"
@@ -14,16 +14,17 @@ class TriangleGrid {
 public:
     TriangleGrid() = default;
     explicit TriangleGrid(std::span<const Triangle> triangles);
-    /// Cells about half as long as the margin, unless that were too many: at() finds all triangles nearer than it.
+    /// Makes cells about half as long as the margin, or longer if there were too many. at() finds all triangles nearer
+    /// than the margin.
     TriangleGrid(std::span<const Triangle> triangles, double margin);
 
-    /// Of the box around all triangles.
+    /// Return the corners of the box around all triangles.
     [[nodiscard]] const Vec3& low() const { return low_; }
     [[nodiscard]] const Vec3& high() const { return high_; }
 
-    /// Triangles with a part in the box, ascending, and some beside it.
+    /// Lists all triangles that reach into the box, ascending, and some others near it.
     void in_box(const Vec3& low, const Vec3& high, std::vector<std::uint32_t>& into) const;
-    /// Triangles within the margin of the place, ascending, and some farther away.
+    /// Returns all triangles within the margin of the place, ascending, and some farther away.
     [[nodiscard]] std::span<const std::uint32_t> at(const Vec3& x) const;
 
 private:

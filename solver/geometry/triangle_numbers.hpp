@@ -1,7 +1,7 @@
-// A triangle for one position or vectors of them: how high above its plane, and how far inside its sides.
+// Triangle for one position or vectors of positions: height above its plane, and distance inside its sides.
 //
-// |height| is the distance where inside >= 0. Else it is at least sqrt(height^2 + inside^2): the foot lies beyond a
-// side by -inside, and the nearest point is on it or farther.
+// The distance is |height| if inside >= 0. Otherwise it is at least sqrt(height^2 + inside^2), because the foot lies
+// beyond a side by -inside.
 #pragma once
 
 #include "solver/geometry/number.hpp"
@@ -9,7 +9,7 @@
 
 namespace grainsweep::geometry {
 
-/// In units of its user's choice, relative to the origin of the body.
+/// Numbers in units of their user, relative to the origin of the body.
 struct TriangleNumbers {
     double normal[3], offset;
     struct {
@@ -19,10 +19,10 @@ struct TriangleNumbers {
 
 template <class R>
 struct NearPiece {
-    R height, inside;  ///< along the normal; from the nearest side line, negative beyond it
+    R height, inside;  ///< along the normal; distance from the nearest side line, negative beyond it
 };
 
-/// `numbers`: those of TriangleNumbers in order.
+/// Returns height and distance inside. `numbers`: the members of TriangleNumbers in order.
 template <class R>
 [[gnu::always_inline]] inline NearPiece<R> near_triangle(const R* numbers, R x, R y, R z) {
     using namespace number;

@@ -1,4 +1,4 @@
-// A surface made of triangles that share corners.
+// Surface made of triangles that share corners.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -10,7 +10,8 @@ namespace grainsweep::geometry {
 
 struct TriangleSurface {
     std::vector<Vec3> corners;
-    std::vector<std::array<std::int32_t, 3>> triangles;  ///< of corners; which way round is the maker's to say
+    std::vector<std::array<std::int32_t, 3>> triangles;  ///< of corners; the maker of the surface defines their
+                                                         ///< orientation
 };
 
 }  // namespace grainsweep::geometry

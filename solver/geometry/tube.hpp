@@ -1,9 +1,9 @@
-// Tube: the wall between two cylinders about one axis, with flat ends. What stands on a plate holds powder until it is
-// lifted; a ring is a short one.
+// Tube: the wall between two cylinders about one axis, with flat ends. On a plate it holds powder until it is lifted; a
+// short tube is a ring.
 //
-// With rho, s the distance from the axis and the place along it, the solid is { inner <= rho <= outer, 0 <= s <= length
-// }: in the half plane of a point a rectangle, whose closest point is the closest of all, for turning a boundary point
-// into the half plane of x brings it nearer.
+// Coordinates: rho, the distance from the axis, and s, the position along it. The solid is { inner <= rho <= outer, 0
+// <= s <= length }, in the half plane of a point x a rectangle. The closest point of this rectangle is the closest of
+// all, because rotating a boundary point into the half plane brings it nearer to x.
 #pragma once
 
 #include "solver/geometry/closest.hpp"
@@ -13,14 +13,14 @@
 
 namespace grainsweep::geometry {
 
-/// A tube in units; positions relative to the foot of its axis.
+/// Tube in units of its user; positions relative to the foot of its axis.
 struct TubeNumbers {
     double axis[3];
     double middle, half;  ///< radius of the middle of the wall, half its thickness
     double length;
 };
 
-/// A centre inside the wall is pushed out through the nearest face.
+/// Returns the closest point. A centre inside the wall is pushed out through the nearest face.
 template <class R>
 [[gnu::always_inline]] inline Near<R> near(const TubeNumbers& t, R x, R y, R z) {
     using namespace number;
@@ -60,7 +60,7 @@ struct Tube {
     [[nodiscard]] bool unchanged_by_shift(const Vec3&) const { return false; }
     [[nodiscard]] bool unchanged_by_turn(const Vec3& on_axis, const Vec3& turn) const;
     [[nodiscard]] Extent extent(std::size_t along) const;
-    /// What is wrong with it, in one sentence; empty: nothing.
+    /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] std::string flaw() const;
 
     using Numbers = TubeNumbers;

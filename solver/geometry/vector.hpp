@@ -1,5 +1,5 @@
-// Algebra of three-vectors: plain arrays, no expression templates, so that a formula reads like its paper
-// and a column of them is 24 bytes per particle.
+// Algebra of three-vectors: plain arrays without expression templates, 24 bytes each. Formulas read as in the
+// literature.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Equal bins of a coordinate, as options of a probe give them.
+// Equal bins of a coordinate, from the options of a probe.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -14,7 +14,7 @@ struct Bins {
     std::size_t count = 20;
 
     [[nodiscard]] double width() const { return (high - low) / static_cast<double>(count); }
-    /// Returns the bin of a value, or `count` outside of all.
+    /// Returns the bin of a value, or `count` outside all bins.
     [[nodiscard]] std::size_t at(double x) const {
         const double place = std::floor((x - low) / width());
         return place >= 0 && place < static_cast<double>(count) ? static_cast<std::size_t>(place) : count;
@@ -29,13 +29,13 @@ inline constexpr OptionSpec bins_option{"bins",  OptionSpec::Kind::number, "1", 
 [[nodiscard]] inline std::size_t bins_in(const Options& options) {
     return static_cast<std::size_t>(options.number("bins", default_bins));
 }
-/// Bins of "from" to "to"; none where these are absent.
+/// Returns the bins between the options "from" and "to"; none if these are absent.
 [[nodiscard]] inline Bins bins_along(const Options& options) {
     if (!options.has("from")) return {.low = 0, .high = 1, .count = 0};
     return {options.number("from"), options.number("to"), bins_in(options)};
 }
 
-/// Returns what is wrong with "bins" and their ends, in one sentence.
+/// Returns the error of "bins" and their ends, in one sentence; empty: none.
 [[nodiscard]] inline std::string flaw_of_bins(const Options& given, double from, double to) {
     if (!(from < to)) return "\"from\" of a profile must lie below \"to\"";
     const double bins = given.number("bins", default_bins);

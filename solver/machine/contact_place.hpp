@@ -1,4 +1,4 @@
-// Where contacts are, and between which particles.
+// Places of contacts, and their particles.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -7,12 +7,13 @@
 
 namespace grainsweep::machine {
 
-/// Returns the place of a particle in the state of the sight.
+/// Returns the index of a particle in the state of the sight.
 [[nodiscard]] inline std::size_t place_of(const Sight& sight, std::int32_t id) {
     return static_cast<std::size_t>(std::ranges::lower_bound(sight.state.id, id) - sight.state.id.begin());
 }
 
-/// Returns the point of a contact at distance R - d/2 from the centre of its first particle; of a wall its surface.
+/// Returns the point of a contact at distance R - d/2 from the centre of its first particle; for a wall, the point of
+/// its surface.
 [[nodiscard]] inline Vec3 contact_point(const Sight& sight, const dem::ContactForce& contact) {
     using namespace geometry;
     const std::size_t i = place_of(sight, contact.first);

@@ -1,5 +1,5 @@
-// A machine before it runs, as a picture: walls where they stand at a time, particles where they are filled in, and as
-// wire frames the domain and the regions of fillings, feeds and measurements.
+// Picture of a machine before it runs: walls at a given time, particles as filled in, and wire frames of the domain and
+// of the regions of fillings, feeds and measurements.
 #pragma once
 
 #include "solver/machine/filling.hpp"
@@ -8,7 +8,7 @@
 
 namespace grainsweep::machine {
 
-/// Phases last as long as they can. `time`: s since the start.
+/// Draws the machine, assuming the longest duration of every phase. `time`: s since the start.
 [[nodiscard]] Snapshot drawing(const Spec& spec, const Filled& filled, double time);
 /// Returns the time at which the last phase ends, s.
 [[nodiscard]] double longest_time(const Spec& spec);

@@ -1,8 +1,9 @@
-// Particles added while a machine runs, in batches at equal times.
+// Feeds: particles added while a machine runs, in batches at equal times.
 //
-// What a feed owes is rate times time; a batch adds particles, each at a random place in the region where it overlaps
-// no other one and no wall, until the owed mass is reached. A particle that finds no place waits, so a blocked feed
-// adds less than it owes and the difference shows. Draws are addressed by (seed, feed, number of the particle, try).
+// The target mass of a feed is rate times time. A batch adds particles until the target is reached, each at a random
+// place in the region without overlap with a particle or a wall. A particle without a place waits, so a blocked feed
+// adds less than its target; the difference is reported. Draws are addressed by (seed, feed, number of the particle,
+// try).
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -18,13 +19,12 @@ class Feeder {
 public:
     Feeder(const Spec& spec, std::size_t feed, std::uint64_t seed);
 
-    /// Throws std::invalid_argument with one sentence where its largest particle has no place in the region, because of
-    /// the domain or of walls that stay where they are in all phases of the feed.
+    /// Throws std::invalid_argument with one sentence if its largest particle has no place in the region, because of
+    /// the domain or of walls that do not move in any phase of the feed.
     void require_room() const;
-    /// Adds `seconds` of its rate to what it owes; less than none where a phase ends before its time.
+    /// Adds `seconds` times its rate to the target mass; negative if a phase ends before its time.
     void owe(double seconds) { owed_ += feed().rate * seconds; }
-    /// Returns the particles that find a place among the present particles, among walls as they stand at a time, and
-    /// before one another.
+    /// Returns the particles that find a place between the present particles, the walls at a time, and each other.
     [[nodiscard]] Filled batch(const dem::State& state, const std::vector<dem::Wall>& walls, double time);
     [[nodiscard]] double fed() const { return fed_; }              ///< kg
     [[nodiscard]] double waiting() const { return owed_ - fed_; }  ///< kg; up to one particle below 0
@@ -34,9 +34,9 @@ public:
 
 private:
     [[nodiscard]] const Feed& feed() const { return spec_.feeds[feed_]; }
-    /// The n-th place of a series of random ones.
+    /// Returns the n-th place of a random series.
     [[nodiscard]] Vec3 place(const Draws& draws, std::uint64_t series, std::uint64_t n) const;
-    /// Whether a sphere there lies in the region, its centre in the domain, and touches no wall.
+    /// Returns whether a sphere lies in the region, has its centre in the domain, and touches no wall.
     [[nodiscard]] bool fits(const Obstacles& obstacles, const Vec3& centre, double radius) const;
 
     const Spec& spec_;

@@ -1,4 +1,4 @@
-// What a machine will probably take, and what its user should know before it runs.
+// Expected cost of a machine, and warnings before it runs.
 #pragma once
 
 #include "solver/machine/spec.hpp"
@@ -8,11 +8,11 @@
 
 namespace grainsweep::machine {
 
-/// Particles that fillings and feeds ask for, times steps of all phases; phases that may end early count for half.
-/// Expected length, s: what the phase says, or half of what it lasts at most where it may end sooner.
+/// Returns the expected length of a phase, s: as stated, else half of its longest duration if it may end early.
 [[nodiscard]] double length_of(const Phase& phase);
+/// Returns the expected cost: particles of the fillings and feeds, times the steps of all phases.
 [[nodiscard]] CostEstimate cost_of(const Spec& spec);
-/// Warns of particles too soft for the fall and of feeds that cannot keep up.
+/// Returns warnings about particles that are too soft for the fall, and about feeds that cannot reach their rate.
 [[nodiscard]] std::vector<Warning> warnings_of(const Spec& spec);
 
 }  // namespace grainsweep::machine

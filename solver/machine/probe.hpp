@@ -1,6 +1,6 @@
-// A probe looks at the particles at a moment and gives one value, or a profile of values.
+// Probe: computes one value, or a profile of values, from the particles at a moment.
 //
-// A probe is one file in solver/machine/probes/ and one line in its catalogue: its options, and how it looks.
+// A probe is one file in solver/machine/probes/ and one row in its catalogue.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -25,18 +25,18 @@ namespace grainsweep::machine {
 
 inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// What a probe may look at, at a moment.
+/// Data that a probe may read at a moment.
 struct Sight {
     const dem::Engine& engine;
-    const dem::State& state;                         ///< of all particles present
+    const dem::State& state;                         ///< all particles present
     const std::vector<dem::ContactForce>& contacts;  ///< empty, unless the probe needs them
     std::span<const std::uint8_t> species;           ///< by id
     std::span<const double> density;                 ///< by id, kg/m3
     const geometry::Domain& domain;
     Vec3 gravity{};
     double time = 0;                      ///< s since the start
-    double peak_overlap = 0;              ///< the deepest at any step since the phase began
-    std::span<const double> radius = {};  ///< by id, of all there ever were, m
+    double peak_overlap = 0;              ///< largest overlap at any step since the phase began
+    std::span<const double> radius = {};  ///< by id, of all particles so far, m
     double time_step = 0;                 ///< s
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
@@ -62,11 +62,11 @@ public:
     [[nodiscard]] Vec3 vector(std::string_view name, const Vec3& standard) const {
         return has(name) ? vector(name) : standard;
     }
-    /// None: everywhere.
+    /// Returns the region; empty: everywhere.
     [[nodiscard]] std::optional<Region> region(std::string_view name) const {
         return has(name) ? std::optional(std::get<Region>(values_.at(std::string(name)))) : std::nullopt;
     }
-    /// Species or walls by number; none: all.
+    /// Returns species or walls by number; empty: all.
     [[nodiscard]] std::vector<std::size_t> numbers(std::string_view name) const {
         return has(name) ? std::get<std::vector<std::size_t>>(values_.at(std::string(name)))
                          : std::vector<std::size_t>{};
@@ -81,7 +81,7 @@ private:
     std::map<std::string, OptionValue, std::less<>> values_;
 };
 
-/// An option, as a machine file gives it.
+/// Option of a probe in a machine file.
 struct OptionSpec {
     enum class Kind { number, vector, direction, region, species, walls, word };
     std::string_view name;
@@ -100,15 +100,14 @@ public:
     Probe& operator=(const Probe&) = delete;
     virtual ~Probe() = default;
 
-    /// Returns the value at this moment; undefined where there is none. Of a profile: one number that sums it up, or
-    /// undefined.
+    /// Returns the value at this moment, or undefined. For a profile: one number that summarises it, or undefined.
     [[nodiscard]] virtual double look(const Sight& sight) = 0;
-    /// Sees every step of the phases that count, where its row says so; the contacts are those of the step itself
-    /// (dem::Engine::step_contacts).
+    /// Called at every step of the selected phases, if the row of the probe has `steps`. The contacts have the forces
+    /// of the step itself (dem::Engine::step_contacts).
     virtual void step(const Sight&) {}
-    /// Appends bins and values at this moment; a scalar has none.
+    /// Appends bins and values at this moment; a scalar appends none.
     virtual void profile(const Sight&, std::vector<Sample>&) {}
-    /// What it remembers from look to look.
+    /// Writes the state that it keeps between two calls of look().
     virtual void save(ByteWriter&) const {}
     virtual void restore(ByteReader&) {}
 };
@@ -117,16 +116,16 @@ struct ProbeInfo {
     std::string_view name, unit, meaning;
     std::span<const OptionSpec> options;
     std::unique_ptr<Probe> (*make)(const Options&);
-    bool contacts = false;       ///< looks at contacts
-    std::string_view over = {};  ///< of a profile: what it runs along, with its unit
-    /// What is wrong with the options together, in one sentence; empty: nothing. May be absent.
+    bool contacts = false;       ///< reads contacts
+    std::string_view over = {};  ///< of a profile: its coordinate with unit
+    /// Returns the error of a combination of options, in one sentence; empty: none. May be null.
     std::string (*flaw)(const Options&) = nullptr;
-    bool steps = false;  ///< sees every step, which costs about twenty steps
+    bool steps = false;  ///< called at every step, which costs about as much as twenty steps
 };
 
-/// All probes, sorted by name.
+/// Returns all probes, sorted by name.
 [[nodiscard]] std::span<const ProbeInfo> probe_catalogue();
-/// Returns nullptr where there is none of that name.
+/// Returns the probe of this name; nullptr if there is none.
 [[nodiscard]] const ProbeInfo* find_probe(std::string_view name);
 
 }  // namespace grainsweep::machine

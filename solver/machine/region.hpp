@@ -1,7 +1,7 @@
-// A region of space: where particles are filled in, fed, or measured.
+// Region of space in which particles are filled in, fed, or measured.
 //
-// A region answers one question, the depth of a point in it: at most the distance to the surface of the region,
-// positive inside. So a sphere of radius r lies in the region where the depth of its centre is at least r.
+// The depth of a point is positive inside the region and at most the distance to its surface. So a sphere of radius r
+// lies in the region if the depth of its centre is at least r.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -35,7 +35,7 @@ struct BallRegion {
     Vec3 centre{};
     double radius = 0;
 };
-/// The side of a plane that its normal points to.
+/// Half space on the side to which the plane's normal points.
 struct HalfRegion {
     Vec3 point{};
     Vec3 normal{0, 0, 1};  ///< unit
@@ -46,7 +46,7 @@ struct AllRegions {
 struct AnyRegion {
     std::vector<Region> of;
 };
-/// Everything outside of the one region in it.
+/// Complement of a region.
 struct NotRegion {
     std::vector<Region> of;
 };
@@ -64,11 +64,11 @@ struct Region {
     /// Returns the depth of a point, m.
     [[nodiscard]] double depth(const Vec3& x) const;
     [[nodiscard]] bool contains(const Vec3& x) const { return depth(x) >= 0; }
-    /// Returns a box around it; infinite where the region is.
+    /// Returns a box around the region; infinite where the region is infinite.
     [[nodiscard]] Bounds bounds() const;
-    /// Returns its volume, m3; none of half spaces and combinations.
+    /// Returns its volume, m3; empty for half spaces and combinations.
     [[nodiscard]] std::optional<double> volume() const;
-    /// Returns what is wrong with its numbers, in one sentence; empty: nothing.
+    /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] const char* flaw() const;
 };
 

@@ -1,7 +1,7 @@
-// Any machine as it runs: phases one after the other, frames at which probes look, batches of feeds, checks whether a
-// phase ends early.
+// Run of any machine: phases one after the other, frames at which probes are evaluated, batches of feeds, and checks
+// whether a phase ends early.
 //
-// All of this happens at steps that the spec fixes, so that slices of a caller, threads and resuming change no bit.
+// The spec fixes the steps of all these events, so slices of the caller, threads and resuming change no bit.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -40,10 +40,10 @@ private:
     struct Record {
         std::vector<Sample> samples;
         std::vector<double> bins, sums, counts, last;  // of a profile
-        double looked = undefined;                     // time of the last look, s
+        double looked = undefined;                     // time of the last frame, s
     };
 
-    /// "wall 2" of the engine by its name.
+    /// Returns a message of the engine with "wall 2" replaced by the wall's name.
     [[nodiscard]] std::string with_names(std::string fault) const;
     [[nodiscard]] std::int64_t steps_in(double seconds) const;
     [[nodiscard]] const Phase& phase() const { return spec_.phases[phase_]; }
@@ -54,21 +54,21 @@ private:
     void end_phase(std::uint8_t condition);
     void stop_here();
     void feed();
-    /// Steps from now on that a feed has been credited with.
+    /// Returns the future steps with which a feed has already been credited.
     [[nodiscard]] std::int64_t credited_ahead(const Feed& feed) const;
     void take_frame();
-    /// Number of the condition that ends the phase now, from 1; 0: none.
+    /// Returns the number of the condition that ends the phase now, from 1; 0: none.
     [[nodiscard]] std::uint8_t ended_by();
-    /// Whether its conditions are looked at in this step.
+    /// Returns whether the conditions of the phase are checked in this step.
     [[nodiscard]] bool checks_here(bool framed);
     [[nodiscard]] bool holds_now(std::size_t condition);
     enum class Contacts { none, present, of_step };
     [[nodiscard]] Sight look(Contacts contacts);
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
-    /// As they are, with ways and speeds of those that the powder moves.
+    /// Returns the walls with the present travel and speed of those that the powder moves.
     [[nodiscard]] std::vector<dem::Wall> walls_now() const;
-    /// Remembers of what species and size they are.
+    /// Stores species and size of new particles.
     void enlist(const Filled& filled);
     void observe(const Measure& measure, const Record& record, Observations& into) const;
     template <class State, class Visit>
@@ -80,18 +80,19 @@ private:
     std::vector<double> radius_;         // by id
     std::unique_ptr<dem::Engine> engine_;
     std::vector<std::unique_ptr<Probe>> probes_;                 // of measures
-    std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // those that end a phase, by its conditions
-    std::vector<std::vector<Probe*>> at_steps_;                  // of both, those that see every step of a phase
+    std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // probes that end a phase, by phase and condition
+    std::vector<std::vector<Probe*>> at_steps_;                  // of both, the probes that are called at every step,
+                                                                 // by phase
     std::vector<Feeder> feeders_;
     bool needs_contacts_ = false;
 
     std::int64_t step_ = 0;
     std::size_t phase_ = 0;
     std::int64_t phase_begin_ = 0;              // step
-    std::int64_t frame_ = 0;                    // next one of the phase
-    std::int64_t check_ = 0;                    // next one of the phase, counted from 1
+    std::int64_t frame_ = 0;                    // next frame of the phase
+    std::int64_t check_ = 0;                    // next check of the phase, counted from 1
     std::vector<double> calm_since_, watched_;  // by condition that ends the phase
-    double peak_overlap_ = 0;                   // of the phases before
+    double peak_overlap_ = 0;                   // of the earlier phases
     std::int64_t glued_ = 0;
     std::int64_t lost_first_ = 0;  // particles that left in the first phase
     PhaseTimes times_;

@@ -1,4 +1,5 @@
-// Which particles a probe counts: by species and by region, centres deciding. Glued ones are part of a wall.
+// Particles that a probe counts: by species, and by the region that contains the centre. Glued particles are part of a
+// wall.
 #pragma once
 
 #include "solver/machine/probe.hpp"

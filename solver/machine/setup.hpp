@@ -1,4 +1,4 @@
-// From a Spec to what an engine computes.
+// Conversion of a Spec to the setup of an engine.
 #pragma once
 
 #include "solver/machine/filling.hpp"
@@ -8,13 +8,13 @@
 
 namespace grainsweep::machine {
 
-/// Begin of each phase that has begun, and its end where it has ended, s.
+/// Begin and end of each phase, as far as it has begun or ended, s.
 struct PhaseTimes {
     std::vector<double> begin, end;
 };
 
-/// Returns the walls as they are in a phase: which are present, and how they move from now on. Motions of phases that
-/// have not begun never start.
+/// Returns the walls in a phase, with their presence and their motion from now on. Motions of phases that have not
+/// begun are left out.
 [[nodiscard]] std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times);
 /// Returns the setup at the start, in the first phase.
 [[nodiscard]] dem::Setup setup_of(const Spec& spec, const Filled& filled);
@@ -24,8 +24,8 @@ struct PhaseTimes {
 /// Returns the fastest impact to be expected: the fall from the top of the fillings and feeds to the lower end of the
 /// domain, with the fastest wall or feed, m/s.
 [[nodiscard]] double fastest_of(const Spec& spec);
-/// Returns a box around walls, fillings and feeds at all times, with two of the largest diameters around it. Throws
-/// std::invalid_argument where nothing bounds it along an axis whose ends are not given.
+/// Returns a box around walls, fillings and feeds at all times, enlarged by two of the largest diameters. Throws
+/// std::invalid_argument if nothing bounds it along an axis whose ends are not given.
 [[nodiscard]] geometry::Domain domain_around(const Spec& spec, const std::array<bool, 3>& given = {});
 
 }  // namespace grainsweep::machine

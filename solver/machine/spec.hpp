@@ -1,7 +1,7 @@
-// A machine as numbers: everything that a Run needs to know of an experiment. SI.
+// Machine as numbers in SI: the complete input of a Run.
 //
-// No text that needs an interpreter, no file, no expression: the reader of machine files resolves all of them for the
-// parameters of a case. Names serve messages and pictures only.
+// It contains no expression and no file: the reader of machine files resolves these for the parameters of a case. Names
+// are for messages and pictures only.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -20,30 +20,30 @@
 
 namespace grainsweep::machine {
 
-/// One kind of particles as the user tells them apart; several may be of one material.
+/// Species: particles that the user distinguishes. Several species may have one material.
 struct Species {
     std::string name;
-    std::uint8_t material = 0;          ///< of Spec::densities
+    std::uint8_t material = 0;          ///< index in Spec::densities
     double diameter = 0;                ///< D, m
     particles::SizeDistribution sizes;  ///< of d/D
 
     [[nodiscard]] double largest() const { return diameter * sizes.largest(); }
     [[nodiscard]] double smallest() const { return diameter * sizes.smallest(); }
-    /// Mean volume of a sphere, m3.
+    /// Returns the mean volume of a sphere, m3.
     [[nodiscard]] double mean_volume() const { return particles::sphere_volume(diameter) * sizes.moment(3); }
 };
 
-/// Phases by number, in which something is there; empty: in all.
+/// Numbers of the phases in which something is present; empty: all.
 using Phases = std::vector<std::size_t>;
 [[nodiscard]] bool holds(const Phases& phases, std::size_t phase);
 
-/// From the beginning of one phase to the end of another one.
+/// Range from the beginning of one phase to the end of another.
 struct WhileIn {
     std::size_t first = 0, last = 0;
 };
 
 struct WallMotion {
-    geometry::Motion motion;  ///< its start and end count, unless there are phases
+    geometry::Motion motion;  ///< its start and end apply, unless phases are given
     std::optional<WhileIn> phases;
 };
 
@@ -51,7 +51,7 @@ struct MachineWall {
     std::string name;
     geometry::Shape shape;
     std::vector<WallMotion> motions;
-    std::vector<dem::Material> materials;  ///< of its contacts with each material of the particles
+    std::vector<dem::Material> materials;  ///< one for its contacts with each material of the particles
     Phases during;
 };
 
@@ -69,7 +69,7 @@ struct Fill {
     bool glued = false;
 };
 
-/// Spheres one by one.
+/// Individually placed spheres.
 struct Placed {
     std::size_t species = 0;
     dem::Sphere sphere;
@@ -85,18 +85,18 @@ struct Feed {
     Phases during;
 };
 
-/// What ends a phase early.
+/// Conditions that end a phase early.
 struct AtRest {};
-/// No particle in the region.
+/// Condition: no particle is in the region.
 struct Empty {
     Region region;
 };
-/// The mass in the region has not changed for a time, s.
+/// Condition: the mass in the region has not changed for a time, s.
 struct FlowStops {
     Region region;
     double quiet = 0;
 };
-/// A measurement above or below a value.
+/// Condition: a measurement is above or below a value.
 struct Passes {
     std::size_t measure = 0;
     double value = 0;
@@ -106,14 +106,14 @@ using Until = std::variant<AtRest, Empty, FlowStops, Passes>;
 
 struct Phase {
     std::string name;
-    double duration = 0;             ///< s, at most; 0: one step
-    std::optional<double> expected;  ///< s, where it may end sooner; for predictions of cost alone
-    std::vector<Until> until;        ///< whatever holds first
+    double duration = 0;             ///< longest duration, s; 0: one step
+    std::optional<double> expected;  ///< s, if the phase may end early; used only to predict the cost
+    std::vector<Until> until;        ///< the first condition that holds ends the phase
     std::int64_t frames = 100;       ///< intervals between measurements
-    bool ends_at_frames = false;     ///< its conditions are looked at where probes look, and at no other time
+    bool ends_at_frames = false;     ///< its conditions are checked only at frames
 };
 
-/// Only at frames at which another measurement lies within bounds.
+/// Restriction to frames at which another measurement lies within bounds.
 struct While {
     std::size_t measure = 0;
     double low = 0, high = 0;
@@ -121,16 +121,16 @@ struct While {
 
 struct Measure {
     std::string name;
-    std::string probe;  ///< of probe_catalogue()
+    std::string probe;  ///< name in probe_catalogue()
     Options options;
-    std::string reduction;  ///< of reduction_catalogue()
+    std::string reduction;  ///< name in reduction_catalogue()
     Phases during;
     std::optional<std::pair<double, double>> shares;  ///< only values between these shares of the first one count
     std::vector<While> only;
-    std::optional<std::size_t> since;  ///< phase from whose beginning the times of a series count
+    std::optional<std::size_t> since;  ///< the times of a series are measured from the beginning of this phase
 };
 
-/// The first time at which a measurement is above or below a value.
+/// Result: first time at which a measurement is above or below a value.
 struct TimeOf {
     std::string name;
     std::size_t measure = 0;
@@ -138,7 +138,7 @@ struct TimeOf {
     bool above = true;
 };
 
-/// Calculated from other observables; what it needs may be absent, and then it is.
+/// Result calculated from other observables; absent if one of these is absent.
 struct Derived {
     std::string name;
     std::vector<std::string> needs;
@@ -159,7 +159,7 @@ struct Spec {
     std::vector<Measure> measures;
     std::vector<TimeOf> times;
     std::vector<Derived> derived;
-    std::vector<Warning> warnings;  ///< what the machine file warns of
+    std::vector<Warning> warnings;  ///< warnings about the machine file
     double time_step = 0;           ///< s
     dem::Method method;
 };

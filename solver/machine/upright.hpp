@@ -1,4 +1,4 @@
-// The particles that count, as a state with z upwards: what observables that have a floor and a top look at.
+// Selected particles as a state with z upwards, for observables that have a floor and a top.
 #pragma once
 
 #include "solver/machine/selection.hpp"
@@ -11,14 +11,14 @@ inline constexpr OptionSpec from_option{"from", OptionSpec::Kind::vector, "m",
                                         "the point from which it counts; default: the origin"};
 inline constexpr OptionSpec along_option{"along", OptionSpec::Kind::direction, "", "upwards; default: against gravity"};
 
-/// Returns the option "along"; against gravity where it is not given, z without gravity.
+/// Returns the option "along"; by default the direction against gravity, or z without gravity.
 [[nodiscard]] inline Vec3 up_of(const Sight& sight, const std::optional<Vec3>& along) {
     if (along) return *along;
     const double g = geometry::norm(sight.gravity);
     return g > 0 ? geometry::operator*(-1 / g, sight.gravity) : Vec3{0, 0, 1};
 }
 
-/// Options "of", "in", "from" and "along".
+/// View by the options "of", "in", "from" and "along".
 class Upright {
 public:
     explicit Upright(const Options& options)
@@ -26,7 +26,7 @@ public:
           from_(options.vector("from", {})),
           along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
 
-    /// Returns places from "from" and velocities of the particles that count.
+    /// Returns positions relative to "from", and velocities, of the selected particles.
     [[nodiscard]] dem::State state_of(const Sight& sight) const {
         using geometry::cross;
         const Vec3 up = up_of(sight, along_);

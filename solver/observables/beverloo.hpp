@@ -2,9 +2,9 @@
 //
 //     W = C rho_b sqrt(g) (D - k d)^(5/2),   C = 0.58, k = 1.4
 //
-// mass per time, bulk density rho_b = phi rho of a packing of volume fraction phi (Beverloo, Leniger & van de Velde
-// 1961, Chem. Eng. Sci. 15, 260; k for spheres as there). Cohesionless grains, round opening well above the size of a
-// grain and small against the hopper.
+// W: mass per time; rho_b = phi rho: bulk density of a packing of volume fraction phi (Beverloo, Leniger & van de Velde
+// 1961, Chem. Eng. Sci. 15, 260; k for spheres from there). Valid for cohesionless grains and a round opening, well
+// above the size of a grain and small compared with the hopper.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace grainsweep::observables {
 
-/// Grains per second through an opening of diameter `opening` (m); 0 where D <= k d.
+/// Returns the grains per second through an opening of diameter `opening` (m); 0 if D <= k d.
 [[nodiscard]] inline double beverloo_rate(double opening, double diameter, double packing_fraction, double gravity) {
     constexpr double c = 0.58, k = 1.4;
     const double free = opening - k * diameter;

@@ -1,7 +1,7 @@
-// What is measured of a powder under and behind a blade: pure functions of a state.
+// Observables of a powder under and behind a blade.
 //
-// x is the blade's direction, y across, z up; lengths in m. A particle is where its centre is, unless its surface is
-// meant. Counting, not averaging over volumes cut by planes: what LIGGGHTS post-processing and Wu (2020) do.
+// x is the blade's direction, y across, z up; lengths in m. The position of a particle is its centre, unless its
+// surface is mentioned. Particles are counted, not cut by planes, as in the post-processing of LIGGGHTS and Wu (2020).
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -15,80 +15,81 @@
 
 namespace grainsweep::observables {
 
-/// Sum of what the particles with centres at x < front carry; `carried` by id, all 1 to count them.
+/// Returns the sum of `carried`, by id, of the particles with centres at x < front; all 1 counts them.
 [[nodiscard]] double sum_behind(const dem::State& state, std::span<const double> carried, double front);
 
-/// The same over the centres with rear <= x < front and z <= height.
+/// Returns the same for centres with rear <= x < front and z <= height.
 [[nodiscard]] double sum_under(const dem::State& state, std::span<const double> carried, double rear, double front,
                                double height);
 
-/// Volume of the spheres whose centres have from <= x < to, m3.
+/// Returns the volume of the spheres whose centres have from <= x < to, m3.
 [[nodiscard]] double solid_volume(const dem::State& state, double from, double to);
 
-/// The same of those with low < z <= high, too.
+/// Returns the same for centres that also have low < z <= high.
 [[nodiscard]] double solid_volume(const dem::State& state, double from, double to, double low, double high);
 
-/// Volume of the parts of the spheres with low <= z <= high, over the centres with from <= x < to, m3. Spheres are cut
-/// by the planes: below z lies 2/3 r^3 + r^2 t - t^3/3 times pi of a sphere, t = z - z_centre within +-r.
+/// Returns the volume of the parts of spheres with low <= z <= high, for centres with from <= x < to, m3. Spheres are
+/// cut by the planes: the volume below z is pi (2/3 r^3 + r^2 t - t^3/3), t = z - z_centre within +-r.
 [[nodiscard]] double solid_between(const dem::State& state, double from, double to, double low, double high);
 
-/// Solid volume by patches of from <= x < to and one period in y, as near to squares of `side` as they divide it;
-/// by centres, x fastest, m3.
+/// Solid volume in patches of from <= x < to and one period in y, m3. Patches are nearly squares of `side`; a sphere
+/// belongs to the patch of its centre; x fastest.
 class Patches {
 public:
-    /// Periodic in y with period `width` from 0. to > from, side > 0.
+    /// `width`: period in y, from 0. to > from, side > 0.
     Patches(double from, double to, double width, double side);
 
     /// Adds `sign` times the volumes of the spheres.
     void add(const dem::State& state, double sign = 1);
-    /// Base area of one of them, m2.
+    /// Returns the base area of a patch, m2.
     [[nodiscard]] double area() const { return dx_ * dy_; }
     [[nodiscard]] std::size_t size() const { return along_ * across_; }
-    /// Standard deviation of their volumes, m3; of fewer than four NaN.
+    /// Returns the standard deviation of the volumes of the patches, m3; NaN for fewer than four patches.
     [[nodiscard]] double deviation() const;
 
 private:
     double from_, to_, width_, dx_ = 0, dy_ = 0;
     std::size_t along_ = 1, across_ = 1;
-    std::map<std::size_t, double> volume_;  ///< of patches with a sphere: as many as there are spheres at most
+    std::map<std::size_t, double> volume_;  ///< of patches with a sphere, so not more than spheres
 };
 
-/// Height of the uppermost sphere surface above the points of a square grid, seen from above; 0 where no sphere covers
-/// the point. The points fill from <= x < to and one period in y at a pitch of at most `pitch`.
+/// Relief: height of the uppermost sphere surface above the points of a square grid; 0 at points without a sphere. The
+/// points fill from <= x < to and one period in y at a pitch of at most `pitch`.
 class Relief {
 public:
-    /// Periodic in y with period `width` from 0. to > from, pitch > 0.
+    /// `width`: period in y, from 0. to > from, pitch > 0.
     Relief(const dem::State& state, double from, double to, double width, double pitch);
 
     [[nodiscard]] std::span<const double> heights() const { return heights_; }
-    /// Root mean square deviation of the heights from their mean (Sq of ISO 25178-2), m; NaN for a large grid of
-    /// which the spheres can cover less than half: of that only the covered points are kept.
+    /// Returns the root mean square deviation of the heights from their mean (Sq of ISO 25178-2), m. NaN for a large
+    /// grid of which the spheres can cover less than half, because only its covered points are stored.
     [[nodiscard]] double roughness() const;
-    /// Share of points no sphere covers.
+    /// Returns the share of points without a sphere.
     [[nodiscard]] double empty_share() const;
 
 private:
     std::int64_t points_ = 0;
     std::vector<double> heights_;
-    std::unordered_set<std::int64_t> covered_;  ///< where there are no heights_
+    std::unordered_set<std::int64_t> covered_;  ///< used instead of heights_
 };
 
-/// Sum and number of v_x in horizontal layers of equal thickness above `bottom`, over x in (from, to).
+/// Profile of v_x: sum and number in horizontal layers of equal thickness above `bottom`, for x in (from, to).
 struct VelocityProfile {
     std::vector<double> sum;            ///< m/s
-    std::vector<std::int64_t> samples;  ///< particles seen
+    std::vector<std::int64_t> samples;  ///< number of particles
 
     explicit VelocityProfile(std::size_t layers) : sum(layers, 0), samples(layers, 0) {}
     void add(const dem::State& state, double from, double to, double bottom, double thickness);
 };
 
-/// Returns the root mean square of the second differences v(k - 1) - 2 v(k) + v(k + 1) of a profile, where all three
-/// values exist (NaN: nowhere). It is 0 for a straight profile, sqrt(6) times the noise of independent values; NaN
-/// where no three neighbours have values.
+/// Returns the root mean square of the second differences v(k - 1) - 2 v(k) + v(k + 1) of a profile, for all k with
+/// three values. It is 0 for a straight profile, and sqrt(6) times the noise for independent values; NaN if no three
+/// neighbours have values.
 [[nodiscard]] double unevenness(std::span<const double> profile);
 
-/// Standard error of the mean of a correlated series from the spread of `blocks` means of consecutive, equally long
-/// blocks (batch means); NaN where the series is shorter than two per block. What does not fill a block is left out.
+/// Returns the standard error of the mean of a correlated series, from the means of `blocks` consecutive blocks of
+/// equal length (batch means). NaN if a block has fewer than two values. The remainder after the last full block is
+/// left out.
 [[nodiscard]] double block_standard_error(std::span<const double> series, std::size_t blocks);
 
 }  // namespace grainsweep::observables

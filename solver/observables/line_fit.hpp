@@ -14,10 +14,11 @@ namespace grainsweep::observables {
 struct Line {
     double slope = std::numeric_limits<double>::quiet_NaN();
     double height = std::numeric_limits<double>::quiet_NaN();    ///< at x = 0
-    double residual = std::numeric_limits<double>::quiet_NaN();  ///< root mean square of z from the line
+    double residual = std::numeric_limits<double>::quiet_NaN();  ///< root mean square distance in z from the line
 };
 
-/// NaN where fewer than two points differ in x; a slope of exactly 0 where all z are equal. Points (x, z).
+/// Returns the line through points (x, z). NaN if fewer than two points differ in x; slope exactly 0 if all z are
+/// equal.
 [[nodiscard]] inline Line fitted_line(std::span<const std::array<double, 2>> points) {
     const auto n = static_cast<double>(points.size());
     double xm = 0, zm = 0, xx = 0, xz = 0;

@@ -1,4 +1,4 @@
-// Contact loads of each particle: for pictures, and for following chains of force.
+// Contact loads of each particle, for pictures and force chains.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -8,15 +8,16 @@
 
 namespace grainsweep::observables {
 
-/// In the order of the state.
+/// Loads in the order of the state.
 struct ParticleLoads {
-    std::vector<dem::Vec3> force;      ///< N, sum over the contacts; zero for a sphere at rest but for its weight
+    std::vector<dem::Vec3> force;      ///< N, sum over the contacts; for a sphere at rest it balances the weight
     std::vector<double> largest;       ///< N, largest magnitude of a single contact's force
-    std::vector<double> overlap;       ///< m, of the deepest contact
-    std::vector<double> coordination;  ///< contacts, walls included
+    std::vector<double> overlap;       ///< m, largest of its contacts
+    std::vector<double> coordination;  ///< number of contacts, including walls
 };
 
-/// Contacts of an engine and the state it had with them. Frozen spheres bear what mobile ones press on them.
+/// Returns the loads from the contacts of an engine and the state at the same time. Frozen spheres get the loads of
+/// mobile ones.
 [[nodiscard]] ParticleLoads particle_loads(const dem::State& state, std::span<const dem::ContactForce> contacts);
 
 }  // namespace grainsweep::observables

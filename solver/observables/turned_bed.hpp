@@ -1,15 +1,15 @@
-// What is measured of a bed in a rotating drum: sums over frames in the plane across the drum's axis.
+// Observables of a bed in a rotating drum: sums over frames in the plane across the drum's axis.
 //
-// In the plane x runs across and z up; the drum turns from z to x, so that the bed is raised towards negative x; its
-// angles are positive. Without a view of its own the axis is y through the origin. Lengths in m. Volumes belong to the
-// centres of their spheres.
+// In the plane, x is horizontal and z is up. The drum rotates from z to x, so the bed is raised towards negative x; its
+// angles are positive. By default the axis is y through the origin. Lengths in m. The volume of a sphere counts at its
+// centre.
 //
-//     surface           per column of cells the height where the mean solid fraction falls through a level, seen from
-//                       above, linear between the cells' centres; a line is fitted through |x| <= 0.4 R
-//     flow              mean velocity down that line, in layers below it, within 2.5 D of the foot of the perpendicular
+//     surface           per column of cells the height at which the mean solid fraction falls through a level, from
+//                       above, linear between the cells' centres. A line is fitted through |x| <= 0.4 R
+//     flow              mean velocity down this line, in layers below it, within 2.5 D of the foot of the perpendicular
 //                       from the axis
-//     cover             share of the frames in which any sphere hides the cell's centre from a view along the axis:
-//                       what a photograph averaged over time shows of a drum with light behind it
+//     cover             share of the frames in which a sphere hides the cell's centre in a view along the axis. It
+//                       corresponds to a time-averaged photograph of a drum with light behind it
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -24,14 +24,14 @@
 
 namespace grainsweep::observables {
 
-/// A sphere in the plane: its centre from the axis, m, and its velocity, m/s.
+/// Sphere in the plane: its centre relative to the axis, m, and its velocity, m/s.
 struct SectionSphere {
     double x = 0, z = 0, vx = 0, vz = 0;
     double radius = 0;
 };
 using Section = std::vector<SectionSphere>;
 
-/// The plane across an axis; unit vectors.
+/// Plane across an axis; unit vectors.
 struct SectionView {
     dem::Vec3 through{};  ///< a point on the axis, m
     dem::Vec3 across{1, 0, 0}, up{0, 0, 1};
@@ -39,11 +39,11 @@ struct SectionView {
     [[nodiscard]] SectionSphere sphere(const dem::State& state, std::size_t i) const;
 };
 
-/// Returns all spheres as a view shows them.
+/// Returns all spheres projected to the plane of the view.
 [[nodiscard]] Section section_of(const dem::State& state, const SectionView& view = {});
 
-/// Square cells in the plane, their edges at whole multiples of `cell` from the axis, covering the drum. Numbered from
-/// the least x and z, x fastest.
+/// Grid of square cells that cover the drum, with edges at whole multiples of `cell` from the axis. Numbered from the
+/// smallest x and z, x fastest.
 struct SectionGrid {
     double cell = 0;
     std::int64_t count = 0;  ///< along each axis; even
@@ -52,18 +52,19 @@ struct SectionGrid {
     SectionGrid(double radius, double its_cell);
 
     [[nodiscard]] std::size_t cells() const { return static_cast<std::size_t>(count * count); }
-    /// Of the centres of the k-th column or row.
+    /// Returns the coordinate of the centres of the k-th column or row.
     [[nodiscard]] double centre(std::int64_t k) const {
         return (static_cast<double>(k) + 0.5 - 0.5 * static_cast<double>(count)) * cell;
     }
     [[nodiscard]] std::size_t number(std::int64_t column, std::int64_t row) const {
         return static_cast<std::size_t>(row * count + column);
     }
-    /// The column of a coordinate; it may lie beyond the grid.
+    /// Returns the column of a coordinate, which may lie beyond the grid.
     [[nodiscard]] std::int64_t column(double x) const;
 };
 
-/// Where `values` fall through `level` from above, in each column whose centre lies within `reach` of the axis.
+/// Returns the points where `values` fall through `level`, from above, in each column whose centre lies within `reach`
+/// of the axis.
 [[nodiscard]] std::vector<std::array<double, 2>> falling_through(const SectionGrid& grid,
                                                                  std::span<const double> values, double level,
                                                                  double reach);
@@ -76,7 +77,7 @@ public:
 
     [[nodiscard]] const SectionGrid& grid() const { return grid_; }
     [[nodiscard]] std::vector<double> mean() const;
-    /// The line through the surface; NaN: too few columns hold powder.
+    /// Returns the line through the surface; NaN: too few columns contain powder.
     [[nodiscard]] Line surface_line(double radius) const;
 
     static void fields(auto& s, auto&& visit) { visit(s.volume_), visit(s.frames_); }
@@ -98,7 +99,7 @@ public:
         double surface_speed = 0;  ///< m/s: centres 0 to 1 D below the line; NaN: none
         double depth = 0;          ///< D: where the mean velocity changes sign; NaN: nowhere
     };
-    /// Below a line of the surface.
+    /// Returns the profile below a line of the surface.
     [[nodiscard]] DownhillProfile below(const Line& surface) const;
 
     static void fields(auto& s, auto&& visit) { visit(s.vx_), visit(s.vz_), visit(s.centres_); }
@@ -130,8 +131,8 @@ private:
     std::vector<char> now_;  // scratch
 };
 
-/// Mean tangential speed, in the drum's sense, of the spheres nearer than a tenth of D to the lower half of the wall;
-/// nothing: there is none. m/s.
+/// Returns the mean tangential speed, in the drum's sense, of the spheres nearer than a tenth of D to the lower half of
+/// the wall, m/s; empty: there are none.
 [[nodiscard]] std::optional<double> wall_layer_speed(std::span<const SectionSphere> spheres, double radius,
                                                      double diameter);
 

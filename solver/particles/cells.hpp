@@ -1,9 +1,9 @@
-// Cells that sort particles so that neighbours in space are neighbours in memory.
+// Sorting of particles by cells, so that neighbours in space are neighbours in memory.
 //
-// Particles are sorted into levels by size; the radii of a level differ by less than a factor of two. Each level has
-// its own grid. Its cells are at least as wide as the reach of a pair whose larger partner belongs to the level:
+// Particles are divided into levels by size; the radii of a level differ by less than a factor of two. Each level has
+// its own grid, whose cells are at least as wide as the range of a pair whose larger partner belongs to the level:
 //     edge >= 2 R_max(level) + skin.
-// The partners of that level are therefore within 27 cells of a particle, whatever its own size. The sorted
+// Partners of this level therefore lie within 27 cells around a particle of any size. The sorted
 // order is (level from small to large, cell, previous order); equal spheres make one level.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace grainsweep::particles {
 using geometry::Domain;
 using geometry::Vec3;
 
-/// Radii of all particles: one each, or one for all where `each` is empty.
+/// Radii of all particles: one each, or one for all if `each` is empty.
 struct Radii {
     double common = 0;
     std::span<const double> each;
@@ -43,8 +43,7 @@ public:
         }
     };
 
-    /// Sorts the particles named in `among` (positions inside periodic faces): order()[k] is the particle
-    /// that comes k-th.
+    /// Sorts the particles in `among` (positions inside periodic faces): order()[k] is the k-th particle.
     void sort(std::span<const Vec3> position, std::span<const std::uint32_t> among, const Radii& radii, double skin,
               const Domain& domain);
 

@@ -1,4 +1,4 @@
-// All pairs of points closer than a range, each once: for measuring a state, not for stepping one.
+// All pairs of points closer than a range, each once, for measurements of a state (not for time steps).
 #pragma once
 
 #include "solver/particles/neighbour_list.hpp"

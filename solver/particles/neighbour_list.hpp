@@ -1,9 +1,9 @@
-// Verlet's half list: for each particle i, in cell order, its later partners j > i whose surfaces are nearer
-// than the skin:  |x_i - x_j| < R_i + R_j + skin.                        (Verlet 1967, Phys. Rev. 159, 98)
+// Verlet's half list: for each particle i, in cell order, the partners j > i whose surfaces are nearer than the skin:
+// |x_i - x_j| < R_i + R_j + skin. (Verlet 1967, Phys. Rev. 159, 98)
 //
-// Every contact is on the list as long as no particle has moved farther than skin/2 since it was built, for
-// two surfaces approach by at most the sum of two displacements.
-// An entry names j and its periodic image, 27 + 5 bits; the branch vector is x_i - (x_j + image shift).
+// Every contact is in the list as long as no particle has moved farther than skin/2 since it was built, because two
+// surfaces approach by at most the sum of two displacements. An entry has j and its periodic image, 27 + 5 bits; the
+// branch vector is x_i - (x_j + image shift).
 #pragma once
 
 #include "solver/particles/cells.hpp"
@@ -28,12 +28,13 @@ struct Neighbour {
 
 class NeighbourList {
 public:
-    /// Particles must already stand in the order of `cells`. `pair_matters(i, j)` false: never listed.
+    /// Builds the list. Particles must be in the order of `cells`. Pairs with `pair_matters(i, j)` false are not
+    /// listed.
     template <class PairMatters>
     void build(const Cells& cells, std::span<const Vec3> position, const Radii& radii, double skin,
                const Domain& domain, PairMatters&& pair_matters);
 
-    /// The same list from all pairs, in any order of particles; partners ascending. For tests.
+    /// Builds the same list from all pairs, for any order of particles; partners ascending. For tests.
     void build_by_brute_force(std::span<const Vec3> position, const Radii& radii, double skin, const Domain& domain);
 
     [[nodiscard]] std::size_t particles() const { return first_.empty() ? 0 : first_.size() - 1; }
@@ -47,7 +48,7 @@ public:
         out.put(first_);
         out.put(entries_);
     }
-    /// Throws std::invalid_argument for what is no list of `particles` particles.
+    /// Restores a list. Throws std::invalid_argument if it is no list of `particles` particles.
     template <class Archive>
     void restore(Archive& in, std::size_t particles) {
         in.get(first_);
@@ -90,7 +91,7 @@ void NeighbourList::build(const Cells& cells, std::span<const Vec3> position, co
             const auto c = grid.cell(xi);
             for (std::int32_t dz = -1; dz <= 1; ++dz)
                 for (std::int32_t dy = -1; dy <= 1; ++dy) {
-                    // A cell beyond a periodic face is the one at the other end, one period away.
+                    // A cell beyond a periodic face is the cell at the other end, displaced by a period.
                     std::uint32_t image = 0;
                     const auto beyond = [&](std::int32_t& cell, std::size_t axis, std::uint32_t stride) {
                         const std::int32_t count = grid.count[axis];

@@ -1,12 +1,12 @@
 // Random close packings of equal spheres in a periodic cube.
 //
-// N points fall uniformly into the cube; the harmonic overlap energy E = sum_{r < 1} (1 - r)^2 / 2 over the
-// nearest images (lengths in diameters) is then minimised by FIRE (Bitzek, Koskinen, Gaehler, Moseler &
-// Gumbsch, Phys. Rev. Lett. 97, 170201, 2006) until no pair overlaps by more than the tolerance. Below random
-// close packing (about 0.64) that state exists and is free of force: neighbours just touch, nothing is loaded.
+// N points are uniformly random in the cube. FIRE (Bitzek, Koskinen, Gaehler, Moseler & Gumbsch, Phys. Rev. Lett. 97,
+// 170201, 2006) then minimises the harmonic overlap energy E = sum_{r < 1} (1 - r)^2 / 2 over nearest images (lengths
+// in diameters), until no overlap exceeds the tolerance. Below random close packing (about 0.64) this state exists and
+// is free of force: neighbours just touch.
 //
-// Positions are 32-bit fixed-point numbers, one turn of the integer per edge: differences are exact and
-// wrap to the nearest image by themselves; one step of the grid is edge/2^32 (2.3e-8 diameters at edge 100).
+// Positions are 32-bit fixed-point numbers with 2^32 units per edge, so differences are exact and wrap to the nearest
+// image. The unit is edge/2^32 (2.3e-8 diameters at edge 100).
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace grainsweep::particles {
 
 struct PackingRequest {
     double edge = 20;         ///< of the cube, diameters; 5 to 400
-    double fraction = 0.62;   ///< wanted volume fraction, 0.05 to 0.635; what fits in whole spheres is exact
+    double fraction = 0.62;   ///< wanted volume fraction, 0.05 to 0.635, up to the rounding to whole spheres
     std::uint64_t seed = 1;   ///< of the first points
     double tolerance = 2e-5;  ///< largest overlap left, diameters; at least 5e-6
 };
@@ -33,22 +33,22 @@ struct Packing {
     int iterations = 0;                            ///< of the minimiser
 };
 
-/// Number of spheres: round(6 fraction edge^3 / pi).
+/// Returns the number of spheres: round(6 fraction edge^3 / pi).
 [[nodiscard]] std::int64_t sphere_count(const PackingRequest& request);
 
-/// The packing of a request: a pure function of it, the same bits on every processor.
-/// Throws std::invalid_argument on a request out of range and when the tolerance is not reached.
+/// Returns the packing of a request, with the same bits on every processor. Throws std::invalid_argument if the request
+/// is out of range or the tolerance is not reached.
 [[nodiscard]] Packing random_close_packing(const PackingRequest& request);
 
-/// Canonical text of what determines the packing, with the revision of the algorithm.
+/// Returns a canonical text of the data that determine the packing, with the revision of the algorithm.
 [[nodiscard]] std::string packing_key(const PackingRequest& request);
 
-/// A packing as bytes and back, bit for bit. decode throws std::invalid_argument on anything else.
+/// Convert a packing to bytes and back with all bits. decode throws std::invalid_argument for other bytes.
 [[nodiscard]] std::vector<std::byte> encode(const Packing& packing);
 [[nodiscard]] Packing decode_packing(std::span<const std::byte> bytes);
 
-/// Reads text with the header x,y,z and one centre a line, diameters, in [0, edge]. Overlaps are measured
-/// between the points as they are (no images). Throws std::invalid_argument naming the line that is wrong.
+/// Reads text with the header x,y,z and one centre per line, in diameters, in [0, edge]. Overlaps are measured without
+/// images. Throws std::invalid_argument with the number of an invalid line.
 [[nodiscard]] Packing read_packing(std::string_view csv, double edge);
 
 }  // namespace grainsweep::particles

@@ -1,7 +1,7 @@
 // Contact histories of touching pairs, stored in the order of the neighbour list.
 //
-// When the list is rebuilt and the particles are sorted anew, a memory follows its pair; antisymmetric
-// quantities (measured from j to i) change sign when i and j swap.
+// When the list is rebuilt and the particles are sorted, a memory moves with its pair. Antisymmetric quantities (from j
+// to i) change sign when i and j are exchanged.
 #pragma once
 
 #include "solver/particles/neighbour_list.hpp"
@@ -13,19 +13,19 @@
 
 namespace grainsweep::particles {
 
-/// Index of a particle that is no longer there.
+/// Index of a removed particle.
 inline constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
 
 class PairMemory {
 public:
-    /// Factor of every component where the particles of a pair change places.
+    /// `exchanged`: factor of every component when the particles of a pair are exchanged.
     explicit PairMemory(std::vector<double> exchanged) : exchanged_(std::move(exchanged)) {}
 
-    std::vector<double> value;       ///< all components of a list entry, then those of the next; zero where not `live`
+    std::vector<double> value;       ///< all components of one list entry, then of the next; zero if not `live`
     std::vector<std::uint8_t> live;  ///< 1: the pair touched at the last evaluation
 
     [[nodiscard]] std::size_t components() const { return exchanged_.size(); }
-    /// Values of `old` entries move to the same pairs of `fresh`; fresh_index[i] is the new index of old i.
+    /// Moves the values of `old` entries to the same pairs of `fresh`; fresh_index[i] is the new index of old i.
     void carry(const NeighbourList& old, const NeighbourList& fresh, std::span<const std::uint32_t> fresh_index);
 
 private:

@@ -44,7 +44,7 @@ struct Particles {
         for_each_column(*this, [n](auto& column) { column.resize(n); });
     }
 
-    /// Particle order[k] becomes particle k; those not named are gone.
+    /// Makes particle order[k] particle k; particles not in `order` are removed.
     void reorder(std::span<const std::uint32_t> order) {
         for_each_column(*this, [order](auto& column) {
             std::remove_reference_t<decltype(column)> fresh(order.size());

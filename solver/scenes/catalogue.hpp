@@ -1,4 +1,4 @@
-// One line per scene: the function that describes it.
+// Functions that describe the scenes, one line per scene.
 #pragma once
 
 #include "solver/scenes/scene.hpp"

@@ -1,12 +1,12 @@
-// The edges of a box, as pictures of several scenes show it.
+// Edges of a box, for pictures of several scenes.
 #pragma once
 
 #include "solver/scenes/values.hpp"
 
 namespace grainsweep {
 
-/// Adds the eight corners and twelve edges of the box; returns the index of the corner `low`. Corner c lies at the high
-/// end of axis a where bit a of c - that index is set.
+/// Adds the eight corners and twelve edges of the box; returns the index of the corner `low`. A corner lies at the high
+/// end of axis a if bit a of its index minus the returned index is set.
 std::int32_t add_box(const std::array<double, 3>& low, const std::array<double, 3>& high, WallSurface& surface);
 
 }  // namespace grainsweep

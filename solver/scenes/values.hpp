@@ -1,7 +1,7 @@
 // Plain values that campaigns and scenes exchange; standard library only.
 //
-// A scene declares what it takes (ParameterSpec) and what it measures (ObservableSpec); a case is a map
-// from parameter names to values (Inputs). Everything is in SI units unless a unit is named.
+// A scene declares its parameters (ParameterSpec) and its observables (ObservableSpec). A case is a map from parameter
+// names to values (Inputs). All values are in SI units unless a unit is named.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@
 
 namespace grainsweep {
 
-/// A parameter's value: a real number, a count, or a word.
+/// Value of a parameter: a real number, a count, or a word.
 using Value = std::variant<double, std::int64_t, std::string>;
 
 /// Inputs of a case: parameter name -> value, sorted by name, SI.
 using Inputs = std::map<std::string, Value, std::less<>>;
 
-/// Allowed numbers: low <= x <= high, an end excluded where it is open.
+/// Allowed numbers: low <= x <= high, without an open end.
 struct Interval {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
@@ -36,23 +36,24 @@ struct Interval {
     }
 };
 
-/// Allowed words of a parameter whose values are words. With `file_allowed`, any other word names a file
-/// beside the campaign file, and its contents (not its name) are part of the question.
+/// Allowed words of a parameter. With `file_allowed`, any other word is the name of a file beside the campaign file;
+/// its contents (not its name) are part of the question.
 struct Words {
     std::vector<std::string> allowed;
     bool file_allowed = false;
-    /// Throws std::invalid_argument with a sentence where the contents of a file are none of this kind; may be empty.
+    /// Check of a file's contents, which throws std::invalid_argument with a sentence if they are invalid; may be
+    /// empty.
     std::function<void(std::string_view contents)> check_file = {};
 };
 
-/// A file given where a word may name one travels as the value "file:<hash of its contents>:<absolute path>".
-/// Only the hash is identity: the same contents elsewhere are the same question.
+/// File as the value of a parameter, in the form "file:<hash of its contents>:<absolute path>". Only the hash
+/// identifies it: the same contents in another place are the same question.
 struct FileWord {
     std::string_view hash;  ///< 32 hexadecimal digits
     std::string_view path;
 };
 
-/// The parts of a word that is a file; none for any other word.
+/// Returns the parts of a word that is a file; empty for any other word.
 [[nodiscard]] inline std::optional<FileWord> file_word(std::string_view word) {
     constexpr std::string_view prefix = "file:";
     constexpr std::size_t digits = 32;
@@ -61,12 +62,12 @@ struct FileWord {
     return FileWord{word.substr(prefix.size(), digits), word.substr(prefix.size() + digits + 1)};
 }
 
-/// What stands in the files that inputs name: parameter name -> contents. A scene opens no file; its caller
-/// reads them.
+/// Contents of the files that inputs name: parameter name -> contents. The caller of a scene reads the files; the scene
+/// opens none.
 using Files = std::map<std::string, std::string, std::less<>>;
 
-/// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words` / a file).
-/// A campaign that gives a parameter without effect on any of its cases is refused.
+/// Condition under which a parameter has an effect: `other` can be zero, non-zero, one of `words`, or a file. A
+/// campaign is refused if it sets a parameter that has no effect in any of its cases.
 struct Relevance {
     enum class Condition { zero, nonzero, is_word, is_file };
     std::string other;
@@ -74,7 +75,7 @@ struct Relevance {
     std::vector<std::string> words;
 };
 
-/// One input of a scene. The type of `default_value` is the type of the parameter.
+/// Input of a scene. The type of `default_value` is the type of the parameter.
 struct ParameterSpec {
     std::string name;
     std::string unit;  ///< "1" for a pure number, "" for a word
@@ -86,33 +87,33 @@ struct ParameterSpec {
 
 enum class Shape { scalar, series, profile };
 
-/// One thing a scene measures. A series has a time per value, a profile a bin coordinate per value
-/// (and a time where it is measured more than once).
+/// Observable of a scene. A series has a time per value; a profile has a bin coordinate per value, and a time if it is
+/// measured more than once.
 struct ObservableSpec {
     std::string name;
     std::string unit;
     std::string meaning;
     Shape shape = Shape::scalar;
-    std::string over = {};    ///< what it runs along, with its unit: of a series the time, of a profile the bin
-    std::string absent = {};  ///< of a scalar: why a completed case can be without a value; empty: none is
+    std::string over = {};    ///< coordinate with unit: of a series the time, of a profile the bin
+    std::string absent = {};  ///< of a scalar: why a completed case can lack a value; empty: never
 };
 
-/// One entry of a series or profile; what does not apply is NaN.
+/// Entry of a series or profile; unused members are NaN.
 struct Sample {
     double time = std::numeric_limits<double>::quiet_NaN();
     double bin = std::numeric_limits<double>::quiet_NaN();
     double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What a case answered. A scalar that is undefined for the case is absent or NaN, never invented.
+/// Answer of a case. A scalar that is undefined for the case is absent or NaN.
 struct Observations {
     std::map<std::string, double, std::less<>> scalars;
     std::map<std::string, std::vector<Sample>, std::less<>> series;  ///< series and profiles
 };
 
-/// A wall in a picture, where it stands at that moment: triangles, lines, or both.
+/// Wall in a picture, at its place at that moment: triangles, lines, or both.
 struct WallSurface {
-    std::string name;                                    ///< letters, digits and underscores, its own in the picture
+    std::string name;                                    ///< letters, digits and underscores; unique in the picture
     std::vector<std::array<double, 3>> corners;          ///< in the picture's unit of length
     std::vector<std::array<std::int32_t, 3>> triangles;  ///< of corners
     std::vector<std::array<std::int32_t, 2>> edges;      ///< lines between corners
@@ -120,8 +121,8 @@ struct WallSurface {
 
 /// Quantities of a fluid in the cells of a rectilinear grid, x fastest.
 struct FlowField {
-    std::string name;                          ///< as of a wall
-    std::array<std::vector<double>, 3> faces;  ///< between the cells of each axis, both ends among them; ascending
+    std::string name;                          ///< as for a wall
+    std::array<std::vector<double>, 3> faces;  ///< faces of the cells of each axis, including both ends; ascending
     std::map<std::string, std::vector<double>, std::less<>> scalars;
     std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
 
@@ -132,7 +133,7 @@ struct FlowField {
     }
 };
 
-/// What a scene shows at a moment: named columns of its particles, and what surrounds them.
+/// Picture of a scene at a moment: named columns of its particles, and their surroundings.
 struct Snapshot {
     std::vector<std::array<double, 3>> positions;  ///< one per particle
     std::map<std::string, std::vector<double>, std::less<>> scalars;
@@ -141,27 +142,27 @@ struct Snapshot {
     std::vector<FlowField> fields;
     std::map<std::string, std::string, std::less<>> units;  ///< of columns and quantities; absent: a pure number
     std::string length_unit = "m", time_unit = "s";
-    std::array<double, 3> periods{};  ///< lengths after which the picture repeats itself along an axis; 0: never
+    std::array<double, 3> periods{};  ///< periods along the axes; 0: not periodic
 };
 
-/// Where the time went. Not part of the answer, never compared.
+/// Computing time of a case. It is no part of the answer and is never compared.
 struct Cost {
     double wall_seconds = 0;
     double cpu_seconds = 0;
     double particle_steps = 0;
     std::map<std::string, double, std::less<>> phases;  ///< seconds by phase name
-    /// That computed it, a mean over the time it was advanced; NaN: it was not, or by none of ours.
+    /// Mean number of threads during the computation; NaN: not computed, or computed by another program.
     double threads = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Inputs that make nonsense of one another although each is within its bounds: the case can be computed, and its
-/// answer says little.
+/// Warning about a questionable combination of inputs, each within its bounds: the case can be computed, but its answer
+/// has little meaning.
 struct Warning {
-    std::string kind;      ///< one for all cases with the same trouble: "gap above the layer"
+    std::string kind;      ///< same for all cases with the same problem: "gap above the layer"
     std::string sentence;  ///< with this case's numbers
 };
 
-/// An answer known without simulation, with the proof in words.
+/// Answer known without simulation, with the proof in words.
 struct ProvenAnswer {
     std::string reason;
     Observations observations;

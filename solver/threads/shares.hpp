@@ -1,8 +1,8 @@
-// How much of the work each thread should have so that all end at the same time.
+// Shares of the work of each thread, so that all threads end at the same time.
 //
-// Cores are not alike: some are built for less power, some share their arithmetic with another program or with another
-// thread of this one. A thread that took t where all took t' on average gets (t'/t)^0.7 of its share: less than all of
-// the difference, because times scatter and part of them does not depend on the share.
+// Cores differ: some are built for less power, some share their arithmetic units with another program or thread. A
+// thread that needs the time t, while the average is t', gets (t'/t)^0.7 times its share. The exponent is below 1
+// because times scatter and a part of them does not depend on the share.
 #pragma once
 
 #include <span>
@@ -12,13 +12,13 @@ namespace grainsweep {
 
 class Shares {
 public:
-    /// Equal ones.
+    /// Makes equal shares.
     explicit Shares(int parts = 1);
 
-    /// Of the whole work, which is 1.
+    /// Returns the share of a part; the whole work is 1.
     [[nodiscard]] double of(int part) const { return share_[static_cast<std::size_t>(part)]; }
-    /// `seconds`: that each part took; or empty, then nothing moves. Shares stay between half of an equal one and twice
-    /// it, each before they are made to add up to 1.
+    /// Adapts the shares. `seconds`: time of each part; empty: no change. Each share is limited to between half and
+    /// twice an equal share; then all are scaled to add to 1.
     void move(std::span<const double> seconds);
 
 private:

@@ -1,4 +1,4 @@
-// A range of indices cut into slabs, one for each thread of a case.
+// Range of indices divided into slabs, one for each thread of a case.
 #pragma once
 
 #include "solver/threads/thread_pool.hpp"
@@ -8,13 +8,13 @@
 
 namespace grainsweep {
 
-/// Threads that a computation and its parts have in common; copies share them. Work on slabs is done by all of them at
-/// once and must not throw. What is computed must not depend on where the cuts are.
+/// Threads shared by a computation and its parts; copies share them. All threads work on the slabs in parallel. The
+/// work must not throw, and its result must not depend on the division.
 class Slabs {
 public:
-    /// One slab: everything is done by the calling thread.
+    /// Makes one slab, for the calling thread.
     Slabs() = default;
-    /// The calling thread is among them; at least one.
+    /// Makes slabs for `threads` threads, including the calling one; at least one.
     explicit Slabs(int threads) : pool_(threads > 1 ? std::make_shared<ThreadPool>(threads) : nullptr) {}
 
     [[nodiscard]] int count() const { return pool_ == nullptr ? 1 : pool_->size(); }
@@ -27,7 +27,7 @@ public:
         else
             pool_->run(work);
     }
-    /// Calls work(from, to) for parts of first ... last, as long as one another, that hold every index once.
+    /// Calls work(from, to) for parts of equal length that cover first ... last.
     template <class Work>
     void over(std::ptrdiff_t first, std::ptrdiff_t last, const Work& work) const {
         const std::ptrdiff_t length = last - first + 1, parts = count();

@@ -1,4 +1,4 @@
-// Threads that share the parts of one piece of work, again and again.
+// Pool of threads that share the parts of one piece of work, repeatedly.
 #pragma once
 
 #include <atomic>
@@ -11,50 +11,52 @@
 
 namespace grainsweep {
 
-/// As many threads as a piece of work has parts, the calling one among them. Each begins with its own part, which its
-/// core's caches know, and goes on with parts that none has begun: where something else keeps the cores busy, the
-/// calling thread does alone what the others do not come to do.
+/// Pool with one thread per part, including the calling thread. Each thread begins with its own part, whose data is in
+/// its core's caches, and continues with parts that no thread has begun. If other programs use the cores, the calling
+/// thread does the parts of delayed threads.
 class ThreadPool {
 public:
-    /// At least one; starts one fewer, or as many as the system gives: the parts are as many all the same.
+    /// `threads`: at least one. Starts one fewer, or as many as the system permits; the number of parts does not
+    /// change.
     explicit ThreadPool(int threads);
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;
     ~ThreadPool();
 
     [[nodiscard]] int size() const { return size_; }
-    /// Calls work(k) once for every part k, 0 to size() - 1, on some thread; returns when all have ended. What was
-    /// written before, the parts may read; what they write, the caller may read after. The work must not throw.
+    /// Calls work(k) once for every part k, 0 to size() - 1, on some thread; returns when all have ended. The parts see
+    /// all earlier writes of the caller, and the caller sees all writes of the parts. The work must not throw.
     template <class Work>
     void run(const Work& work) noexcept {
         begin_and_end(work, false);
     }
-    /// As run(), for parts that should end at the same time: see seconds().
+    /// Does the same as run() and measures the times of the parts: see seconds().
     template <class Work>
     void run_timed(const Work& work) noexcept {
         begun_at_ = clock_seconds();
         ++timed_rounds_;
         begin_and_end(work, true);
     }
-    /// Seconds from the beginning of a round of run_timed() to the end of each part: the geometric mean, on which a
-    /// round that the system interrupts has little weight, of the rounds in which the thread whose own the part is did
-    /// it. Empty where some part has fewer than `rounds` of them.
+    /// Returns the mean seconds from the beginning of a round of run_timed() to the end of each part. It is the
+    /// geometric mean, which reduces the weight of interrupted rounds. Only rounds in which a part was done by its own
+    /// thread count. Empty if a part has fewer than `rounds` such rounds.
     [[nodiscard]] std::vector<double> seconds(std::int64_t rounds) const;
-    /// Rounds of run_timed() since forget_times().
+    /// Returns the rounds of run_timed() since forget_times().
     [[nodiscard]] std::int64_t timed_rounds() const { return timed_rounds_; }
     void forget_times();
-    /// Of a clock that only goes forward. Times decide which thread computes what, never what is computed.
+    /// Returns the seconds of a monotonic clock. Times affect the division of work between threads, but not its
+    /// results.
     [[nodiscard]] static double clock_seconds();
 
 private:
-    /// The round in which a part was last begun, on a cache line of its own.
+    /// Last round in which a part was begun, on a cache line of its own.
     struct alignas(64) Part {
         std::atomic<unsigned> begun = 0;
     };
-    /// Of timed rounds; written by the part's own thread during a round, and by the caller between rounds.
+    /// Times of a part; written by the part's own thread during a round, and by the caller between rounds.
     struct alignas(64) Times {
         std::int64_t rounds = 0;
-        double logarithms = 0;  ///< of seconds, their sum
+        double logarithms = 0;  ///< sum of the logarithms of seconds
     };
 
     template <class Work>
@@ -78,7 +80,7 @@ private:
     void wake() noexcept;
 
     int size_;
-    bool spins_;  ///< not where threads share cores
+    bool spins_;  ///< false if threads share cores
     void (*work_)(const void*, int) = nullptr;
     const void* of_ = nullptr;
     bool timed_ = false;

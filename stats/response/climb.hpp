@@ -1,4 +1,4 @@
-// Maximum of a smooth function within bounds by L-BFGS (Nocedal 1980; Liu & Nocedal 1989; NLopt's LD_LBFGS).
+// Maximiser of a smooth function within bounds: L-BFGS (Nocedal 1980; Liu & Nocedal 1989; NLopt's LD_LBFGS).
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace grainsweep::stats::response {
 
-/// Value at a point and its gradient there; minus infinity where it has none.
+/// Function that returns its value at a point and sets the gradient; minus infinity where it is undefined.
 using Ascent = std::function<double(const Eigen::VectorXd& at, Eigen::VectorXd& gradient)>;
 
 struct Bounds {
@@ -19,8 +19,8 @@ struct Climbed {
     Eigen::VectorXd at;
 };
 
-/// The best point that the search looked at: L-BFGS may end on a worse one. `from`, with minus infinity, where no point
-/// has a value. Ends where a step gains less than `tolerance`, or after `most_looks`.
+/// Returns the best point of the search, because L-BFGS may end at a worse one. Returns `from` with minus infinity if
+/// no point has a value. Ends when a step gains less than `tolerance`, or after `most_looks` evaluations.
 [[nodiscard]] Climbed climb(const Ascent& function, const Eigen::VectorXd& from, const Bounds& bounds, double tolerance,
                             int most_looks);
 

@@ -1,16 +1,17 @@
-// Hyperparameters of a probability (expectation.hpp) that are likely after its trials, with their weights.
+// Likely hyperparameters of a probability (expectation.hpp) given its trials, with their weights.
 //
 // theta = (log l_1, ..., log l_d, log s^2) has the density
 //
 //   p(theta | trials) ~ evidence(theta) prod_j N(log l_j | 0, 1.5^2) N(log s^2 | log 400, 2^2)
 //
-// A large s stands for a sharp border. Its maximum is climbed to from the two best of eight Sobol starts. About the
-// maximum stand two places on each axis of the curvature there, sqrt(m + 2) widths away, m = d + 1. The weights
+// A large s means a sharp border. The maximum of the density is searched from the two best of eight Sobol starts. Two
+// places lie on each axis of the curvature at the maximum, at a distance of sqrt(m + 2) widths, m = d + 1. The weights
 //
 //   2/(m + 2) of the maximum, 1/(2 (m + 2)) of each other place
 //
-// give a normal density its mean, variance and E r^4 (Julier & Uhlmann 2004, Proc. IEEE 92, 401). Each place is
-// multiplied by the ratio of the density there to the normal one, at most e^2; then weights are divided by their sum.
+// give a normal density its mean, variance and E r^4 (Julier & Uhlmann 2004, Proc. IEEE 92, 401). Each weight is
+// multiplied by the ratio of the density to the normal density at its place, at most e^2. Then the weights are divided
+// by their sum.
 #pragma once
 
 #include "stats/response/expectation.hpp"
@@ -26,8 +27,8 @@ struct LikelyHyperparameters {
 
 enum class Wanted { maximum, places_about_it };
 
-/// Finds the maximum, first in the list, and where wanted the places about it. Empty where the equations are singular
-/// at every start. Nothing is drawn.
+/// Returns the maximum and then, on request, the places around it. Empty if the equations are singular at every start.
+/// No random numbers are used.
 [[nodiscard]] std::vector<LikelyHyperparameters> likely_hyperparameters(const Trials& trials, Wanted wanted);
 
 }  // namespace grainsweep::stats::response

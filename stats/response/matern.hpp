@@ -1,9 +1,9 @@
-// The kernel of the response model: Matern 5/2 of one anisotropic distance (Rasmussen & Williams 2006, eq. 4.17).
+// Kernel of the response model: Matern 5/2 of one anisotropic distance (Rasmussen & Williams 2006, eq. 4.17).
 //
 //   C(r) = (1 + sqrt(5) r + 5/3 r^2) exp(-sqrt(5) r),   dC/d(r^2) = -5/6 (1 + sqrt(5) r) exp(-sqrt(5) r)
 //
-// The derivative by r^2 is finite at r = 0, so gradients need no special case there. Distances are formed from
-// differences, not from scalar products: coinciding points have exactly C = 1.
+// The derivative by r^2 is finite at r = 0, so gradients need no special case there. Distances are computed from
+// differences, not from scalar products, so coinciding points have exactly C = 1.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,27 +19,27 @@ struct Hyperparameters {
 
     [[nodiscard]] double signal() const;
     [[nodiscard]] double noise() const;
-    /// L^-1 U: r = |map (x - x')|.
+    /// Returns L^-1 U: r = |map (x - x')|.
     [[nodiscard]] Eigen::MatrixXd map() const;
 };
 
-/// Points in the space where the distance is Euclidean: row i is map x_i.
+/// Returns the points in the space where the distance is Euclidean: row i is map x_i.
 [[nodiscard]] Eigen::MatrixXd mapped(const Hyperparameters& h, const Eigen::Ref<const Eigen::MatrixXd>& points);
 
-/// r^2 from one mapped point to mapped rows.
+/// Computes r^2 from one mapped point to mapped rows.
 void squared_distances(const Eigen::MatrixXd& rows, const Eigen::RowVectorXd& from, Eigen::Ref<Eigen::ArrayXd> out);
 
-/// C of squared distances.
+/// Computes C of squared distances.
 void correlations(const Eigen::Ref<const Eigen::ArrayXd>& squared, Eigen::Ref<Eigen::ArrayXd> out);
 
-/// s^2 C between mapped rows and mapped others: (rows, others).
+/// Returns s^2 C between mapped rows and mapped others: (rows, others).
 [[nodiscard]] Eigen::MatrixXd cross_covariance(const Hyperparameters& h, const Eigen::MatrixXd& rows,
                                                const Eigen::MatrixXd& others);
 
-/// Lower half (with diagonal) of s^2 C + g I of mapped rows; the upper half is not touched.
+/// Returns the lower half (with diagonal) of s^2 C + g I of mapped rows; the upper half is not set.
 [[nodiscard]] Eigen::MatrixXd covariance(const Hyperparameters& h, const Eigen::MatrixXd& rows);
 
-/// Lower halves of C and of dC/d(r^2).
+/// Computes the lower halves of C and of dC/d(r^2).
 void correlations_with_slope(const Eigen::MatrixXd& rows, Eigen::MatrixXd& c, Eigen::MatrixXd& slope);
 
 }  // namespace grainsweep::stats::response

@@ -1,4 +1,4 @@
-// What a response model keeps: inside stats/ only.
+// Data of a fitted response model; for use inside stats/ only.
 #pragma once
 
 #include "stats/response/kriging.hpp"
@@ -12,17 +12,19 @@ namespace grainsweep::stats {
 struct ResponseModel::State {
     Eigen::VectorXd low, high;     ///< box
     double offset = 0, scale = 1;  ///< response = offset + scale z
-    bool logarithm = false;        ///< its logarithm is
+    bool logarithm = false;        ///< the logarithm of the response = offset + scale z
     response::Kriging kriging;
     response::LocalNoise noise;
     ModelQuality quality;
 
     [[nodiscard]] double standardised(double response) const;
-    /// Mean response where z has that mean: of a logarithm with normal noise g, exp(offset + scale z + scale^2 g/2).
+    /// Returns the mean response for the mean z; for a logarithm with normal noise g it is exp(offset + scale z +
+    /// scale^2 g/2).
     [[nodiscard]] double mean_at(double z) const;
-    /// Standard deviation about that mean where z has that variance: of a logarithm, mean sqrt(exp(scale^2 v) - 1).
+    /// Returns the standard deviation around the mean for the variance v of z; for a logarithm it is mean
+    /// sqrt(exp(scale^2 v) - 1).
     [[nodiscard]] double deviation(double mean, double variance) const;
-    /// Features in [0, 1] of the box, (m, d).
+    /// Returns the features scaled to [0, 1] of the box, (m, d).
     [[nodiscard]] Eigen::MatrixXd in_box(Rows points) const;
 };
 

@@ -7,10 +7,10 @@
 
 namespace grainsweep::campaign {
 
-/// Cells without blanks around them.
+/// Record of cells, without blanks around them.
 using CsvRecord = std::vector<std::string>;
 
-/// One record from `rest`, which advances behind its line end. Quoted cells may hold commas and line ends.
+/// Takes one record from `rest`, which advances behind its line end. Quoted cells may contain commas and line ends.
 [[nodiscard]] CsvRecord take_csv_record(std::string_view& rest);
 
 }  // namespace grainsweep::campaign

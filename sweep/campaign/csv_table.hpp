@@ -11,19 +11,19 @@
 
 namespace grainsweep::campaign {
 
-/// Empty lines are passed over. What is no such table is refused: a first line of numbers, a column without a name (row
-/// names, as data frames are written), a name twice, another separator, a record of another length, UTF-16.
+/// Table with a header. Empty lines are skipped. Refused are a first line of numbers, a column without a name (row
+/// names of data frames), a repeated name, another separator, a record of another length, and UTF-16.
 class CsvTable {
 public:
-    /// Throws the refusal of a rule.
+    /// Function that throws the refusal of a rule.
     using Refuse = std::function<void(const std::string& rule)>;
 
     /// `text` must outlive the table.
     CsvTable(std::string_view text, Refuse refuse);
     [[nodiscard]] const CsvRecord& header() const { return header_; }
-    /// As long as the header; nothing behind the last one.
+    /// Returns the next record, as long as the header; empty after the last one.
     [[nodiscard]] std::optional<CsvRecord> next();
-    /// Of the record read last; the first line of the file is 1.
+    /// Returns the line of the last record; the first line of the file is 1.
     [[nodiscard]] std::size_t number() const { return number_; }
 
 private:

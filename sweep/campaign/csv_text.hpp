@@ -1,4 +1,4 @@
-// A CSV file that a campaign file names, as text.
+// Text of a CSV file that a campaign file names.
 #pragma once
 
 #include "sweep/campaign/cursor.hpp"
@@ -8,8 +8,8 @@
 
 namespace grainsweep::campaign {
 
-/// The whole file. `file`: the place in the campaign file that names it, for refusals: no such
-/// file, larger than 256 MiB, not readable to its end.
+/// Returns the contents of the file. Refuses a missing file, one larger than 256 MiB, and one that cannot be read to
+/// its end. `file`: its place in the campaign file.
 [[nodiscard]] std::string read_csv_text(const Cursor& file, const std::filesystem::path& path);
 
 }  // namespace grainsweep::campaign

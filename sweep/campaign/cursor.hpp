@@ -1,4 +1,4 @@
-// Reading JSON with its path at hand: every refusal names where, what value, which rule, the nearest word.
+// Reading of JSON with paths: every refusal names the path, the value, the rule and the nearest word.
 #pragma once
 
 #include "sweep/campaign/json_text.hpp"
@@ -15,7 +15,7 @@
 
 namespace grainsweep::campaign {
 
-/// A JSON value and its path. Refers to the document, which must outlive it.
+/// JSON value and its path. It refers to the document, which must outlive it.
 class Cursor {
 public:
     Cursor(const Json& value, std::string path) : value_(&value), path_(std::move(path)) {}
@@ -29,18 +29,18 @@ public:
 
     [[noreturn]] void refuse(std::string_view rule, std::string_view suggestion = {}) const;
 
-    /// A finite number within the interval.
+    /// Returns a finite number within the interval.
     [[nodiscard]] double number(const Interval& bounds = {}) const;
-    /// A whole number within the interval; 1e4 is one.
+    /// Returns a whole number within the interval; 1e4 is one.
     [[nodiscard]] std::int64_t whole(const Interval& bounds = {}) const;
     [[nodiscard]] bool flag() const;
-    /// Any non-empty text.
+    /// Returns a non-empty text.
     [[nodiscard]] std::string text() const;
-    /// One of the words.
+    /// Returns one of the words.
     [[nodiscard]] std::string word(const WordList& words) const;
-    /// A list; refuses everything else.
+    /// Returns the elements of a list; refuses other values.
     [[nodiscard]] std::vector<Cursor> elements() const;
-    /// The members of an object without its notes, which are checked; refuses everything else by the rule.
+    /// Returns the members of an object without its notes, which are checked; refuses other values with the rule.
     [[nodiscard]] std::vector<std::pair<std::string, Cursor>> members(std::string_view rule) const;
 
 private:
@@ -48,21 +48,21 @@ private:
     std::string path_;
 };
 
-/// An object whose keys are those of a table, and "notes".
+/// Object with the keys of a table, and "notes".
 class Section {
 public:
-    /// Refuses what is no object, an unknown key, a missing one that is required.
+    /// Refuses a value that is no object, unknown keys, and missing required keys.
     Section(Cursor place, std::span<const Key> keys);
 
     [[nodiscard]] const Cursor& place() const { return place_; }
     [[nodiscard]] std::optional<Cursor> find(std::string_view key) const;
-    /// A required key.
+    /// Returns the value of a required key.
     [[nodiscard]] Cursor at(std::string_view key) const;
 
-    // The value of a key, checked against its row of the table; `standard` where it is absent.
+    // Return the value of a key, checked against its row of the table; `standard` if it is absent.
     [[nodiscard]] double number(std::string_view key, double standard) const;
     [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t standard) const;
-    /// The same of a key that may be a word instead, which stands for `of_word`.
+    /// Returns the same for a key that may also be a word, which means `of_word`.
     [[nodiscard]] std::int64_t whole_or_word(std::string_view key, std::int64_t standard, std::int64_t of_word) const;
     [[nodiscard]] bool flag(std::string_view key, bool standard) const;
     [[nodiscard]] std::string word(std::string_view key, std::string_view standard) const;
@@ -75,9 +75,9 @@ private:
     std::span<const Key> keys_;
 };
 
-/// "a number from 0 to 1", "a number above 0": the interval in words.
+/// Returns the interval in words, such as "a number from 0 to 1" or "a number above 0".
 [[nodiscard]] std::string in_words(const Interval& bounds);
-/// "'a', 'b' or 'c'".
+/// Returns the words as "'a', 'b' or 'c'".
 [[nodiscard]] std::string in_words(const WordList& words);
 
 }  // namespace grainsweep::campaign

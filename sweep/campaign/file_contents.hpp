@@ -1,5 +1,5 @@
-// Contents of files by their hash: made by the program, or taken from an archive. They stand
-// before what lies at the path of a file.
+// Contents of files by their hash, made by the program or taken from a database. They take precedence over the file at
+// the path.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -11,24 +11,24 @@
 
 namespace grainsweep::campaign {
 
-/// Makes contents known to this process, for its lifetime.
+/// Registers contents in this process.
 void enter_contents(std::string contents);
-/// None where nothing of that hash was entered.
+/// Returns registered contents; empty if there are none of this hash.
 [[nodiscard]] std::optional<std::string> known_contents(std::string_view hash);
 
-/// The value of a parameter that is a file made by the program: its path is a name without a folder, "ti64.json sizes".
-/// Its contents are made known.
+/// Registers the contents of a file made by the program, and returns the value of its parameter. Its path is a name
+/// without a folder, "ti64.json sizes".
 [[nodiscard]] std::string made_file_word(std::string_view name, std::string contents);
-/// Whether no file on disk has the contents.
+/// Returns whether the contents are in no file on disk.
 [[nodiscard]] bool is_made(const FileWord& file);
 
-/// Returns the contents of one file, known or read; otherwise why it cannot be used, as a clause. What has changed
-/// since it was named is no answer to the question. Throws BrokenWorld where a file is there and cannot be read.
+/// Contents of one file, registered or read, or else the reason why it cannot be used, as a clause. A file that has
+/// changed since the campaign was read is not used. Throws BrokenWorld if a file exists but cannot be read.
 struct FileContents {
     std::string text;
 };
 [[nodiscard]] std::variant<FileContents, std::string> contents_of(const FileWord& file);
-/// The same of all files that inputs name; the reason names the parameter.
+/// Returns the contents of all files that inputs name, or a reason with the name of the parameter.
 [[nodiscard]] std::variant<Files, std::string> files_named(const Inputs& inputs);
 
 }  // namespace grainsweep::campaign

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 namespace grainsweep::campaign {
@@ -287,13 +288,51 @@ struct Formula::Compiled {
     }
 };
 
+namespace {
+
+/// Formulas of this process by text and names: a campaign of machines reads the same ones for every case.
+class ReadFormulas {
+public:
+    static std::string key_of(std::string_view text, const WordList& names) {
+        std::string key(text);
+        for (const auto name : names) (key += '\n') += name;
+        return key;
+    }
+    std::optional<Formula> find(const std::string& key) {
+        const std::scoped_lock lock(mutex_);
+        const auto found = by_key_.find(key);
+        return found == by_key_.end() ? std::nullopt : std::optional(found->second);
+    }
+    void keep(std::string key, const Formula& formula) {
+        const std::scoped_lock lock(mutex_);
+        if (by_key_.size() == most_kept) by_key_.clear();
+        by_key_.emplace(std::move(key), formula);
+    }
+
+private:
+    static constexpr std::size_t most_kept = 1000;
+    std::mutex mutex_;
+    std::unordered_map<std::string, Formula> by_key_;
+};
+
+ReadFormulas& read_formulas() {
+    static ReadFormulas all;
+    return all;
+}
+
+}  // namespace
+
 Formula::Formula(std::shared_ptr<Compiled> compiled) : compiled_(std::move(compiled)) {}
 
 std::variant<Formula, std::string> Formula::parse(std::string_view text, const WordList& names) {
+    auto key = ReadFormulas::key_of(text, names);
+    if (const auto known = read_formulas().find(key)) return *known;
     FormulaCheck check(text, names);
     if (const auto reason = check.reason()) return *reason;
     try {
-        return Formula(std::make_shared<Compiled>(check));
+        Formula formula(std::make_shared<Compiled>(check));
+        read_formulas().keep(std::move(key), formula);
+        return formula;
     } catch (const mu::ParserError& error) {
         return fmt::format("it cannot be read at position {}: {}", error.GetPos() + 1, error.GetMsg());
     }

@@ -1,4 +1,4 @@
-// Factors that take columns of one sample: their coordinates together choose a row of it.
+// Factors that use columns of one sample: their coordinates together choose a row of the sample.
 #pragma once
 
 #include "stats/distribution.hpp"
@@ -10,15 +10,15 @@
 
 namespace grainsweep::campaign {
 
-/// Returns the column that a distribution takes of a sample of several; null where it stands by itself.
+/// Returns the column of a distribution in a sample with several columns; null if there is no such sample.
 [[nodiscard]] inline const stats::SampleColumn* column_of(const stats::Distribution* distribution) {
     const auto* column = distribution == nullptr ? nullptr : std::get_if<stats::SampleColumn>(&distribution->form());
     return column == nullptr || column->sample->columns() == 1 ? nullptr : column;
 }
 
-/// Returns the value of factor j at the point u of `count` factors, from the row that its sample has there. None where
-/// it takes no column of a sample, or another column of that sample is no factor. `column(k)`: of factor k, may be
-/// null.
+/// Returns the value of factor j at the point u of `count` factors, from the row of its sample at this point. Empty if
+/// the factor uses no column of a sample, or another column of this sample is no factor. `column(k)`: column of factor
+/// k, may be null.
 template <class Column>
 [[nodiscard]] std::optional<double> joint_value(std::size_t count, std::size_t j, std::span<const double> u,
                                                 const Column& column) {

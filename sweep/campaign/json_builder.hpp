@@ -1,5 +1,5 @@
-// Builds a JSON document from a parser's events, and refuses a key that an object has twice and nesting beyond any use
-// where they stand. Sentences are those of the reader that is derived from it.
+// Builder of a JSON document from a parser's events. It refuses repeated keys and too deep nesting at their place; the
+// derived reader writes the messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -39,14 +39,14 @@ public:
 
 protected:
     struct Frame {
-        Json value;       ///< an object or list, so far
-        std::string key;  ///< of an object, the one whose value comes next
+        Json value;       ///< incomplete object or list
+        std::string key;  ///< in an object: key of the next value
     };
-    /// From the outermost to the one that the next value belongs to.
+    /// Returns the open objects and lists, the outermost first.
     [[nodiscard]] const std::vector<Frame>& frames() const { return stack_; }
-    /// Throws: the key that came last is there twice.
+    /// Throws because the last key is repeated.
     virtual void refuse_twice() const = 0;
-    /// Throws: one level more than there may be.
+    /// Throws because the nesting is too deep.
     virtual void refuse_depth() const = 0;
 
 private:

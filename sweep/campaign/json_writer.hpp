@@ -1,7 +1,6 @@
-// JSON as this program writes it: a text put together from values and shorter texts. It writes the same bytes as
-// nlohmann's dump() without spaces, and compiles faster. Keys stand in the order in which they are
-// given. A double has a point or an exponent and reads back as the same double; infinities and NaN are null. Bytes that
-// are no UTF-8 become U+FFFD.
+// Writer of JSON as text, joined from values and shorter texts. It writes the same bytes as nlohmann's dump() without
+// spaces, and compiles faster. Keys keep their order. A double has a point or an exponent and reads back as the same
+// double; infinities and NaN are null. Bytes that are no UTF-8 become U+FFFD.
 #pragma once
 
 #include <concepts>
@@ -25,7 +24,7 @@ void append_json(std::string& to, std::string_view words);
 template <class T>
 concept WholeNumber = std::integral<T> && !std::same_as<T, bool>;
 
-/// One JSON value.
+/// JSON value as text.
 class JsonText {
 public:
     struct Member;
@@ -48,21 +47,21 @@ public:
     JsonText(std::string_view words) { append_json(text_, words); }
     JsonText(const std::string& words) : JsonText(std::string_view(words)) {}
     JsonText(const char* words) : JsonText(std::string_view(words)) {}
-    /// null where there is none.
+    /// Makes null if there is no value.
     template <class T>
     JsonText(const std::optional<T>& value) : JsonText(value ? JsonText(*value) : JsonText()) {}
-    /// A list.
+    /// Makes a list.
     template <std::ranges::input_range Values>
     requires(!std::convertible_to<const Values&, std::string_view> &&
              !std::same_as<std::remove_cvref_t<std::ranges::range_reference_t<const Values>>, Values>)
         JsonText(const Values& values)
         : JsonText(list(values, std::identity())) {}
-    /// An object.
+    /// Makes an object.
     JsonText(std::initializer_list<Member> members);
 
     [[nodiscard]] static JsonText array();
     [[nodiscard]] static JsonText object();
-    /// What `make` gives for each value.
+    /// Returns the list of make(value) for each value.
     template <std::ranges::input_range Values, class Make>
     [[nodiscard]] static JsonText list(Values&& values, Make make) {
         JsonText all = array();
@@ -70,14 +69,14 @@ public:
         return all;
     }
 
-    /// To a list.
+    /// Appends to a list.
     void push_back(const JsonText& value);
-    /// To an object that has no such key; null becomes an object.
+    /// Adds a member to an object without this key; null becomes an object.
     JsonText& add(std::string_view name, const JsonText& value);
-    /// Every member of another object.
+    /// Adds every member of another object.
     JsonText& add(const JsonText& object);
 
-    /// A list or an object without anything in it.
+    /// Returns whether it is an empty list or object.
     [[nodiscard]] bool empty() const { return text_ == "[]" || text_ == "{}"; }
     [[nodiscard]] const std::string& text() const { return text_; }
 

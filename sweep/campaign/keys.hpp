@@ -1,5 +1,5 @@
-// What a campaign file may say, in one table per section: the reader checks against it and the JSON schema
-// prints it, so that neither can know a key which the other does not.
+// Keys of a campaign file, one table per section. The reader checks against the tables and the JSON schema prints them,
+// so both have the same keys.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -19,7 +19,7 @@ struct Key {
     std::string_view meaning;
     std::string_view standard = {};  ///< JSON text of the default; empty: none
     Interval bounds = {};            ///< of whole and number
-    /// Of word and words; of whole: words that may stand in its place.
+    /// For word and words: the words; for whole: words that are also allowed.
     std::span<const std::string_view> words = {};
     bool required = false;
 };
@@ -29,12 +29,12 @@ struct Key {
     return key;
 }
 
-/// Allowed in every object and ignored: a text or a list of texts.
+/// Key allowed in every object and ignored: a text or a list of texts.
 inline constexpr std::string_view notes_key = "notes";
 
 [[nodiscard]] std::span<const Key> campaign_keys();
 [[nodiscard]] std::span<const Key> factor_keys();
-/// Those of factor_keys() that give a factor its values: it has one of them.
+/// Returns those of factor_keys() that define the values of a factor; a factor has exactly one.
 [[nodiscard]] std::span<const std::string_view> range_keys();
 [[nodiscard]] std::span<const Key> uniform_keys();
 [[nodiscard]] std::span<const Key> normal_keys();
@@ -51,25 +51,25 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> stop_keys();
 [[nodiscard]] std::span<const Key> limits_keys();
 [[nodiscard]] std::span<const Key> execution_keys();
-/// "kind", the design's options without their defaults and, where it takes rows, "file".
+/// Returns "kind", the design's options without their defaults and, if it has rows, "file".
 [[nodiscard]] std::vector<Key> design_keys(const designs::DesignInfo& design);
 
-/// Limits of time below these would end every worker before it can answer, s.
+/// Shortest limits of time, s; shorter ones would end every worker before it can answer.
 inline constexpr double shortest_limit = 0.1;
-inline constexpr double shortest_silence = 3;  ///< a few signs of life
+inline constexpr double shortest_silence = 3;  ///< a few heartbeats
 
 /// Shape parameters of a beta distribution.
 inline constexpr Interval shapes_of_beta{0.05, 1e4};
-/// Rows of a sample, which are kept with the campaign.
+/// Most rows of a sample, which is stored with the campaign.
 inline constexpr std::size_t most_sample_rows = 20'000;
 
-/// Features of a response model.
+/// Most features of a response model.
 inline constexpr std::size_t most_features = 30;
 
-/// Letters of a campaign's name: NAME.db must be a file name.
+/// Longest name of a campaign, because NAME.db must be a file name.
 inline constexpr std::size_t longest_campaign_name = 128;
 
-/// Names a campaign cannot have: the tables and views of the database are called so.
+/// Returns names that a campaign cannot have, because tables and views of the database have them.
 [[nodiscard]] std::span<const std::string_view> reserved_names();
 
 }  // namespace grainsweep::campaign

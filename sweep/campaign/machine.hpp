@@ -1,6 +1,6 @@
-// A machine as a scene: what a machine file says, as text and as the scene that plans, archives and reports see. The
-// name of the scene is "machine:" and the hash of what changes an answer: the text without notes, meanings, bounds, the
-// machine's own name and names of files, and the contents of the files. What is shown is the machine's own name.
+// Machine as a scene: the text of a machine file, and the scene for plans, databases and reports. The name of the scene
+// is "machine:" and a hash of everything that changes an answer: the text without notes, meanings, bounds, the
+// machine's own name and names of files; and the contents of the files. The machine's own name is shown to users.
 #pragma once
 
 #include "solver/scenes/scene.hpp"
@@ -21,7 +21,7 @@ struct Spec;
 
 namespace grainsweep::campaign {
 
-/// The word of a campaign file, and how the names of all such scenes begin.
+/// Word in a campaign file, and prefix of the names of all such scenes.
 inline constexpr std::string_view machine_word = "machine";
 inline constexpr std::string_view machine_prefix = "machine:";
 [[nodiscard]] inline bool is_machine(std::string_view scene) {
@@ -30,40 +30,40 @@ inline constexpr std::string_view machine_prefix = "machine:";
 
 struct Machine {
     std::string name, summary;
-    std::shared_ptr<const nlohmann::json> document;         ///< the file as read
+    std::shared_ptr<const nlohmann::json> document;         ///< the parsed file
     std::map<std::string, std::string, std::less<>> files;  ///< contents, by the name in the document
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
 };
 
-/// Returns the contents of a file that the document names. Throws std::invalid_argument where there is none.
+/// Function that returns the contents of a file that the document names. Throws std::invalid_argument if there is none.
 using FileReader = std::function<std::string(const std::string& name)>;
 
-/// Reads and checks a machine completely, with its default parameters. Throws WrongQuestion with the path from `root`
-/// on.
+/// Reads and checks a machine completely, with its default parameters. Throws WrongQuestion with the path, beginning at
+/// `root`.
 [[nodiscard]] std::shared_ptr<const Machine> make_machine(nlohmann::json document, std::string root,
                                                           const FileReader& read_file);
-/// Reads files of a folder.
+/// Returns a function that reads files of a folder.
 [[nodiscard]] FileReader beside(const std::filesystem::path& folder);
-/// Whether a JSON document looks like a machine and not like a campaign.
+/// Returns whether a JSON document looks like a machine and not like a campaign.
 [[nodiscard]] bool is_machine_document(const nlohmann::json& document);
-/// A machine file, and the files beside it.
+/// Reads a machine file and the files beside it.
 [[nodiscard]] std::shared_ptr<const Machine> read_machine(const std::filesystem::path& file);
-/// The machine as numbers, for complete inputs and the contents of files that they name. Throws WrongQuestion.
+/// Returns the machine as numbers, for complete inputs and the contents of their files. Throws WrongQuestion.
 [[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs, const Files& files = {});
 
-/// What a machine is, in one line.
+/// Returns a description of machines in one line.
 [[nodiscard]] std::string_view machine_summary();
-/// "machine:" and 32 hexadecimal digits.
+/// Returns "machine:" and 32 hexadecimal digits.
 [[nodiscard]] std::string machine_scene_name(const Machine& machine);
-/// The document and the hashes of its files, as JSON; and back, with the contents by their hash. The second throws
+/// Convert a machine to JSON with the hashes of its files, and back with the contents by their hash. The second throws
 /// std::invalid_argument for another text.
 [[nodiscard]] std::string machine_text(const Machine& machine);
 [[nodiscard]] std::shared_ptr<const Machine> machine_in(std::string_view text, const FileReader& contents_of_hash);
 
-/// Makes the machine's scene known to this process, for its lifetime.
+/// Registers the machine's scene in this process.
 const SceneInfo& enter_machine(std::shared_ptr<const Machine> machine);
-/// nullptr where no such machine was entered.
+/// Returns the registered machine of a scene; nullptr if there is none.
 [[nodiscard]] std::shared_ptr<const Machine> known_machine(std::string_view scene);
 
 }  // namespace grainsweep::campaign

@@ -1,5 +1,5 @@
-// The keys of a machine file, a table per object. A number may be written as a number, as a quantity ("60 um") or as an
-// expression over parameters and "let"; the table calls it a value.
+// Keys of a machine file, one table per object. A "value" in a table is a number, a quantity ("60 um"), or an
+// expression of parameters and "let".
 #pragma once
 
 #include "sweep/campaign/keys.hpp"
@@ -9,7 +9,7 @@
 
 namespace grainsweep::campaign::machine_keys {
 
-/// One table, with the words under which the reference shows it.
+/// Table with its heading in the reference.
 struct Table {
     std::string_view title;
     std::span<const Key> keys;
@@ -44,7 +44,7 @@ struct Table {
 [[nodiscard]] std::span<const Key> time_of();
 [[nodiscard]] std::span<const Key> expression();
 
-/// Shapes and regions: the key that names one, and the keys of its object.
+/// Form of a shape or region: its key, and the keys of its object.
 struct Form {
     std::string_view name, meaning;
     std::span<const Key> keys;
@@ -52,7 +52,7 @@ struct Form {
 [[nodiscard]] std::span<const Form> shapes();
 [[nodiscard]] std::span<const Form> regions();
 
-/// All of them, in the order of the reference.
+/// Returns all tables, in the order of the reference.
 [[nodiscard]] std::span<const Table> all();
 
 }  // namespace grainsweep::campaign::machine_keys

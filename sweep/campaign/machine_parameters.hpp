@@ -1,4 +1,4 @@
-// "parameters" and "let" of a machine, and the numbers that its expressions may name. Internal to the reader of
+// "parameters" and "let" of a machine, and the numbers that its expressions may use. Internal to the reader of
 // machines.
 #pragma once
 
@@ -11,10 +11,11 @@
 
 namespace grainsweep::campaign {
 
-/// Parameters of the machine, and the parameters of every machine.
+/// Returns the parameters of the machine, and the parameters of every machine.
 [[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);
-/// What expressions may name, for complete inputs: parameters in SI units, NAME_UNIT, NAME_is_WORD, and "let", whose
-/// expressions may use one another in any order; what needs numbers of species is still missing. Refuses a circle.
+/// Returns the names for expressions, for complete inputs: parameters in SI units, NAME_UNIT, NAME_is_WORD, and "let",
+/// whose expressions may use one another in any order. Expressions that need numbers of species are still missing.
+/// Refuses circular definitions.
 [[nodiscard]] MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters,
                                          const Inputs& inputs);
 /// Adds SPECIES_largest, SPECIES_smallest, SPECIES_volume, and the rest of "let".

@@ -1,5 +1,5 @@
-// What expressions in a machine file may use, and how values are read: numbers, quantities and expressions to SI
-// numbers; vectors, directions, words, regions.
+// Names for expressions in a machine file, and reading of values: numbers, quantities and expressions as SI numbers;
+// vectors, directions, words, regions.
 #pragma once
 
 #include "solver/machine/region.hpp"
@@ -19,48 +19,48 @@ namespace grainsweep::campaign {
 
 class MachineScope {
 public:
-    /// Numbers and words that expressions and texts may name.
+    /// Set numbers and words that expressions and texts may name.
     void set(std::string name, double value) { numbers_.insert_or_assign(std::move(name), value); }
     void set_word(std::string name, std::string word) { words_.insert_or_assign(std::move(name), std::move(word)); }
-    /// The SI unit of a number, where it has one.
+    /// Sets the SI unit of a number, if it has one.
     void set_unit(const std::string& name, std::string unit) { units_.insert_or_assign(name, std::move(unit)); }
-    /// A number that "let" defines.
+    /// Sets a number that "let" defines.
     void set_let(const std::string& name, double value) { set(name, value), lets_.insert(name); }
     [[nodiscard]] bool is_let(const std::string& name) const { return lets_.contains(name); }
     [[nodiscard]] bool knows(std::string_view name) const { return numbers_.contains(name) || words_.contains(name); }
 
-    /// A finite SI number of the unit, within the bounds. Refuses everything else.
+    /// Returns a finite SI number of the unit within the bounds. Refuses other values.
     [[nodiscard]] double number(const Cursor& place, std::string_view unit, const Interval& bounds = {}) const;
     [[nodiscard]] double number(const Section& section, std::string_view key, std::string_view unit, double standard,
                                 const Interval& bounds = {}) const;
-    /// The nearest whole number of a value.
+    /// Returns the nearest whole number of a value.
     [[nodiscard]] std::int64_t whole(const Cursor& place, const Interval& bounds) const;
-    /// Whether "when" holds.
+    /// Returns whether "when" holds.
     [[nodiscard]] bool present(const Section& section) const;
     [[nodiscard]] machine::Vec3 vector(const Cursor& place, std::string_view unit) const;
     [[nodiscard]] machine::Vec3 vector(const Section& section, std::string_view key, std::string_view unit,
                                        const machine::Vec3& standard = {}) const;
-    /// Of unit length.
+    /// Returns a vector of unit length.
     [[nodiscard]] machine::Vec3 direction(const Cursor& place) const;
     [[nodiscard]] machine::Vec3 direction(const Section& section, std::string_view key,
                                           const machine::Vec3& standard) const;
-    /// A text with "{NAME}" replaced by a word.
+    /// Returns a text with "{NAME}" replaced by words.
     [[nodiscard]] std::string text(const Cursor& place) const;
-    /// The same with numbers, too: what a check says.
+    /// Returns a text with words and numbers replaced, for the message of a check.
     [[nodiscard]] std::string sentence(const Cursor& place) const;
     [[nodiscard]] std::string word(const Cursor& place, const WordList& words) const;
     [[nodiscard]] std::string word(const Section& section, std::string_view key, const WordList& words,
                                    std::string_view standard) const;
     [[nodiscard]] machine::Region region(const Cursor& place) const;
-    /// One of the names, as its place in the list.
+    /// Returns the index of one of the names.
     [[nodiscard]] std::size_t place_in(const Cursor& place, const std::vector<std::string>& names,
                                        std::string_view what) const;
-    /// One of them or a list of them, without repeats.
+    /// Returns the indices of one name or a list of names, without repeats.
     [[nodiscard]] std::vector<std::size_t> places_in(const Cursor& place, const std::vector<std::string>& names,
                                                      std::string_view what) const;
 
     [[nodiscard]] std::vector<std::string> names() const;
-    /// Of a name that is known, which may be without a value.
+    /// Returns the value of a known name, which may be undefined.
     [[nodiscard]] double value(std::string_view name) const { return numbers_.find(name)->second; }
 
 private:
@@ -73,9 +73,9 @@ private:
     [[noreturn]] void refuse_expression(const Cursor& place, const std::string& text, const std::string& why) const;
 };
 
-/// Whether a text begins as a number with or without a unit behind it, not as an expression.
+/// Returns whether a text is a number with or without a unit, not an expression.
 [[nodiscard]] bool is_quantity(std::string_view text);
-/// The one key of an object among the forms; refuses none and several.
+/// Returns the only key of an object among the forms; refuses none and several.
 [[nodiscard]] std::optional<std::size_t> form_of(const Json& object, std::span<const machine_keys::Form> forms);
 
 }  // namespace grainsweep::campaign

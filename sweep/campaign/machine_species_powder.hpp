@@ -9,8 +9,8 @@
 
 namespace grainsweep::campaign {
 
-/// Returns the machine with the powders of its species written out; what the machine states beside a powder stays. Adds
-/// the sizes to `made`, under the names that the returned document has for them. Throws WrongQuestion.
+/// Returns the machine with the powders of its species expanded; values that the machine gives itself have priority.
+/// Adds the sizes to `made`, under their names in the returned document. Throws WrongQuestion.
 [[nodiscard]] Json with_powders(Json document, const std::string& root, const FileReader& read,
                                 std::map<std::string, std::string, std::less<>>& made);
 

@@ -1,4 +1,4 @@
-// Regular expressions of campaign files and databases, searched for in what programs write.
+// Regular expressions of campaign files and databases, for the output of programs.
 #pragma once
 
 #include <regex>
@@ -6,8 +6,8 @@
 
 namespace grainsweep::campaign {
 
-/// ECMAScript without back-references. All ways to match are followed side by side: one after another, (a+)+$ needs 2^n
-/// steps for a line of n letters. Throws std::regex_error.
+/// Returns an ECMAScript pattern without back-references. All ways to match are followed in parallel, because
+/// backtracking would need 2^n steps for (a+)+$ and a line of n letters. Throws std::regex_error.
 [[nodiscard]] inline std::regex output_pattern(const std::string& pattern) {
     return std::regex(pattern, std::regex::ECMAScript | std::regex_constants::__polynomial);
 }

@@ -1,4 +1,4 @@
-// Names in texts that stand for values: {name} in a command and an environment, {{ name }} in a template.
+// Placeholders for values: {name} in a command and an environment, {{ name }} in a template.
 #pragma once
 
 #include <functional>
@@ -7,15 +7,15 @@
 
 namespace grainsweep::campaign {
 
-/// The value of a name. Throws where there is none.
+/// Function that returns the value of a name. Throws if there is none.
 using ValueOf = std::function<std::string(std::string_view name)>;
 
-/// Letters, digits and _, no digit first.
+/// Returns whether a word has only letters, digits and _, no digit first.
 [[nodiscard]] bool is_plain_name(std::string_view word);
-/// {name} by its value, {{name}} by {name}; every other brace stays.
+/// Replaces {name} by its value and {{name}} by {name}; other braces do not change.
 [[nodiscard]] std::string filled_command(std::string_view text, const ValueOf& value_of);
-/// {{ name }}, blanks as one likes, by its value. Throws std::invalid_argument with a sentence and the line where a
-/// double brace holds something else than a name; one that is not closed in its line stays.
+/// Replaces {{ name }}, with any blanks, by its value. Throws std::invalid_argument with a sentence and the line if
+/// double braces contain no name; braces that are not closed in their line do not change.
 [[nodiscard]] std::string filled_template(std::string_view text, const ValueOf& value_of);
 
 }  // namespace grainsweep::campaign

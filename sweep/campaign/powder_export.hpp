@@ -1,9 +1,9 @@
-// Sizes of a powder as instruments and sieve sheets export them, made a table that scenes read.
+// Import of powder sizes from exports of instruments and sieve sheets, as a table for scenes.
 //
 // Recognised: UTF-8, UTF-16 and Latin-1 text; semicolons, tabs, commas or blanks between the columns; decimal points
 // and commas; any lines before and behind the table; rows of falling size; classes "20-45", "<20" and the pan of a
-// sieve tower; repeated groups of columns. What the file does not state is a choice, and its absence is refused by
-// name.
+// sieve tower; repeated groups of columns. Information that the file does not contain must be given as a choice; the
+// refusal names the missing choice.
 #pragma once
 
 #include <array>
@@ -16,27 +16,28 @@
 
 namespace grainsweep::campaign {
 
-/// What the user states about an export; absent: as the file says.
+/// Choices of the user about an export; absent: as in the file.
 struct ExportChoices {
     std::optional<std::string> sizes = {}, shares = {};      ///< columns, by number from 1 or by header
     std::optional<std::string> unit = {};                    ///< of the sizes: "um"
     std::optional<std::string> as = {};                      ///< passing, retained (cumulative) or each
     std::optional<std::string> by = {};                      ///< volume or number
-    std::optional<std::string> edge = {};                    ///< of a class that its size gives: lower, upper or middle
+    std::optional<std::string> edge = {};                    ///< position of a size in its class: lower, upper or
+                                                             ///< middle
     std::optional<std::string> smallest = {}, largest = {};  ///< sizes that end the table, with their unit
 };
 
-/// A table of sizes and what was recognised on the way to it.
+/// Imported table of sizes, with the recognised properties.
 struct ImportedSizes {
     std::string csv;       ///< header and lines of diameter (m) and share below it, from 0 to 1
-    std::string sentence;  ///< what was taken, for a reader
-    std::vector<std::pair<std::string, std::string>> facts;  ///< what, as found
-    std::vector<std::string> notes;                          ///< what was changed on the way
+    std::string sentence;  ///< description of the import
+    std::vector<std::pair<std::string, std::string>> facts;  ///< property and value found
+    std::vector<std::string> notes;                          ///< changes made by the import
 };
 
-/// Imports an export. Throws WrongQuestion with one sentence, which names the option that answers an open question.
-/// Shares that end within 1 % of their whole are divided by it, and up to 1 % without a size at an end is left out;
-/// both make a note.
+/// Imports an export. Throws WrongQuestion with one sentence, which names the option for missing information. Shares
+/// that end within 1 % of their whole are normalised, and up to 1 % without a size at an end is left out; both add a
+/// note.
 [[nodiscard]] ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices);
 
 /// Words of --as, --by and --edge.
@@ -44,32 +45,31 @@ inline constexpr std::array<std::string_view, 3> export_as = {"passing", "retain
 inline constexpr std::array<std::string_view, 2> export_by = {"volume", "number"};
 inline constexpr std::array<std::string_view, 3> export_edges = {"lower", "upper", "middle"};
 
-// The steps, internal to the import.
+// Steps of the import, internal.
 
-/// The numeric block of an export and the lines around it.
+/// Numeric block of an export and the lines around it.
 struct ExportGrid {
     std::string encoding;
     char separator = ',';
     bool decimal_comma = false;
     std::size_t first_line = 0, last_line = 0;   ///< of the block, from 1
     std::vector<std::vector<std::string>> rows;  ///< all of the same length
-    std::vector<std::string> headers;            ///< of every column, as written; empty where there is none
+    std::vector<std::string> headers;            ///< of every column, as written; empty: none
     std::string around;                          ///< all other lines, in small letters, "um" for a micro sign
 };
 
-/// Finds the longest block of lines with the same number of cells that are numbers. Throws WrongQuestion where there is
-/// none.
+/// Finds the longest block of lines with the same number of numeric cells. Throws WrongQuestion if there is none.
 [[nodiscard]] ExportGrid export_grid(std::string_view bytes);
-/// Small letters, "um" for a micro sign, "ss", "ae", "oe", "ue" for German letters.
+/// Returns the text in small letters, with "um" for a micro sign and "ss", "ae", "oe", "ue" for German letters.
 [[nodiscard]] std::string plain_words(std::string_view text);
-/// The number that a cell begins with, and what stands behind it. None: the cell is no number.
+/// Number at the start of a cell, and the text behind it. Empty: the cell is no number.
 struct ExportNumber {
     double value = 0;
     std::string unit;
 };
 [[nodiscard]] std::optional<ExportNumber> export_number(std::string_view cell, bool decimal_comma);
-/// The limits that a cell of sizes gives, in its unit: a number gives one, "20-45" both, "<20" and "pan" the upper one
-/// (none for a pan), ">90" the lower one.
+/// Limits of a cell of sizes, in its unit: a number gives one, "20-45" both, "<20" and "pan" the upper one (without a
+/// value for a pan), ">90" the lower one.
 struct ExportSize {
     enum class Kind { point, range, below, above, pan } kind = Kind::point;
     double low = 0, high = 0;
@@ -77,12 +77,12 @@ struct ExportSize {
 };
 [[nodiscard]] std::optional<ExportSize> export_size(std::string_view cell, bool decimal_comma);
 
-/// Which columns hold what, as their headers and the choices say.
+/// Meaning of the columns, by their headers and the choices.
 struct ExportColumns {
     std::size_t size = 0, share = 0;
     std::optional<std::size_t> upper;   ///< a second column of sizes: upper edges
     std::string unit;                   ///< of sizes
-    std::string unit_from, share_name;  ///< for a reader
+    std::string unit_from, share_name;  ///< for messages
     std::optional<std::string> as;      ///< passing, retained, each, or sum: passing or retained
     std::optional<std::string> by;      ///< volume or number
     bool percent = false, weighed = false, sieved = false;

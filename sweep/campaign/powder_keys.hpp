@@ -1,4 +1,4 @@
-// The keys of a powder file.
+// Keys of a powder file.
 #pragma once
 
 #include "sweep/campaign/keys.hpp"
@@ -18,7 +18,7 @@ namespace grainsweep::campaign::powder_keys {
 [[nodiscard]] std::span<const Key> rosin_rammler();
 [[nodiscard]] std::span<const Key> cut();
 [[nodiscard]] std::span<const Key> measured();
-/// All of them, by the object they stand in.
+/// Returns all keys, by their object.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::span<const Key>>> all();
 
 }  // namespace grainsweep::campaign::powder_keys

@@ -1,4 +1,4 @@
-// The sizes of a powder file as a table. Internal to the reader of powders.
+// Sizes of a powder file as a table. Internal to the reader of powders.
 #pragma once
 
 #include "solver/particles/size_table.hpp"
@@ -7,9 +7,9 @@
 
 namespace grainsweep::campaign {
 
-/// A positive number of the unit, plain or with a unit of its own.
+/// Returns a positive number in `unit`; the text may have another unit.
 [[nodiscard]] double powder_number(const Cursor& place, std::string_view unit);
-/// Reads "sizes" and "cut" into the powder; `read` gives the contents of the file that "sizes" names.
+/// Reads "sizes" and "cut" into the powder; `read` returns the contents of the file that "sizes" names.
 void read_powder_sizes(const Section& top, const std::function<std::string(const std::string&)>& read, Powder& powder);
 
 }  // namespace grainsweep::campaign

@@ -1,4 +1,4 @@
-// The keys of the section "program" of a campaign file, a table per object.
+// Keys of the section "program" of a campaign file, one table per object.
 #pragma once
 
 #include "sweep/campaign/keys.hpp"

@@ -7,15 +7,14 @@
 
 namespace grainsweep::campaign {
 
-/// Converts a number, with or without a unit behind it, into `unit`; a bare number is already in `unit`.
-/// Otherwise returns why not, as a part of a sentence with the nearest unit that fits. Safe in several threads.
+/// Converts a number, with or without a unit, to `unit`; a number without a unit is already in `unit`. If the text is
+/// invalid, returns the reason as a part of a sentence with the nearest suitable unit. Thread-safe.
 ///
-/// - Decimal factors are exact: "60 um" in m is the double nearest to 60e-6, as if it were written by hand.
-/// - Angles are no pure numbers: "30 deg" is refused for a friction coefficient, and so is "10 %" for an angle.
+/// - Decimal factors are exact: "60 um" in m is the double nearest to 60e-6.
+/// - Angles are no pure numbers: "30 deg" is refused for a friction coefficient, and "10 %" for an angle.
 /// - A frequency counts turns: 20 rpm is 20 1/min, 2 Hz is 120 rpm, 1 rad/s is 1/(2 pi) Hz.
-/// Only a place in rad/s refuses "Hz" and "1/s", because many authors write 1/s for rad/s. -
-/// Units: UDUNITS-2, whose database is read at the first unit, and deg, rev and the permille
-/// sign.
+/// - Only a place in rad/s refuses "Hz" and "1/s", because many authors write 1/s for rad/s.
+/// - Units: UDUNITS-2, whose database is read at the first unit, and deg, rev and the permille sign.
 [[nodiscard]] std::variant<double, std::string> in_si(std::string_view text, std::string_view unit);
 
 }  // namespace grainsweep::campaign

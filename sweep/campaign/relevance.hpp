@@ -1,4 +1,4 @@
-// Which parameters can matter to a campaign: a given one that no case can feel is a misunderstanding.
+// Relevance of parameters: a campaign must not set a parameter without effect on any of its cases.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -9,16 +9,15 @@
 
 namespace grainsweep::campaign {
 
-/// Why no case of the space can feel the parameter; none where one can. A condition on another parameter holds
-/// if one of its levels, or a value of its range, satisfies it.
+/// Returns why the parameter has no effect on any case of the space; empty if it has. A condition on another parameter
+/// holds if one of its levels, or a value of its range, satisfies it.
 [[nodiscard]] std::optional<std::string> no_effect(const ParameterSpace& space, const ParameterSpec& parameter);
 
-/// Adds the inputs of an accuracy setting under what is fixed and varied; one that could not matter beside
-/// those is left at its default.
+/// Adds the inputs of an accuracy setting that are neither fixed nor varied. Inputs without effect keep their defaults.
 void resolve_accuracy(ParameterSpace& space, std::string_view accuracy);
 
-/// Holds a parameter at a value, whatever held or varied it before, and lets go of inputs of the accuracy
-/// setting which that makes meaningless.
+/// Fixes a parameter at a value, replacing its former value or factor, and removes inputs of the accuracy setting that
+/// then have no effect.
 void hold(ParameterSpace& space, std::string_view parameter, const Value& value, std::string_view accuracy);
 
 }  // namespace grainsweep::campaign

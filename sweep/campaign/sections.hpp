@@ -1,4 +1,4 @@
-// The sections of a campaign file, each read by its own file. Internal to the reader.
+// Sections of a campaign file, each with a reader in its own file. Internal to the reader.
 #pragma once
 
 #include "sweep/campaign/accuracy_goal.hpp"
@@ -17,88 +17,89 @@ namespace grainsweep::campaign {
 
 struct Powder;
 
-/// A value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file is
-/// looked for in `folder` and becomes "file:<hash of its contents>:<absolute path>".
+/// Reads a value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file
+/// in `folder` becomes "file:<hash of its contents>:<absolute path>".
 [[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter,
                                const std::filesystem::path& folder);
 
-/// "'gap' must be a number above 0 m": what a number of the parameter must be.
+/// Returns the rule for a number of the parameter, such as "'gap' must be a number above 0 m".
 [[nodiscard]] std::string rule_of(const ParameterSpec& parameter);
 
-/// The parameter a name means; refuses unknown ones with the nearest.
+/// Returns the parameter of a name; refuses unknown names with the nearest one.
 [[nodiscard]] const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene);
 
 [[nodiscard]] std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene,
                                                const std::filesystem::path& folder);
-/// The distribution under `key` of a factor. Throws WrongQuestion where the bounds of the parameter cut off more than
-/// 5 % of it.
+/// Reads the distribution under `key` of a factor. Throws WrongQuestion if the bounds of the parameter cut off more
+/// than 5 % of it.
 [[nodiscard]] std::variant<Between, stats::Distribution> read_distribution(const Section& factor, std::string_view key,
                                                                            const ParameterSpec& parameter,
                                                                            const std::filesystem::path& folder);
-/// A column of a CSV file that a factor samples.
+/// Column of a CSV file that a factor samples.
 struct NamedColumn {
     std::size_t factor = 0;
     Cursor place;
     std::string file, column;
 };
-/// What the factor's "sample" names, without reading the file.
+/// Reads the "sample" of a factor, without reading the file.
 [[nodiscard]] NamedColumn read_named_column(const Section& section, std::size_t factor, const ParameterSpec& parameter,
                                             const std::filesystem::path& folder);
-/// The powder file that a key names beside the campaign file.
+/// Reads the powder file that a key names beside the campaign file.
 [[nodiscard]] Powder powder_beside(const Cursor& place, const std::filesystem::path& folder);
-/// Reads the files and gives the factors their columns; those of one file share its rows.
+/// Reads the files and sets the columns of the factors; columns of one file share its rows.
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
                   const std::filesystem::path& folder);
-/// "step" or "whole" of a factor with a range.
+/// Reads "step" or "whole" of a factor with a range.
 [[nodiscard]] std::optional<double> read_step(const Section& factor, const ParameterSpec& parameter,
                                               const Between& range);
-/// Refuses both of a factor without a range, for the reason `why`.
+/// Refuses "step" and "whole" of a factor without a range, for the reason `why`.
 void refuse_steps(const Section& factor, std::string_view why);
-/// "group" and "when" of a factor, the condition unread: store::compile_conditions reads it.
+/// Reads "group" and "when" of a factor; store::compile_conditions parses the condition.
 void read_ties(const Section& section, Factor& factor);
-/// "simplex": marks the factors that it names as shares.
+/// Reads "simplex" and marks its factors as shares.
 void read_simplex(const Cursor& place, ParameterSpace& space);
-/// Refuses what the design cannot do: groups, shares, rows whose shares do not add to one.
+/// Refuses groups and shares that the design does not support, and rows whose shares do not add to one.
 void check_groups(const Cursor& factors, const Campaign& campaign);
 void check_simplex(const Cursor& place, const Campaign& campaign);
-/// Refuses steps, shares and conditions where the design or the rule of convergence needs independent real numbers.
+/// Refuses steps, shares and conditions if the design or the convergence rule needs independent real numbers.
 void check_unfit(const Campaign& campaign);
-/// Values, quantities and expressions over the numbers of other parameters.
+/// Reads fixed values, quantities and expressions of other parameters.
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
 
-/// The scene that a campaign file or one of its experiments names: with a program or a machine, made from its section.
+/// Returns the scene of a campaign file or of one of its experiments; a program or machine is made from its section.
 [[nodiscard]] const SceneInfo& read_scene(const Section& top, const std::filesystem::path& folder);
-/// A campaign file of one experiment, without its text.
+/// Reads a campaign file of one experiment, without its text.
 [[nodiscard]] Campaign campaign_in(const Json& document, const std::filesystem::path& folder);
-/// The experiments of "calibration"; empty: the campaign file is of one.
+/// Returns the experiments of "calibration"; empty: there is only one.
 [[nodiscard]] std::vector<std::string> experiment_names(const Json& document);
-/// The campaign of each experiment, in the order of experiment_names.
+/// Reads the campaign of each experiment, in the order of experiment_names.
 [[nodiscard]] std::vector<Campaign> read_experiments(const Json& document, const std::filesystem::path& folder);
 
-/// The campaign's design: checks options against the design's OptionSpecs and fills in defaults.
+/// Reads the design: checks options against the design's OptionSpecs and adds defaults.
 void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
-/// "calibration" in the place of a design: adds the conditions of its targets to the factors, as levels.
+/// Reads "calibration", which replaces a design, and adds the conditions of its targets to the factors, as levels.
 void read_calibration(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
-/// Puts into the request what a design may know of the factors, and the seed.
+/// Writes the data of the factors that a design may use, and the seed, to the request.
 void set_factors(Campaign& campaign);
-/// A design that grows chooses what comes next itself: what would choose beside it is refused.
+/// Refuses keys that conflict with a growing design, which chooses its next points itself.
 void check_growing(const Cursor& place, const Campaign& campaign);
-/// Rows of factor values from a CSV file whose header names the factors, in any order.
+/// Reads rows of factor values from a CSV file whose header names the factors, in any order.
 [[nodiscard]] designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space,
                                            const std::filesystem::path& folder);
-/// A listed row must lie within the declared range of its factor.
+/// Refuses a value of a listed row outside the declared range of its factor.
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value);
 
-/// One of the scene's scalar observables.
+/// Reads the name of a scalar observable of the scene.
 [[nodiscard]] std::string read_scalar(const Cursor& place, const SceneInfo& scene);
-/// Statistics that are judged, each once.
+/// Reads the judged statistics, each once.
 [[nodiscard]] std::vector<std::string> read_gates(const Section& section, const std::vector<std::string>& standard);
-/// "accuracy": the setting, or the goal; beside a goal the numerical inputs change no seed.
+/// Reads "accuracy": the setting, or the goal. With a goal the numerical inputs do not change the seed.
 std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaign);
-/// Refuses a design whose points are no independent sequences of different cases, and what would stop beside the goal.
+/// Refuses, for an error goal, a design without independent sequences of distinct cases, and other conditions that stop
+/// the campaign.
 void check_accuracy(const Cursor& place, const Campaign& campaign);
 [[nodiscard]] Convergence read_convergence(const Cursor& place, const Campaign& campaign);
-/// "model": the features, as written; whether they can be evaluated is for report::check_features.
+/// Reads the features of "model" as text; report::check_features checks that they can be evaluated.
 [[nodiscard]] std::vector<std::string> read_features(const Cursor& place);
 [[nodiscard]] Limits read_limits(const Cursor& place);
 [[nodiscard]] Execution read_execution(const Cursor& place);

@@ -5,9 +5,9 @@
 //
 //   x_k = low_k + r_k (1 - (1 - u_k)^(1/(d - k))),   r_(k+1) = r_k - (x_k - low_k),   x_d = 1 - sum of the others
 //
-// 1 - (1 - u)^(1/b) is the quantile function of the beta distribution (1, b), so the shares are uniform on the simplex,
-// the Dirichlet distribution of parameters 1, where u is uniform (Devroye 1986, Non-Uniform Random Variate Generation,
-// chapter XI.4). A design keeps its coordinates: that of the last share is not used.
+// 1 - (1 - u)^(1/b) is the quantile function of the beta distribution (1, b). So for uniform u the shares are uniform
+// on the simplex, the Dirichlet distribution with parameters 1 (Devroye 1986, Non-Uniform Random Variate Generation,
+// chapter XI.4). A design keeps all its coordinates; the coordinate of the last share is not used.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -17,9 +17,9 @@
 
 namespace grainsweep::campaign {
 
-/// Returns the shares at the coordinates `u` in [0, 1], as many as there are lower ends; the last one is not used.
+/// Returns the shares at the coordinates `u` in [0, 1], one per lower end; the last coordinate is not used.
 [[nodiscard]] std::vector<double> shares_at(std::span<const double> u, std::span<const double> low);
-/// Replaces the coordinates of the factors that are shares by those at which value_at() gives their shares.
+/// Replaces the coordinates of the factors that are shares by the coordinates at which value_at() returns their shares.
 void share_out(std::span<const Factor> factors, std::span<double> u);
 /// Returns whether shares add to one, up to rounding by 1e-9.
 [[nodiscard]] bool add_to_one(std::span<const double> shares);

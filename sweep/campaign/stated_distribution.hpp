@@ -1,4 +1,4 @@
-// A distribution as it stands in the identity of a campaign.
+// Text of a distribution in the identity of a campaign.
 //
 //   normal MEAN SD within LOW HIGH             lognormal MEDIAN SIGMA within LOW HIGH
 //   triangular LOW MODE HIGH                   beta LOW HIGH A B
@@ -19,19 +19,19 @@ namespace grainsweep::campaign {
 
 [[nodiscard]] std::string stated_text(const stats::Distribution& distribution);
 
-/// A column that a text states; the other columns of its sample are stated elsewhere.
+/// Column of a sample in a text; other texts have its other columns.
 struct StatedColumn {
     std::size_t column = 0;  ///< from 0
     std::string sample;      ///< hash
     std::vector<double> values;
 };
-/// What stated_text() wrote; none: the text states no distribution.
+/// Returns the distribution or column in a text of stated_text(); empty: the text has no distribution.
 [[nodiscard]] std::variant<std::monostate, stats::Distribution, StatedColumn> distribution_in(std::string_view text);
 
 /// Returns the text without the values of a sample, for a sentence.
 [[nodiscard]] std::string_view without_values(std::string_view text);
 
-/// "normal, mean 3.4e-05, sd 3e-06"; "column 1 of 2 of a sample of 4000 rows".
+/// Returns a text such as "normal, mean 3.4e-05, sd 3e-06" or "column 1 of 2 of a sample of 4000 rows".
 [[nodiscard]] std::string described(const stats::Distribution& distribution);
 
 }  // namespace grainsweep::campaign

@@ -1,9 +1,9 @@
 // Values of a factor at multiples of a step, counted from 0: a gap in steps of 0.5 mm, a whole number of blades.
 //
-// m_1 ... m_2: the multiples within the range. The range is widened to [(m_1 - 1/2) step, (m_2 + 1/2) step], and
-// every value of the widened range is rounded to the nearest multiple. So each multiple has a whole cell, the first
-// and the last too, and no value lies outside of the range. Of a linear range all multiples are equally likely; of a
-// logarithmic one each has the probability of its cell, log((m + 1/2)/(m - 1/2)) divided by that of all cells.
+// m_1 ... m_2: multiples within the range. The range is widened to [(m_1 - 1/2) step, (m_2 + 1/2) step], and every
+// value of the widened range is rounded to the nearest multiple. So each multiple has a complete cell, also the first
+// and the last, and no value lies outside the range. In a linear range all multiples are equally likely. In a
+// logarithmic range each has the probability of its cell, proportional to log((m + 1/2)/(m - 1/2)).
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -18,7 +18,7 @@ struct Multiples {
     [[nodiscard]] std::int64_t count() const { return last - first + 1; }
 };
 
-/// More multiples than this are no steps.
+/// Largest number of multiples.
 inline constexpr std::int64_t most_multiples = 1'000'000'000;
 
 /// Returns number * step as the double nearest to the decimal product: 3 * 0.1 is 0.3.

@@ -1,4 +1,4 @@
-// The design of a stored campaign as it was asked: what an archive keeps as text, in the types of a request.
+// Design request of a stored campaign, converted from the text in the database.
 #pragma once
 
 #include "sweep/campaign/identity.hpp"
@@ -8,12 +8,12 @@
 
 namespace grainsweep::campaign {
 
-/// Options, levels and ranges; listed rows are left out, they stand in the places of the campaign. Throws
-/// std::logic_error for a design that this program does not know.
+/// Returns options, levels and ranges; listed rows are not included, because they are in the places of the campaign.
+/// Throws std::logic_error for an unknown design.
 [[nodiscard]] designs::DesignRequest request_of(const Identity& identity);
-/// The fixed values of parameters of the scene, without those that follow from an expression.
+/// Returns the fixed values of the scene's parameters, without expressions.
 [[nodiscard]] Inputs fixed_values(const Identity& identity, const SceneInfo& scene);
-/// The factors as they were asked; levels as text.
+/// Returns the factors of the campaign; levels as text.
 [[nodiscard]] std::vector<Factor> factors_asked(const Identity& identity);
 
 }  // namespace grainsweep::campaign

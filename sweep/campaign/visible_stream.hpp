@@ -1,5 +1,5 @@
-// A stream that shows control characters instead of sending them to the terminal: names, messages and logs come from
-// databases, programs and files of anybody.
+// Stream that shows control characters instead of sending them to the terminal, because names, messages and logs can
+// come from untrusted databases, programs and files.
 #pragma once
 
 #include <ostream>
@@ -7,7 +7,7 @@
 
 namespace grainsweep::campaign {
 
-/// Stands in front of a stream's buffer until it goes.
+/// Filter in front of a stream's buffer, until it is destroyed.
 class VisibleStream : public std::streambuf {
 public:
     explicit VisibleStream(std::ostream& stream);
@@ -23,7 +23,7 @@ protected:
 private:
     std::ostream& stream_;
     std::streambuf* behind_;
-    bool half_ = false;  ///< the first byte of a character that may be a control character waits for its second
+    bool half_ = false;  ///< the first byte of a possible control character is stored until the second one
 };
 
 }  // namespace grainsweep::campaign

@@ -1,4 +1,4 @@
-// A question that cannot be asked: where, what value, which rule, the nearest right word. Exit code 2.
+// Error of a user's input, with place, value, rule and the nearest valid word. Exit code 2.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// "path: got value; rule. Did you mean 'x'?"
+/// Returns the error "path: got value; rule. Did you mean 'x'?".
 [[nodiscard]] WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
                                            std::string_view suggestion = {});
 
-/// What `ask` answers; its WrongQuestion names the file before the path within it.
+/// Returns the result of `ask`; adds the file to its WrongQuestion, before the path.
 template <class Ask>
 auto asked_in(const std::filesystem::path& file, const Ask& ask) {
     try {
@@ -30,7 +30,7 @@ auto asked_in(const std::filesystem::path& file, const Ask& ask) {
     }
 }
 
-/// Names that somebody else holds, for the length of a call.
+/// List of names that others own, for the duration of a call.
 class WordList : public std::vector<std::string_view> {
 public:
     template <class Range>
@@ -38,17 +38,17 @@ public:
         : vector(std::begin(range), std::end(range)) {}
 };
 
-/// Those of things that have one.
+/// Returns the names of things with a name.
 template <class Things>
 [[nodiscard]] WordList names_of(const Things& things) {
     return std::views::transform(things, [](const auto& thing) { return std::string_view(thing.name); });
 }
 
-/// The names, separated by commas; "none" where there are none.
+/// Returns the names, separated by commas; "none" if there are none.
 [[nodiscard]] std::string listed(const WordList& names);
 
-/// Returns a suggestion for `word`: the candidate it is a synonym of (synonyms.hpp), else the one with the smallest
-/// edit distance, else the only one with `word` between its underscores. Empty where none is near.
+/// Returns a suggestion for `word`: by the table of synonyms (synonyms.hpp), else the candidate with the smallest edit
+/// distance, else the only one with `word` between its underscores. Empty if none is near.
 [[nodiscard]] std::string nearest_word(std::string_view word, const WordList& candidates);
 
 }  // namespace grainsweep::campaign

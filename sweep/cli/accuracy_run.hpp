@@ -1,8 +1,8 @@
 // `accuracy`: the same points of a campaign at every setting of the numerics, and with every single numerical input of
 // a cheaper setting beside the most accurate one.
 //
-// Each is a campaign of its own, NAME_fast, NAME_reference_precision_mixed, ..., in a database of their own, so that
-// the same command again goes on where it was interrupted, and more points extend what is there.
+// Each is a campaign, NAME_fast, NAME_reference_precision_mixed, ..., in a separate database. The same command
+// continues after an interruption, and more points extend the campaigns.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -16,7 +16,7 @@
 
 namespace grainsweep::cli {
 
-/// One way to compute the points.
+/// Numerics of one campaign.
 struct Numerics {
     std::string name;  ///< of its campaign
     std::string says;

@@ -1,4 +1,4 @@
-// What this executable is and where it runs.
+// Facts about this executable and its machine.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -7,17 +7,17 @@
 
 namespace grainsweep::cli {
 
-/// Version, without the commit.
+/// Returns the version without the commit.
 [[nodiscard]] std::string program_version();
-/// Version and commit; "-modified" marks a tree with changes of its own.
+/// Returns version and commit; "-modified" marks a modified source tree.
 [[nodiscard]] std::string build_version();
-/// Id of this executable, hexadecimal, put there by the linker: equal for equal machine code.
+/// Returns the id of this executable, hexadecimal, made by the linker: equal for equal machine code.
 [[nodiscard]] std::string build_id();
-/// This process as one that computes.
+/// Returns the program and machine of this process.
 [[nodiscard]] campaign::Computer this_computer();
-/// Version, commit, compiler, flags, instruction path, processor and host of this process.
+/// Returns version, commit, compiler, flags, instruction path, processor and host of this process.
 [[nodiscard]] store::Provenance provenance();
-/// What --version prints: a line each.
+/// Returns the output of --version.
 [[nodiscard]] std::string version_text();
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// `collect`: from the answers in a spool to those of an archive.
+// `collect`: imports the answers of a spool into a database.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -14,17 +14,17 @@
 
 namespace grainsweep::cli {
 
-/// The campaign of a spool. Throws WrongQuestion where there is none, or where a file that it names has changed.
+/// Returns the campaign of a spool. Throws WrongQuestion if there is none, or a file that it names has changed.
 [[nodiscard]] campaign::Campaign campaign_of_spool(const std::filesystem::path& spool);
-/// Throws WrongQuestion where these are not the cases that the spool's tasks were asked.
+/// Throws WrongQuestion if these are not the cases of the spool.
 void refuse_other_cases(const std::filesystem::path& spool, const campaign::Cases& cases);
-/// Into the archive, where the cases are enrolled, and into their states.
+/// Imports the answers into the database, in which the cases must be enrolled, and into their states.
 [[nodiscard]] spool::Collected import_answers(const std::filesystem::path& spool, const campaign::Campaign& campaign,
                                               const campaign::Cases& cases, store::Store& store,
                                               std::vector<store::CaseState>& states,
                                               const std::function<void(const std::string&)>& note);
 
-/// Of a run that computes nothing.
+/// Crew of a run that computes no case.
 class NoCrew final : public workers::Crew {
 public:
     void expect(std::size_t) override {}

@@ -1,4 +1,4 @@
-// What a command is: a name, a sentence, its arguments and what it does. main has the table.
+// Command: a name, a sentence, its arguments and its action. main has the table.
 #pragma once
 
 #include "sweep/cli/parser.hpp"
@@ -12,23 +12,23 @@
 
 namespace grainsweep::cli {
 
-/// Runs the command after its arguments were read; returns the exit code.
+/// Action of a command after its arguments are parsed; returns the exit code.
 using Action = std::function<int()>;
 
 struct Command {
     std::string name;
     std::string summary;
-    /// Adds the command's arguments to its parser and returns what to do with them. `format` is the value of
-    /// --format, which every command has; it is read when the action runs.
+    /// Declares the command's arguments and returns its action. `format`: value of --format, which every command has;
+    /// it is read when the action runs.
     std::function<Action(Parser& parser, const report::Format& format)> declare;
     bool hidden = false;
-    bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
-    std::string example = {};  ///< a line of shell that --help ends with
-    bool workbook = false;  ///< --format may be xlsx
+    bool verbatim = false;     ///< its text is also for programs: lines are never wrapped
+    std::string example = {};  ///< example at the end of --help
+    bool workbook = false;     ///< --format may be xlsx
 };
 
-/// A command that reads a Request: `arguments(parser, request)` declares what is read, `act(request, format)` returns
-/// the exit code.
+/// Makes a command with a Request: `arguments(parser, request)` declares its arguments, `act(request, format)` runs it
+/// and returns the exit code.
 template <class Request>
 Command command(std::string name, std::string summary, auto arguments, auto act) {
     return {std::move(name), std::move(summary),
@@ -38,7 +38,7 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
                 return [act, request, &format] { return act(*request, format); };
             }};
 }
-/// Not listed by --help.
+/// Makes a command that --help does not list.
 [[nodiscard]] inline Command hidden(Command command) {
     command.hidden = true;
     return command;
@@ -69,25 +69,25 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> powder_commands();     // powder
 [[nodiscard]] std::vector<Command> manual_commands();     // completion, manual
 
-/// All of them, in the order --help shows.
+/// Returns all commands, in the order of --help.
 [[nodiscard]] std::vector<Command> all_commands();
 
-/// One argument of a command, for what is generated from the table of commands.
+/// Argument of a command, for texts generated from the table of commands.
 struct ArgumentInfo {
-    std::vector<std::string> names;  ///< "-o", "--output"; none: a place
+    std::vector<std::string> names;  ///< "-o", "--output"; empty: a positional argument
     std::string place;               ///< "CONFIG", "DB"; empty: an option
-    std::string value;               ///< what stands for its value; empty: a flag
+    std::string value;               ///< placeholder of its value; empty: a flag
     std::string help;
     bool required = false, repeated = false;
 };
 struct CommandInfo {
     std::string name, summary;
-    std::vector<ArgumentInfo> arguments;  ///< --help among them
+    std::vector<ArgumentInfo> arguments;  ///< including --help
 };
 [[nodiscard]] std::vector<CommandInfo> describe(const std::vector<Command>& commands);
 
-/// The action of the command that the arguments name; for --help and --version, which print, one that does nothing
-/// more. Throws WrongQuestion with one sentence, and the nearest word, for arguments that no command has.
+/// Returns the action of the command in the arguments. --help and --version print their text and return an action that
+/// does nothing. Throws WrongQuestion with one sentence, and the nearest word, for unknown arguments.
 [[nodiscard]] Action parse_command_line(const std::vector<Command>& commands, int argc, const char* const* argv);
 
 }  // namespace grainsweep::cli

@@ -8,9 +8,9 @@
 
 namespace grainsweep::cli {
 
-/// A script to be sourced, or to be installed as share/bash-completion/completions/grainsweep.
+/// Returns a script to be sourced, or to be installed as share/bash-completion/completions/grainsweep.
 [[nodiscard]] std::string bash_completion(std::span<const CommandInfo> commands);
-/// A function to be installed as _grainsweep in a folder of fpath; it can be sourced too.
+/// Returns a function to be installed as _grainsweep in a folder of fpath, or to be sourced.
 [[nodiscard]] std::string zsh_completion(std::span<const CommandInfo> commands);
 
 }  // namespace grainsweep::cli

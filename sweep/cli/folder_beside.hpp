@@ -1,4 +1,4 @@
-// Where a run keeps what is not in its database: folders of the same name beside it.
+// Folders for data of a run outside its database; they have its name and lie beside it.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace grainsweep::cli {
 
-/// "x" + extension for x.db, in its folder; never the file itself. Absolute.
+/// Returns "x" + extension for x.db, in its folder, as an absolute path; never the file itself.
 [[nodiscard]] inline std::filesystem::path folder_beside(const std::filesystem::path& file,
                                                          std::string_view extension) {
     std::filesystem::path folder = std::filesystem::absolute(file);
@@ -15,7 +15,7 @@ namespace grainsweep::cli {
 }
 
 inline constexpr std::string_view of_artefacts = ".artefacts";
-/// Of the cases that a program answers.
+/// Extension of the folder for cases that a program answers.
 inline constexpr std::string_view of_cases = ".cases";
 
 }  // namespace grainsweep::cli

@@ -1,12 +1,13 @@
-// An end to what cannot be asked to end: one function of SQLite may work for hours between two looks at the clock.
+// Forced end of a computation that cannot be interrupted: a function of SQLite may run for hours between two checks of
+// the time.
 #pragma once
 
 #include <string>
 
 namespace grainsweep::cli {
 
-/// While it lives, the program ends with exit code 2 and the sentence once it has taken so much processor time; 0:
-/// never. Meant to come after a gentler limit of the same time.
+/// Guard that ends the program with exit code 2 and the sentence after this processor time; 0: never. It backs up a
+/// softer limit of the same time.
 class HardStop {
 public:
     HardStop(double seconds, const std::string& sentence);

@@ -1,4 +1,4 @@
-// The manual page, generated from the table of commands, the scenes, the designs and the keys of a campaign file.
+// Manual page, generated from the table of commands, the scenes, the designs and the keys of a campaign file.
 #pragma once
 
 #include "sweep/cli/command.hpp"
@@ -8,7 +8,7 @@
 
 namespace grainsweep::cli {
 
-/// grainsweep.1 in the man macros of troff.
+/// Returns grainsweep.1 in the man macros of troff.
 [[nodiscard]] std::string manual_page(std::span<const CommandInfo> commands);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// Tells readers beside a run what it does now (live/now.hpp), once a second.
+// Writer of the file with the present state of a run (live/now.hpp), once a second.
 #pragma once
 
 #include "sweep/live/now.hpp"

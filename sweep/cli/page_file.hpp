@@ -1,4 +1,4 @@
-// Where pages, figures and workbooks go: `report -o`, `--watch`, `figure -o`, `query -o`.
+// Output files for pages, figures and workbooks: `report -o`, `--watch`, `figure -o`, `query -o`.
 #pragma once
 
 #include <string>
@@ -6,20 +6,19 @@
 
 namespace grainsweep::cli {
 
-/// A kind of file that the program writes: its word, and how such a file starts, without regard to case.
+/// Kind of output file: its name, and the start of such a file in any case.
 struct FileKind {
     std::string_view word, start;
 };
 inline constexpr FileKind html_page{"page", "<!doctype html>"};
 
-/// Throws WrongQuestion, naming the option, where no page can be: a folder, no such folder, no permission, a file of
-/// the database (empty: there is none). A file that is there and is of another kind belongs to the user: a campaign
-/// file, say.
+/// Throws WrongQuestion with the option if the page cannot be written: a folder, no such folder, no permission, a file
+/// of the database (empty: none), or an existing file of another kind, such as a campaign file.
 void check_page_file(std::string_view option, const std::string& output, const std::string& database,
                      const FileKind& kind = html_page);
 
-/// The page in its place when whole, so that a failure leaves what was there; straight into what is no file.
-/// Throws BrokenWorld.
+/// Writes the page and then moves it to its place, so that a failure leaves an existing file unchanged; writes directly
+/// to devices and pipes. Throws BrokenWorld.
 void write_page_file(const std::string& output, const std::string& page);
 
 }  // namespace grainsweep::cli

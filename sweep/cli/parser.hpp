@@ -1,5 +1,4 @@
-// The arguments of one command: what a command declares, and nothing of the library behind it (CLI11), whose headers
-// take longer to compile than a command does.
+// Arguments of a command, without the headers of the library (CLI11), which take longer to compile than a command.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@ class Option;
 
 namespace grainsweep::cli {
 
-/// A rule for an argument: a whole number from `least` to `most`.
+/// Rule for an argument: a whole number from `least` to `most`.
 struct WholeNumber {
     std::int64_t least = 0;
     std::int64_t most = std::numeric_limits<std::int64_t>::max();
@@ -24,30 +23,30 @@ struct WholeNumber {
     return {least, most};
 }
 
-/// One argument; every call returns it again.
+/// Argument; every call returns it.
 class Option {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
     Option* required();
     Option* check(WholeNumber rule);
-    /// Of a list: false takes one value each time the option is given.
+    /// For a list: false takes one value for each occurrence of the option.
     Option* allow_extra_args(bool allowed);
-    /// Digits may be grouped by underscores, as csv prints large numbers.
+    /// Allows underscores between digits, as in large numbers of csv.
     Option* grouped_digits();
-    /// --help shows the value the variable has now.
+    /// Shows the present value of the variable in --help.
     Option* capture_default_str();
 
 private:
     CLI::Option* option_;
 };
 
-/// Declares arguments: "DB" is a place, "[NAME]" one that may be empty, "-o,--output FILE" an option with two
-/// names and the word for its value in --help. `into` is written when the command line is read and must still
-/// exist then.
+/// Parser that declares arguments: "DB" is positional, "[NAME]" positional and optional, "-o,--output FILE" an option
+/// with two names and the placeholder of its value in --help. `into` is written when the command line is parsed and
+/// must still exist then.
 class Parser {
 public:
     explicit Parser(CLI::App& app) : app_(&app) {}
-    /// Of a text, a path, a list of texts, a number, or a whole number that may be absent.
+    /// Declares an argument: a text, a path, a list of texts, a number, or an optional whole number.
     template <class T>
     Option* add_option(const std::string& names, T& into, const std::string& help);
     Option* add_flag(const std::string& names, bool& into, const std::string& help);

@@ -1,4 +1,4 @@
-// --path: a narrower instruction set than the widest this processor has.
+// Option --path: a narrower instruction set than the widest of this processor.
 #pragma once
 
 #include "sweep/cli/parser.hpp"
@@ -8,13 +8,13 @@
 
 namespace grainsweep::cli {
 
-/// Adds --path to a command; empty where it is not given, which means `otherwise`.
+/// Adds --path to a command. The word is empty if the option is not given, which means `otherwise`.
 void declare_path(Parser& parser, std::string& word, std::string_view otherwise = "the widest of the processor");
-/// Makes this process compute with that path; an empty word changes nothing. Throws WrongQuestion on an unknown word
-/// and on a path this processor lacks.
+/// Makes this process compute with this path; an empty word has no effect. Throws WrongQuestion for an unknown word and
+/// for a path that this processor lacks.
 void use_path(const std::string& word);
-/// Makes this process compute with the path that an archive names (instruction_path() of then), where this processor
-/// has it: only the same path repeats the same bits.
+/// Makes this process compute with the path stored in a database, if this processor has it, because only the same path
+/// gives the same bits.
 void use_path_of_old(std::string_view path);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// Pictures on the way, for the commands that compute a case in this process: --vtk DIR for ParaView, --watch FILE.html
+// Pictures during a run, for commands that compute a case in this process: --vtk DIR for ParaView, --watch FILE.html
 // for any browser, --frames N for both.
 #pragma once
 
@@ -21,25 +21,25 @@ namespace grainsweep::cli {
 
 struct PictureRequest {
     std::string folder;  ///< of VTK files; empty: none
-    std::string page;    ///< to watch the case; empty: none
+    std::string page;    ///< page with the film; empty: none
     std::optional<std::int64_t> frames;
 };
 
 void declare_pictures(Parser& parser, PictureRequest& request);
 
-/// The pictures of one case. Throws WrongQuestion where the page cannot be written, before anything is computed.
+/// Pictures of one case. Throws WrongQuestion before the computation if the page cannot be written.
 class Pictures {
 public:
     Pictures(PictureRequest request, campaign::Case question);
     ~Pictures();
 
-    /// Takes what is asked for, nothing where nothing is. Throws WrongQuestion on its first frame where the scene shows
-    /// nothing, BrokenWorld where a file cannot be written.
+    /// Returns a camera for the requested pictures. At its first frame it throws WrongQuestion if the scene shows
+    /// nothing, BrokenWorld if a file cannot be written.
     [[nodiscard]] workers::Camera camera();
     /// Writes the page.
     void finish(const campaign::CaseResult& result);
-    /// Says which pictures were written, where any were asked for; elsewhere than on standard output where that holds
-    /// one value for a program.
+    /// Prints which pictures were written, if any were requested; on standard error if standard output has one value
+    /// for a program.
     void say(bool on_standard_output) const;
 
 private:

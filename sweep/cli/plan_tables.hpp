@@ -1,4 +1,4 @@
-// Tables of `plan`: the factors, and those that follow a distribution.
+// Tables of `plan`: factors, and distributions of factors.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -8,8 +8,8 @@ namespace grainsweep::cli {
 
 [[nodiscard]] store::Table factors_of(const campaign::Campaign& campaign);
 
-/// Quantiles of the factors that follow a distribution, its density as a row of signs over the range, and what the
-/// bounds of the parameter cut off; no rows where none does.
+/// Returns, for factors with a distribution, quantiles, the density as a row of characters along the range, and the
+/// share cut off by the bounds of the parameter; no rows if there are none.
 [[nodiscard]] store::Table distributions_of(const campaign::Campaign& campaign);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// One case of a campaign, computed to find out what the others will take.
+// One case of a campaign, computed to measure the time of the others.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -22,19 +22,19 @@ struct Probe {
     double measured = 0;   ///< seconds: processor time of a scene, time of a program
 };
 
-/// Computes, in this process, the case of median predicted cost among those that are not settled, proven or impossible;
-/// none where there is no such case. Nothing is stored.
+/// Computes, in this process, the case of median predicted cost among the cases that are not settled, proven or
+/// impossible. Empty if there is no such case. The answer is not stored.
 [[nodiscard]] std::optional<Probe> probe_median_case(const campaign::Campaign& campaign, const campaign::Cases& cases,
                                                      const campaign::Forecast& forecast,
                                                      const std::vector<bool>& settled);
 
-/// Multiplies predicted seconds by measured seconds divided by predicted ones.
+/// Multiplies all predicted seconds by the ratio of measured to predicted seconds of the probe.
 void scale_by(const Probe& probe, campaign::Forecast& forecast);
 
 [[nodiscard]] std::string probe_text(const Probe& probe);
 [[nodiscard]] report::Json probe_json(const Probe& probe);
 
-/// 0.25 s, 1 min 15 s.
+/// Returns a text such as "0.25 s" or "1 min 15 s".
 [[nodiscard]] std::string seconds_text(double seconds);
 
 }  // namespace grainsweep::cli

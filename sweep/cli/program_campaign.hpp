@@ -1,5 +1,4 @@
-// A campaign whose cases a program answers, as far as commands have to see to it: is the program here, which version is
-// it, where do the cases' folders lie.
+// Preparation of a campaign whose cases a program answers: existence and version of the program, folders of the cases.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -15,13 +14,13 @@ namespace grainsweep::cli {
 /// start elsewhere) and runs its version command, because the version is part of every case's identity. Messages name
 /// `config`.
 [[nodiscard]] campaign::Campaign with_program(campaign::Campaign campaign, const std::filesystem::path& config);
-/// Reads a campaign file so; `experiment` chooses one of a calibration over several.
+/// Reads and checks a campaign file in this way; `experiment` chooses one of a calibration with several.
 [[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config,
                                                    std::string_view experiment = {});
-/// The same of a text in the place of the file.
+/// Parses and checks a text instead of the file.
 [[nodiscard]] campaign::Campaign parse_with_program(std::string_view text, const std::filesystem::path& config);
 
-/// Puts the program where workers find it, for as long as this lives; then removes what is not kept.
+/// Stored program for workers, during the lifetime of this object; then files that are not kept are removed.
 class StagedProgram {
 public:
     StagedProgram(std::shared_ptr<const campaign::Program> program, std::filesystem::path cases);

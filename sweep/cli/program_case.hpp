@@ -1,4 +1,4 @@
-// One case of a program in this process: solve and replay.
+// One case of a program in this process, for solve and replay.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -10,8 +10,8 @@
 
 namespace grainsweep::cli {
 
-/// `keep`: a new folder that the case is answered in and that stays; empty: one of its own, removed in the end.
-/// Refuses pictures, which a program does not give, and a folder that is there.
+/// Returns the answer of a case. `keep`: a new folder for the case, which is kept; empty: a temporary one. Refuses
+/// pictures, which a program does not have, and an existing folder.
 [[nodiscard]] campaign::CaseResult answer_by_program(std::shared_ptr<const campaign::Program> program,
                                                      const campaign::Case& question, std::int64_t attempt,
                                                      std::optional<double> limit_seconds,

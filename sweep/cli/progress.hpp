@@ -10,21 +10,21 @@ namespace grainsweep::cli {
 
 class ProgressLine {
 public:
-    /// quiet: notes only. `cores` divide the predicted time left. `end`: what that time ends, where it is not the run:
-    /// "in this wave".
+    /// quiet: only notes. The predicted time left is divided by `cores`. `end`: the part of the run to which this time
+    /// refers, such as "in this wave"; empty: the run.
     ProgressLine(bool quiet, std::size_t cores, std::string end = {});
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void update(const schedule::Progress& progress);
-    /// One line above the bar. The first few are shown, the rest is counted: `explain` knows them all.
+    /// Prints a line above the bar. The first few notes are printed, the others are counted; `explain` shows all.
     void note(const std::string& text);
 
 private:
     using Clock = std::chrono::steady_clock;
     [[nodiscard]] std::string describe(const schedule::Progress& progress) const;
-    /// Fits the text to the terminal, with a bar where there is room, and colours it.
+    /// Returns the text fitted to the terminal, with a bar if there is room, and with colours.
     [[nodiscard]] std::string on_terminal(const std::string& text, const schedule::Plan::Tally& tally) const;
     void erase();
 
@@ -37,11 +37,11 @@ private:
     std::string last_;
 };
 
-/// Seconds until the run ends: predicted cost of what it will still compute, at the pace of what it has done so far;
-/// until that is 2 % of the whole, as predicted on so many cores.
+/// Returns the seconds until the end of the run: the predicted cost of the remaining cases, scaled by the measured
+/// speed so far. Before 2 % of the whole are done, the prediction for this number of cores.
 [[nodiscard]] double seconds_left(const schedule::Progress& progress, std::size_t cores);
 
-/// 75 -> "1 min 15 s".
+/// Returns a duration as text: 75 -> "1 min 15 s".
 [[nodiscard]] std::string duration(double seconds);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// `query`: one statement that only reads, as text, csv, json or a workbook.
+// `query`: one read-only statement, with its result as text, csv, json or a workbook.
 #pragma once
 
 #include "sweep/report/table.hpp"
@@ -13,7 +13,8 @@ struct QueryRequest {
     double seconds = 600;  ///< of processor time; 0: no limit
 };
 
-/// Returns the exit code. Throws WrongQuestion for a statement that is refused, and for a workbook on a terminal.
+/// Runs the query and returns the exit code. Throws WrongQuestion for a refused statement, and for a workbook on a
+/// terminal.
 [[nodiscard]] int query(const QueryRequest& request, report::Format format);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// `replay`: a stored case computed again in this process and compared with what is stored.
+// `replay`: computes a stored case again in this process and compares the answers.
 #pragma once
 
 #include "sweep/cli/pictures.hpp"
@@ -11,15 +11,15 @@
 namespace grainsweep::cli {
 
 struct ReplayRequest {
-    std::string database, id;  ///< `id`: of the case, or its beginning
+    std::string database, id;  ///< `id`: id of the case, or its beginning
     PictureRequest pictures;
-    std::string path;                 ///< instruction path; empty: that of the archive
-    std::optional<double> tolerance;  ///< relative; none: bit for bit where that can be expected
+    std::string path;                 ///< instruction path; empty: as stored
+    std::optional<double> tolerance;  ///< relative; empty: equal bits if they can be expected
     std::string keep;                 ///< folder for the case of a program
     std::int64_t threads = 0;         ///< 0: one for each core of the job
 };
 
-/// Returns the exit code: 0 where both agree. Throws WrongQuestion where there is nothing to compare with.
+/// Runs the command and returns the exit code: 0 if both agree. Throws WrongQuestion if there is no stored answer.
 [[nodiscard]] int replay(const ReplayRequest& request, report::Format format);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// report --watch N: films of the cases that span what a campaign found, computed again in this process.
+// report --watch N: films of cases that span the results of a campaign, computed again in this process.
 #pragma once
 
 #include "sweep/report/page.hpp"
@@ -9,8 +9,8 @@
 
 namespace grainsweep::cli {
 
-/// At most `count` films in all, smaller than those of `replay --watch`: fewer frames and spheres, velocity alone as
-/// colour. Says on standard error which case is computed, what it left out and why.
+/// Returns at most `count` films, smaller than the films of `replay --watch`: fewer frames and spheres, only velocity
+/// as colour. Prints on standard error which case is computed, and which cases are left out and why.
 [[nodiscard]] std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t count);
 
 }  // namespace grainsweep::cli

@@ -1,10 +1,10 @@
-// `run` of a campaign that says what its answer may be off by ("accuracy" as an object).
+// `run` of a campaign with an error goal ("accuracy" as an object).
 //
-// Each setting is a campaign beside NAME in the same database, over the first points of the same design with the same
-// seeds: NAME_fast, NAME_balanced, ..., NAME_reference. NAME itself has the many cases, at the setting that a pilot of
-// two points a sequence chose. Then cases are added to NAME and NAME_reference until numerics and statistics together
-// are within the tolerance at two checks in a row. What comes next follows from stored values and predicted costs
-// alone: interrupted, resumed, with one worker or many, the same cases run.
+// Each setting is a campaign beside NAME in the same database, with the first points of the same design and the same
+// seeds: NAME_fast, NAME_balanced, ..., NAME_reference. A pilot of two points per sequence chooses the setting of NAME,
+// which has most cases. Then cases are added to NAME and NAME_reference until the error from numerics and statistics is
+// within the tolerance at two checks in a row. The next cases depend only on stored values and predicted costs. So the
+// same cases run after an interruption, and with one worker or many.
 #pragma once
 
 #include "sweep/cli/run_campaign.hpp"

@@ -1,4 +1,4 @@
-// `run`: from a campaign file to an archive, with everything wired together.
+// `run`: computes a campaign file into a database, with all parts connected.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -12,37 +12,40 @@ namespace grainsweep::cli {
 
 struct RunRequest {
     std::filesystem::path config;
-    std::string text;                     ///< in place of the contents of `config`; empty: those
-    std::string experiment;               ///< of a calibration over several; empty: the file has one campaign
-    bool goes_on = false;                 ///< warnings were printed when this run began
+    std::string text;                     ///< replaces the contents of `config`; empty: the contents
+    std::string experiment;               ///< experiment of a calibration with several; empty: the file has one
+                                          ///< campaign
+    bool goes_on = false;                 ///< the warnings have already been printed
     std::filesystem::path database;       ///< empty: NAME.db in the current folder
-    std::filesystem::path artefacts;      ///< folder of checkpoints and starting states; empty: beside the database
-    std::optional<std::int64_t> workers;  ///< overrides the file's
-    std::optional<std::int64_t> stop_after_failures;  ///< start nothing more after so many
-    std::optional<campaign::Outcome> again;           ///< ask again what ended like this
-    std::optional<std::int64_t> max_cases;            ///< settle at most so many
-    std::optional<std::int64_t> points;               ///< of the design, in place of the file's
-    std::string adopt;  ///< campaign whose answers are taken over from an earlier version of the program; empty: none
-    /// Not empty: nothing is computed; the folder that tasks of `work` share says what is asked, and their answers are
-    /// put into the database.
+    std::filesystem::path artefacts;      ///< folder of checkpoints and shared starting states; empty: beside the
+                                          ///< database
+    std::optional<std::int64_t> workers;  ///< overrides the campaign file
+    std::optional<std::int64_t> stop_after_failures;  ///< start no case after so many failed cases
+    std::optional<campaign::Outcome> again;           ///< rerun cases with this outcome
+    std::optional<std::int64_t> max_cases;            ///< settle at most so many cases
+    std::optional<std::int64_t> points;               ///< points of the design, instead of the number in the file
+    std::string adopt;  ///< campaign of an earlier version of the program whose answers are taken over; empty: none
+    /// Folder shared by the tasks of `work`. If not empty, no case is computed: the folder defines the campaign, and
+    /// its answers are imported into the database.
     std::filesystem::path spool;
     bool network_disk = false;  ///< the database may lie on a network file system
     bool quiet = false;
     bool calibrates = false;  ///< the campaign file must give a calibration
-    bool powder = false;      ///< of a calibration: its powder is written beside the database
-    std::string path;         ///< instruction path for the workers; empty: each the widest it has
+    bool powder = false;      ///< for a calibration: its powder is written beside the database
+    std::string path;         ///< instruction path of the workers; empty: the widest of each
 };
 
-/// What became of the run; the database is closed again.
+/// Result of a run, after the database is closed.
 struct RunReport {
     int exit_code = 0;
     std::string campaign;
     std::filesystem::path database;
-    std::string ending;             ///< one sentence; where the campaign gives a rule, whether it has converged by it
-    std::optional<bool> converged;  ///< by the campaign's rule; none: it gives no rule
+    std::string ending;             ///< one sentence; with a convergence rule it says whether the campaign has
+                                    ///< converged
+    std::optional<bool> converged;  ///< by the campaign's rule; empty: no rule
     bool finished = false;          ///< no case is left
-    std::int64_t settled = 0;       ///< cases in this run
-    std::int64_t points = 0;        ///< of the design, as far as answers determine them
+    std::int64_t settled = 0;       ///< cases settled in this run
+    std::int64_t points = 0;        ///< points of the design, as far as answers determine them
 };
 
 [[nodiscard]] RunReport run_campaign(const RunRequest& request);

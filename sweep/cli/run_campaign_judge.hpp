@@ -1,4 +1,4 @@
-// The judge of a campaign that runs.
+// Judge of a running campaign.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -10,8 +10,8 @@
 
 namespace grainsweep::cli {
 
-/// Makes the judge of the campaign's rule, with the values that the archive has; none where it gives no rule. `placed`:
-/// every place that is stored.
+/// Returns the judge of the campaign's rule, with the stored values; nullptr without a rule. `placed`: every stored
+/// place.
 [[nodiscard]] std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, const store::Store& store,
                                                           const campaign::Cases& placed, std::int64_t candidates);
 

@@ -1,4 +1,4 @@
-// The last line of a run and its exit code.
+// Last line of a run and its exit code.
 #pragma once
 
 #include "sweep/schedule/judge.hpp"
@@ -9,9 +9,9 @@
 
 namespace grainsweep::cli {
 
-/// Returns what the last line says of convergence; empty where the campaign gives no rule.
+/// Returns the part of the last line on convergence; empty without a rule.
 [[nodiscard]] std::string standing(const schedule::Judge* judge);
-/// Returns the sentence a run ends with.
+/// Returns the last sentence of a run.
 [[nodiscard]] std::string summary_of(schedule::Ending ending, const schedule::Plan::Tally& tally,
                                      const schedule::Judge* judge);
 /// Returns 0: every case is settled, or the campaign converged; 1: some are not; 75: out of time; 130: interrupted.

@@ -1,4 +1,4 @@
-// What a run ends with on standard output.
+// Summary of a run on standard output.
 #pragma once
 
 #include "sweep/cli/run_campaign.hpp"
@@ -6,7 +6,7 @@
 
 namespace grainsweep::cli {
 
-/// What a program wants to know of a finished run; the science is in the database.
+/// Prints the data of a finished run that a calling program needs; the results are in the database.
 void show_run(const RunReport& run, report::Format format);
 
 }  // namespace grainsweep::cli

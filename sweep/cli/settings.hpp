@@ -1,4 +1,4 @@
-// Settings that a command is given: one by NAME=VALUE for every factor, or a CSV file of them.
+// Settings in the arguments of a command: one setting by NAME=VALUE for every factor, or a CSV file of settings.
 #pragma once
 
 #include "sweep/study/window_space.hpp"
@@ -10,17 +10,17 @@
 
 namespace grainsweep::cli {
 
-/// Every factor once. Throws WrongQuestion naming the factors that are missing, the nearest name of one there is not,
-/// or a value that is no number or no level of its factor.
+/// Reads every factor once. Throws WrongQuestion with missing factors, the nearest name for an unknown factor, or a
+/// value that is no number or level of its factor.
 [[nodiscard]] study::Setting read_setting(std::span<const study::ModelFactor> factors,
                                           std::span<const std::string> assignments);
 
-/// Some of the factors, each once and within its range. Throws WrongQuestion as read_setting does, and for a value
-/// outside of the range.
+/// Reads some of the factors, each once and within its range. Throws WrongQuestion like read_setting, and for a value
+/// outside the range.
 [[nodiscard]] study::Held read_held(std::span<const study::ModelFactor> factors,
                                     std::span<const std::string> assignments);
 
-/// A header that names every factor, in any order, then one setting a line.
+/// Reads a file with a header that names every factor, in any order, then one setting per line.
 [[nodiscard]] std::vector<study::Setting> read_settings_file(const std::filesystem::path& file,
                                                              std::span<const study::ModelFactor> factors);
 

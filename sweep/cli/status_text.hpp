@@ -1,4 +1,4 @@
-// `status` for reading: a block per campaign, a unit on every number.
+// `status` as text: a block per campaign, with units.
 #pragma once
 
 #include "sweep/live/now.hpp"
@@ -8,14 +8,14 @@
 
 namespace grainsweep::cli {
 
-/// The rows of Store::status(). Outcomes that no case has are left out; a column this function does not know is shown
-/// by its name.
+/// Writes the rows of Store::status(). Outcomes without a case are left out. Unknown columns are shown with their
+/// names.
 void write_status(std::ostream& out, const store::Table& status);
 
-/// The cases that a run computes now, one row each: case, point, each factor, done (0 to 1), seconds, attempt, host.
-/// The first `most` only.
+/// Returns the first `most` running cases, one row each: case, point, each factor, done (0 to 1), seconds, attempt,
+/// host.
 [[nodiscard]] store::Table running_cases(const store::Store& archive, const live::Now& now, std::size_t most);
-/// What the run says of itself, and its running cases.
+/// Writes the state of the run and its running cases.
 void write_now(std::ostream& out, const store::Store& archive, const live::Now& now);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// A case of an archive as commands name and show it, and as it is computed again.
+// Stored case: lookup by id, heading, and conversion for another computation.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -8,17 +8,18 @@
 
 namespace grainsweep::cli {
 
-/// By its id or the beginning of one. Throws WrongQuestion where there is none.
+/// Returns the case of an id or its beginning. Throws WrongQuestion if there is none.
 [[nodiscard]] campaign::Case require_case(const store::Store& archive, const std::string& id);
-/// The case and the points it answers, so that an id that begins like a point's number is not mistaken for it.
+/// Returns a heading with the case and its points, so that the beginning of an id is not mistaken for the number of a
+/// point.
 [[nodiscard]] std::string heading_of(const store::Store& archive, const campaign::CaseId& id);
 
-/// Why this build cannot compute the case again: it lacks the scene, or has another revision of it, which is another
-/// experiment. Empty: it can.
+/// Returns why this build cannot compute the case again: the scene is missing, or has another revision, which is
+/// another experiment. Empty: it can.
 [[nodiscard]] std::string why_not_again(const campaign::Case& question);
 
-/// A case of an archive written before its scene grew: a parameter the archive does not know takes its default, which
-/// is what its absence from the case's identity means. Throws WrongQuestion where it cannot be computed again.
+/// Returns a stored case for the present scene. New parameters of the scene get their defaults, because a missing
+/// parameter in the identity of a case means its default. Throws WrongQuestion if the case cannot be computed again.
 [[nodiscard]] campaign::Case as_asked_today(campaign::Case question);
 
 }  // namespace grainsweep::cli

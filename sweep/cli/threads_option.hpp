@@ -1,4 +1,4 @@
-// --threads: how many threads compute the one case of a command.
+// Option --threads: number of threads for the single case of a command.
 #pragma once
 
 #include "sweep/cli/parser.hpp"
@@ -7,9 +7,9 @@
 
 namespace grainsweep::cli {
 
-/// Adds --threads to a command; 0, also where it is not given: one for each core of the job.
+/// Adds --threads to a command; 0, the default, means one thread per core of the job.
 void declare_threads(Parser& parser, std::int64_t& count);
-/// Allows the cases of this process so many threads.
+/// Sets the largest number of threads of a case in this process.
 void use_threads(std::int64_t count);
 
 }  // namespace grainsweep::cli

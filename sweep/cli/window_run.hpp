@@ -1,9 +1,8 @@
-// `window --run`: batches of the cases that promise most are run into the database until the best setting is known well
-// enough.
+// `window --run`: runs batches of the most promising cases until the best setting is known with the wanted accuracy.
 //
-// Every batch is a campaign of its own, NAME_next, NAME_next2, ..., a list with a seed of its own (the campaign's, plus
-// its number), so that a setting that is asked again is a new run. The same command again goes on: batches that were
-// interrupted are finished first, and their cases come into the models.
+// Every batch is a campaign, NAME_next, NAME_next2, ..., with a list of settings. Its seed is the campaign's seed plus
+// its number, so that a repeated setting is a new run. The same command continues after an interruption: unfinished
+// batches are completed first, and their cases are used in the models.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -17,7 +16,7 @@
 
 namespace grainsweep::cli {
 
-/// The name of the next batch of a campaign and its number, from 1: the first that no campaign of the database has.
+/// Name of the next batch of a campaign and its number, from 1: the first name that no campaign of the database has.
 struct BatchName {
     std::string name;
     std::uint64_t number = 1;
@@ -34,14 +33,14 @@ struct WindowRun {
 };
 
 struct WindowRunEnd {
-    std::int64_t cases = 0;  ///< that were to be run
+    std::int64_t cases = 0;  ///< requested cases
     std::int64_t batches = 0;
     bool reached = false;
-    std::string says;   ///< why it ended, one sentence without a full stop
+    std::string says;   ///< reason of the end, one sentence without a full stop
     int exit_code = 0;  ///< 0: the width is reached, 1: it is not, 130: interrupted
 };
 
-/// Throws as window_of and run_campaign do. The database must not be open for writing.
+/// Runs batches. Throws like window_of and run_campaign. The database must not be open for writing.
 [[nodiscard]] WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest& request);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// `work`: one task of a campaign without a main program, with everything wired together.
+// `work`: one task of a campaign without a main program, with all parts connected.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace grainsweep::cli {
 
 struct WorkRequest {
     std::filesystem::path config, spool;
-    std::string share;                    ///< "i/n"; empty: that of the Slurm array, or 1/1
-    std::optional<std::int64_t> workers;  ///< overrides the file's; 0: all cores
+    std::string share;                    ///< "i/n"; empty: from the Slurm array, or 1/1
+    std::optional<std::int64_t> workers;  ///< overrides the campaign file; 0: all cores
     double lease = 300;
     bool quiet = false;
-    std::string path;  ///< instruction path for the workers; empty: each the widest it has
+    std::string path;  ///< instruction path of the workers; empty: the widest of each
 };
 
 struct WorkReport {
@@ -25,7 +25,7 @@ struct WorkReport {
     std::string ending;  ///< one sentence
 };
 
-/// Throws WrongQuestion for a campaign whose points follow from answers.
+/// Runs the task. Throws WrongQuestion for a campaign whose points depend on answers.
 [[nodiscard]] WorkReport work_on(const WorkRequest& request);
 
 }  // namespace grainsweep::cli

@@ -1,4 +1,4 @@
-// A campaign file that a command writes, runs and removes.
+// Campaign file that a command writes, runs and removes.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,12 @@
 
 namespace grainsweep::cli {
 
-/// NAME.json in a folder where the paths that it names hold, until this object ends. An equal file that is there stays.
+/// File NAME.json in a folder in which its paths are valid, during the lifetime of this object. An existing equal file
+/// is kept.
 class WrittenCampaign {
 public:
-    /// `option`: what the user asked for. Throws WrongQuestion where another file of that name is there, or none can be
-    /// written.
+    /// `option`: option of the user, for messages. Throws WrongQuestion if another file of this name exists, or none
+    /// can be written.
     WrittenCampaign(const std::filesystem::path& folder, const std::string& name, const std::string& text,
                     std::string_view option);
     ~WrittenCampaign();

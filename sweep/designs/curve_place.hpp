@@ -1,4 +1,4 @@
-// One place along a series or profile, as a word: "surface@0.0042", time or bin in SI units.
+// Place along a series or profile as a word: "surface@0.0042", time or bin in SI units.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@ namespace grainsweep::designs {
 
 struct CurvePlace {
     std::string observable;
-    std::optional<double> at;  ///< none: the word is the observable's name alone
+    std::optional<double> at;  ///< empty: the word is only the observable's name
 };
 
-/// Throws std::invalid_argument where no number stands behind the @.
+/// Returns the place in a word. Throws std::invalid_argument if there is no number behind the @.
 [[nodiscard]] CurvePlace place_on_curve(std::string_view word);
-/// The shortest text that comes back as the same place.
+/// Returns the shortest text that reads back as the same place.
 [[nodiscard]] std::string word_of(const CurvePlace& place);
 
 }  // namespace grainsweep::designs

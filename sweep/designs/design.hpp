@@ -1,7 +1,7 @@
-// A design: the points of the unit cube [0, 1]^d (or the listed rows) of a campaign.
+// Design: the points of the unit cube [0, 1]^d, or the listed rows, of a campaign.
 //
-// Point numbers are for ever: sample(request with more points) begins with the same points whenever
-// `extends` is true, so a campaign grows without renumbering.
+// Point numbers are permanent: if `extends` is true, sample(request with more points) begins with the same points, so a
+// campaign can be extended without renumbering.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -21,40 +21,39 @@
 
 namespace grainsweep::designs {
 
-/// A table of physical values, one row a point, one column a factor.
+/// Table of physical values, one row per point, one column per factor.
 using Rows = std::vector<std::vector<Value>>;
 
 using OptionValue = std::variant<std::int64_t, std::string, std::vector<std::int64_t>, Rows, double>;
 
-/// What a design takes beside its kind: the campaign reader checks against this, `grainsweep designs`
-/// and the JSON schema print it.
+/// Option of a design. The campaign reader checks against it; `grainsweep designs` and the JSON schema print it.
 struct OptionSpec {
-    /// counts: one whole number, or one per factor; number: a real one; factor: the name of one that varies between two
-    /// values; observable: name of a scalar of the scene.
+    /// counts: one whole number, or one per factor; number: a real number; factor: name of a factor with a range;
+    /// observable: name of a scalar of the scene.
     enum class Kind { count, word, counts, rows, number, factor, observable };
     std::string name;
     std::string meaning;
     Kind kind = Kind::count;
-    std::optional<OptionValue> default_value = {};  ///< none: required
+    std::optional<OptionValue> default_value = {};  ///< empty: required
     std::int64_t minimum = 1;                       ///< of a count
     std::int64_t maximum = 1'000'000'000'000;
     std::vector<std::string_view> words = {};  ///< of a word
-    /// Says how much of the design is asked, not which design it is: the same campaign may ask for more of it where
-    /// the design extends.
+    /// Whether the option is the extent of the design, not a part of its identity; a campaign may increase it if the
+    /// design is extensible.
     bool extent = false;
     Interval bounds = {};  ///< of a number
 };
 
-/// What a design may know of a factor.
+/// Data of a factor for a design.
 struct FactorRange {
     std::string name;
-    /// The value at u in [0, 1] of a continuous factor; empty where it has levels.
+    /// Value of a continuous factor at u in [0, 1]; empty for levels.
     std::function<double(double u)> value_at;
-    /// It follows a distribution without ends: no point may have the coordinate 0 or 1.
+    /// Whether its distribution has no ends, so that no point may have the coordinate 0 or 1.
     bool endless = false;
 
-    /// What figures of the factor go over: all of it, or the central 99.8 % of what has no ends; logarithmically where
-    /// its middle is the geometric mean of the ends.
+    /// Range of the factor in figures: the full range, or the central 99.8 % of a distribution without ends;
+    /// logarithmic if its middle is the geometric mean of the ends.
     struct Shown {
         double low = 0, high = 0;
         bool log = false;
@@ -65,40 +64,40 @@ struct FactorRange {
 struct PointSet;
 
 struct DesignRequest {
-    std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
+    std::vector<std::size_t> levels;                          ///< per factor: number of its levels; 0: continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
-    std::uint64_t seed = 1;                                   ///< the campaign's
-    std::vector<std::size_t> groups = {};   ///< number of each factor's group, from 0; empty: each its own
+    std::uint64_t seed = 1;                                   ///< seed of the campaign
+    std::vector<std::size_t> groups = {};   ///< number of each factor's group, from 0; empty: no groups
     std::vector<FactorRange> factors = {};  ///< names, and values for designs that grow
-    /// Factors that several experiments calibrate together; empty: those that vary between two values.
+    /// Factors that several experiments calibrate together; empty: the factors with a range.
     std::vector<FactorRange> shared = {};
-    /// What is known of the points asked so far, by observable and number: none where a point is not settled, NaN where
-    /// it is without an answer. Looked at by designs that grow only.
+    /// Answers of the points so far, by observable and number; empty: the point is not settled; NaN: no answer. Used
+    /// only by growing designs.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};
-    /// The points that follow from the answers, where they are known already: not formed again.
+    /// Points that follow from the answers, if they have already been computed.
     std::shared_ptr<const PointSet> grown = {};
 
     [[nodiscard]] std::size_t dimensions() const { return levels.size(); }
-    /// Groups of factors that move together.
+    /// Returns the number of groups of factors that change together.
     [[nodiscard]] std::size_t group_count() const;
-    /// Group of factor j.
+    /// Returns the group of factor j.
     [[nodiscard]] std::size_t group(std::size_t j) const { return groups.empty() ? j : groups[j]; }
     [[nodiscard]] std::int64_t count(std::string_view option) const;
     [[nodiscard]] double number(std::string_view option) const;
     [[nodiscard]] const std::string& word(std::string_view option) const;
 };
 
-/// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions) or listed
-/// physical rows. Point p belongs to sequence p mod sequences. The campaign states its replicates, unless the columns
+/// Points in order of their number: either coordinates in the unit cube (row-major, points x dimensions) or listed
+/// physical rows. Point p belongs to sequence p mod sequences. The campaign defines the replicates, unless the columns
 /// `part` and `repeat` do.
 struct PointSet {
     std::size_t dimensions = 0;
     std::size_t sequences = 1;
     std::vector<double> coordinates;
     Rows rows = {};
-    std::vector<std::uint32_t> part = {};    ///< what takes the place of a point's sequence
-    std::vector<std::uint32_t> repeat = {};  ///< the one replicate of each point
-    /// Of a design that grows: why it ends without the result it looks for; empty: it goes on, or has it.
+    std::vector<std::uint32_t> part = {};    ///< replaces the sequence of a point
+    std::vector<std::uint32_t> repeat = {};  ///< number of the only replicate of each point
+    /// For a growing design: why it ends without a result; empty: it continues, or has a result.
     std::string without_result = {};
 
     [[nodiscard]] std::size_t size() const {
@@ -109,51 +108,50 @@ struct PointSet {
     }
 };
 
-/// What the first points of a design are, up to any one.
+/// Meaning of a prefix of a design.
 enum class Beginning {
-    sample,  ///< a sample of the ranges: statistics settle along the design and can be judged
-    listed,  ///< what the user put first: judged where the campaign gives a rule, without errors
-    corner,  ///< a part that says nothing of the whole: only the whole design is a sample
+    sample,  ///< a sample of the ranges: statistics converge along the design and can be judged
+    listed,  ///< rows in the user's order: judged if the campaign has a rule, without errors
+    corner,  ///< not representative: only the whole design is a sample
 };
 
-/// What a design is made for, and how the influence of its factors is found.
+/// Purpose of a design, which determines the method for the influence of its factors.
 enum class Purpose { statistics, saltelli, morris };
 
-/// What others must know of a kind of design; nothing else compares names.
+/// Traits of a kind of design; no other code compares names.
 struct DesignInfo {
     std::string name;
-    std::string summary;  ///< what it is good for, and what it is not, with figures
+    std::string summary;  ///< suitable and unsuitable uses, with numbers
     std::vector<OptionSpec> options;
-    bool extends = false;  ///< more of it begins with the same points
-    /// The sequences of its points, where there are several, are independent repetitions of each other: the
-    /// convergence rule 'replicates' may compare them. (Elsewhere a sequence names a point's part in a block.)
+    bool extends = false;  ///< a larger design begins with the same points
+    /// Whether its sequences are independent replicates of one another, so that the convergence rule 'replicates' may
+    /// compare them. (In other designs a sequence is the role of a point in its block.)
     bool independent_sequences = false;
-    bool independent_points = false;  ///< each is drawn without regard to the others
-    /// The points that come next depend on the answers to those before (request.answers): sample() gives all that
-    /// follow from what is known.
+    bool independent_points = false;  ///< each point is drawn independently
+    /// Whether later points depend on earlier answers (request.answers); sample() returns all points that follow from
+    /// the known answers.
     bool grows = false;
-    bool calibrates = false;  ///< looks for the settings that agree with what was measured, its option "targets"
-    bool brackets = false;    ///< looks for where an answer passes a threshold, its option "threshold"
-    /// The observables whose answers these are, or places along their curves (curve_place.hpp).
+    bool calibrates = false;  ///< searches for settings that agree with the measurements in its option "targets"
+    bool brackets = false;    ///< searches for the threshold crossing of an answer, its option "threshold"
+    /// Observables of these answers, or places along their curves (curve_place.hpp).
     std::function<std::vector<std::string>(const DesignRequest&)> rests_on = {};
     Beginning beginning = Beginning::sample;
     Purpose purpose = Purpose::statistics;
-    /// How many points the request numbers, without forming them: the size of sample(request). Throws as that does.
+    /// Number of points of sample(request), without computing them. Throws like sample().
     std::function<std::int64_t(const DesignRequest&)> size;
-    /// Number of points that belong together, one after the other, with this number of groups of factors; 1 where each
-    /// stands by itself.
+    /// Number of consecutive points in a block, for this number of groups of factors; 1: no blocks.
     std::function<std::size_t(std::size_t groups)> block = [](std::size_t) { return std::size_t{1}; };
-    /// Throws std::invalid_argument with one sentence where options are impossible together.
+    /// Points of a request. Throws std::invalid_argument with one sentence if the combination of options is impossible.
     std::function<PointSet(const DesignRequest&)> sample;
 };
 
-/// Those that a campaign may name under "design".
+/// Returns the designs that a campaign may name under "design".
 [[nodiscard]] std::span<const DesignInfo> design_catalogue();
-/// One of these, or a design that follows from another section of the campaign file.
+/// Returns one of these, or a design from another section of the campaign file; nullptr: none of this name.
 [[nodiscard]] const DesignInfo* find_design(std::string_view name);
-/// The same for a name that is known to exist. Throws std::logic_error for any other.
+/// Returns the design of an existing name. Throws std::logic_error for any other name.
 [[nodiscard]] const DesignInfo& design_named(std::string_view name);
-/// Sequences of the request's design that repeat one another independently, 1 where none do.
+/// Returns the number of independent sequences of the request's design; 1 if there are none.
 [[nodiscard]] std::int64_t independent_sequences(std::string_view design, const DesignRequest& request);
 
 }  // namespace grainsweep::designs

@@ -1,4 +1,4 @@
-// Every kind of design, one file each. To add one: its file, its line here, its line in catalogue.cpp.
+// Functions of the kinds of design, one file each. To add a kind: its file, a line here, and a line in catalogue.cpp.
 #pragma once
 
 #include "sweep/designs/design.hpp"
@@ -14,23 +14,22 @@ namespace grainsweep::designs {
 [[nodiscard]] DesignInfo saltelli_design();
 [[nodiscard]] DesignInfo morris_design();
 [[nodiscard]] DesignInfo refine_design();
-/// Asked for by the section "calibration", not by "design".
+/// Returns the design of the section "calibration".
 [[nodiscard]] DesignInfo calibration_design();
 
-/// Streams that designs draw from, so that two kinds never share a draw of the campaign's seed.
+/// Random streams of designs, so that two kinds never share a draw of the campaign's seed.
 enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol = 3, morris = 4, calibration = 5 };
 
-/// A generator's initial state for a purpose and up to three whole numbers, chained through SplitMix64.
+/// Returns the initial state of a generator for a purpose and up to three whole numbers, chained through SplitMix64.
 [[nodiscard]] std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a, std::uint64_t b = 0,
                                      std::uint64_t c = 0);
 
-/// The option "points", as every sampling design declares it.
+/// Returns the option "points" of sampling designs.
 [[nodiscard]] OptionSpec points_option(std::string meaning);
-/// The size of a design that has it.
+/// Returns the value of this option.
 [[nodiscard]] std::int64_t points_asked(const DesignRequest& request);
 
-/// Room for points x dimensions coordinates; throws std::invalid_argument where that is more than a
-/// machine should be asked for (2^28 coordinates, 2 GiB).
+/// Allocates points x dimensions coordinates. Throws std::invalid_argument for more than 2^28 coordinates (2 GiB).
 [[nodiscard]] std::vector<double> room_for(std::int64_t points, std::size_t dimensions);
 
 }  // namespace grainsweep::designs

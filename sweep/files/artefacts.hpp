@@ -1,5 +1,5 @@
-// Keyed files beside the database: shared starting states and checkpoints. Written aside, synced, renamed,
-// checksummed: half a file is never seen, a damaged one is named and as good as absent.
+// Files with keys beside the database: shared starting states and checkpoints. Each is written to a temporary file,
+// synced and renamed, with a checksum. So an incomplete file is never read; a damaged one is reported and ignored.
 #pragma once
 
 #include "solver/scenes/scene.hpp"
@@ -13,20 +13,19 @@
 
 namespace grainsweep::files {
 
-/// Files named by the hash of their key in one folder (created at the first put). Any number of processes may
-/// use one folder at once. What a full or failing disk does throws BrokenWorld; get() never throws for it.
+/// Folder of files named by the hash of their key; it is made at the first put(). Any number of processes may use it at
+/// the same time. A full or failing disk throws BrokenWorld, except in get().
 class ArtefactFolder final : public Artefacts {
 public:
-    /// `on_damage` gets a sentence for every file that is there and cannot be used.
+    /// `on_damage`: called with a sentence on every unusable file.
     explicit ArtefactFolder(std::filesystem::path folder,
                             std::function<void(const std::string& sentence)> on_damage = {})
         : folder_(std::move(folder)), on_damage_(std::move(on_damage)) {}
     [[nodiscard]] std::optional<Bytes> get(std::string_view key) override;
     void put(std::string_view key, std::span<const std::byte> contents) override;
     void remove(std::string_view key);
-    /// Removes what writers that are gone left half written, at once where that was a process of this host, after
-    /// ten minutes elsewhere; and files of whose key `over` is true. Call it with the writer's lock of the database
-    /// held.
+    /// Removes incomplete files of dead writers, at once for processes of this host, after ten minutes for other hosts.
+    /// Also removes files for whose key `over` is true. The caller must have the writer's lock of the database.
     void sweep(const std::function<bool(std::string_view key)>& over) const;
 
 private:
@@ -35,7 +34,7 @@ private:
 
     std::filesystem::path folder_;
     std::function<void(const std::string&)> on_damage_;
-    bool swept_ = false;  ///< leftovers of killed writers looked for
+    bool swept_ = false;  ///< incomplete files have been removed
 };
 
 }  // namespace grainsweep::files

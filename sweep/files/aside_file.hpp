@@ -1,4 +1,4 @@
-// A file written beside its final place and put there whole: readers see the old one or the new one, never a part.
+// File that is written beside its final place and then moved there: readers see the old file or the complete new one.
 #pragma once
 
 #include "sweep/files/descriptor.hpp"
@@ -9,24 +9,25 @@
 
 namespace grainsweep::files {
 
-/// A file being written aside: gone unless it becomes what it was meant for. Errors are BrokenWorld.
+/// Temporary file, which is removed unless it takes its place. Errors are BrokenWorld.
 class AsideFile {
 public:
-    /// Beside `target`, hidden, with a name of this process, thread and moment alone that ends in `extension`.
+    /// Makes a hidden file beside `target`, with a unique name of this process, thread and moment that ends in
+    /// `extension`.
     explicit AsideFile(std::filesystem::path target);
     AsideFile(const AsideFile&) = delete;
     AsideFile& operator=(const AsideFile&) = delete;
     ~AsideFile();
 
     void write(std::string_view bytes);
-    /// Syncs the file and renames it to the target, over what is there.
+    /// Syncs the file and renames it to the target, replacing an existing file.
     void take_place();
-    /// The same without syncing: for what no later run reads.
+    /// Renames without syncing, for files that no later run reads.
     void take_place_unsynced();
 
     static constexpr std::string_view extension = ".aside";
-    /// Whether the process that writes, or wrote, this file aside still runs; nothing where that was on another host,
-    /// or the name says nothing about it.
+    /// Returns whether the process that writes this temporary file still runs. Empty if it is on another host, or the
+    /// name does not identify it.
     [[nodiscard]] static std::optional<bool> writer_runs(const std::filesystem::path& file);
 
 private:

@@ -1,4 +1,4 @@
-// Disk full, database locked or damaged: nothing the question can do about it. Exit code 3.
+// Error of the environment, independent of the user's input: disk full, database locked or damaged. Exit code 3.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// What the system opens by number: a file, a folder, an end of a pipe.
+// Descriptors of the system: a file, a folder, an end of a pipe.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace grainsweep::files {
 
-/// Closed in the end.
+/// Descriptor, closed by the destructor.
 class Descriptor {
 public:
     Descriptor() = default;
@@ -22,17 +22,17 @@ public:
     [[nodiscard]] bool is_open() const { return number_ >= 0; }
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] int release() { return std::exchange(number_, -1); }
-    /// False where it was open and what was written may be lost: errno says why.
+    /// Closes it. Returns false with errno if written data may be lost.
     [[nodiscard]] bool close();
 
 private:
     int number_ = -1;
 };
 
-/// Writes all of it. False where that fails: errno says why.
+/// Writes all bytes. Returns false with errno on failure.
 [[nodiscard]] bool write_all(int descriptor, std::string_view bytes);
 
-/// A renamed file is on disk when its folder is. Throws BrokenWorld.
+/// Syncs a folder, which makes a rename durable. Throws BrokenWorld.
 void sync_folder(const std::filesystem::path& folder);
 
 }  // namespace grainsweep::files

@@ -1,5 +1,5 @@
-// The bytes of a file from its beginning to its end. Streams read through iterators end a program by an exception that
-// names no file where a disk fails, and take a file that cannot be opened for an empty one.
+// Reading of a complete file. Stream iterators are not used: on a failing disk they throw without the name of the file,
+// and they treat a file that cannot be opened as empty.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace grainsweep::files {
 
-/// What could be read; `error` says why that is not all: no such file, no permission, a folder, a failing disk, more
-/// than `most` bytes (file_too_large).
+/// Returns the bytes that could be read. Sets `error` if these are not all: no such file, no permission, a folder, a
+/// failing disk, more than `most` bytes (file_too_large).
 [[nodiscard]] std::string whole_file(const std::filesystem::path& file, std::error_code& error,
                                      std::size_t most = std::numeric_limits<std::size_t>::max());
 

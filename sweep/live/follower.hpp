@@ -1,4 +1,4 @@
-// Results of a database as they are committed.
+// Follower of a database, which reads results as they are committed.
 #pragma once
 
 #include "sweep/campaign/json_writer.hpp"
@@ -15,18 +15,18 @@
 
 namespace grainsweep::live {
 
-/// Follows one database. A poll that finds the files unchanged costs two system calls.
+/// Follower of one database. A poll without changes costs two system calls.
 class Follower {
 public:
-    /// Throws BrokenWorld, or WrongQuestion where the file is no database of this program.
+    /// Throws BrokenWorld, or WrongQuestion if the file is no database of this program.
     explicit Follower(std::filesystem::path database);
 
-    /// Cases whose outcome is new since the last poll, at most most_at_once of them, the rest with the next poll. One
-    /// JSON object each: {"case", "outcome", "attempts", "values": {observable: number}, "reason"}; the reason only
-    /// where an attempt left one. What was settled when the object was made is not told. Cases up to the first open
-    /// one, which only a run with --again settles anew, are read for 1 % of the time.
+    /// Returns the cases with a new outcome since the last poll, at most most_at_once; others follow with the next
+    /// poll. Each is a JSON object {"case", "outcome", "attempts", "values": {observable: number}, "reason"}, with a
+    /// reason only if an attempt stored one. Cases settled before this object was made are not included. Cases before
+    /// the first open one, which only a run with --again changes, are checked in at most 1 % of the time.
     [[nodiscard]] std::vector<campaign::JsonText> poll();
-    /// The file is where it was when it was opened.
+    /// Returns whether the opened file is still at its path.
     [[nodiscard]] bool in_place() const;
     [[nodiscard]] const std::filesystem::path& file() const { return database_; }
 
@@ -44,7 +44,7 @@ private:
     };
     [[nodiscard]] Stamp stamp() const;
     using Clock = std::chrono::steady_clock;
-    /// Returns those from this key on that are not known yet, and makes them known.
+    /// Returns the settled cases from this key on that are not known yet, and marks them as known.
     [[nodiscard]] std::vector<Settled> fresh(std::int64_t first);
     [[nodiscard]] std::vector<campaign::JsonText> told(std::span<const Settled> settled) const;
 
@@ -53,7 +53,7 @@ private:
     std::optional<Stamp> seen_, seen_whole_;
     Clock::time_point looked_whole_{};
     double whole_seconds_ = 0;
-    std::vector<std::uint32_t> known_;  ///< by case key: a mark of the result that is known; 0: none
+    std::vector<std::uint32_t> known_;  ///< by case key: mark of the known result; 0: none
     std::int64_t first_open_ = 1;       ///< all cases before this key are settled
 };
 

@@ -1,7 +1,7 @@
-// The report's data of databases that grow, made anew by a thread of its own.
+// Data of the report for growing databases, renewed by a thread.
 //
-// Figures of a campaign (moments, indices, models) take longer than its results come: they are made again when
-// something was committed; while a run computes, for a quarter of a second and a four-hundredth of the time.
+// Figures of a campaign (moments, indices, models) take longer than the interval between results. They are computed
+// again after commits; while a run computes, only for a quarter of a second plus a four-hundredth of the time.
 #pragma once
 
 #include <atomic>
@@ -19,19 +19,18 @@ namespace grainsweep::live {
 
 struct PageData {
     std::int64_t version = 0;
-    std::int64_t covered = 0;  ///< all results told until this number are in it
-    std::string json;          ///< as page_data, fit to stand inside a script element
-    std::string error;         ///< why there is none
+    std::int64_t covered = 0;  ///< results up to this number are included
+    std::string json;          ///< page_data, safe inside a script element
+    std::string error;         ///< why there is no data
 };
 
 class GrowingPage {
 public:
-    /// `told` counts the results that readers were told of one by one. Makes the first page before it returns; throws
-    /// what that throws.
+    /// Makes the first page; throws its errors. `told`: number of results sent to readers one by one.
     GrowingPage(std::vector<std::filesystem::path> databases, const std::atomic<std::int64_t>& told);
     ~GrowingPage();
 
-    /// Something was committed. `computing`: a run is under way beside.
+    /// Requests a renewal after a commit. `computing`: a run computes at the same time.
     void grown(bool computing);
     [[nodiscard]] std::shared_ptr<const PageData> latest() const;
 
@@ -44,10 +43,10 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable_any wake_;
     bool grown_ = false, computing_ = false;
-    double last_seconds_ = 0, spent_ = 0;  ///< processor time of the last page, and of all since the run began
+    double last_seconds_ = 0, spent_ = 0;  ///< processor time of the last page, and of all pages since the run began
     std::chrono::steady_clock::time_point run_began_{};
     std::shared_ptr<const PageData> latest_;
-    std::jthread thread_;  ///< ends first
+    std::jthread thread_;  ///< last member: it ends first
 };
 
 }  // namespace grainsweep::live

@@ -1,8 +1,8 @@
-// A small HTTP server for this machine alone (GNU libmicrohttpd): questions answered one after the other by the thread
-// that calls run(), and streams of events (Server-sent events, WHATWG HTML section 9.2).
+// Small HTTP server for this machine only (GNU libmicrohttpd). The thread that calls run() answers requests one after
+// the other. Streams send events (Server-sent events, WHATWG HTML section 9.2).
 //
-// It listens on 127.0.0.1 only and bounds what a client may take: connections, bytes of a question, seconds of silence,
-// bytes that wait for a slow reader of a stream.
+// It listens on 127.0.0.1 only. Limits for clients: connections, bytes of a request, seconds of silence, and pending
+// bytes of a slow stream.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ struct HttpQuestion {
     std::map<std::string, std::string, std::less<>> query;
     std::string host, origin, last_event;  ///< header fields Host, Origin and Last-Event-ID
     std::string body;
-    bool too_large = false;  ///< the body has more than HttpServer::most_body bytes and is left out
+    bool too_large = false;  ///< the body has more than HttpServer::most_body bytes and is omitted
 };
 
 struct HttpAnswer {
@@ -31,7 +31,7 @@ struct HttpAnswer {
     std::string policy = {};  ///< content security policy
 };
 
-/// The connection stays open for events; these come first.
+/// Response that keeps the connection open for events, beginning with these.
 struct HttpStream {
     std::string first;
 };
@@ -42,17 +42,17 @@ class HttpServer {
 public:
     static constexpr std::size_t most_body = 64U << 10U;
     static constexpr unsigned most_connections = 200;
-    static constexpr std::size_t most_waiting = 8U << 20U;  ///< bytes of a stream that its reader has not taken
+    static constexpr std::size_t most_waiting = 8U << 20U;  ///< most pending bytes of a stream
 
     using Respond = std::function<HttpReply(const HttpQuestion&)>;
-    /// Port 0: any that is free. Throws BrokenWorld where the port cannot be had.
+    /// Port 0: any free port. Throws BrokenWorld if the port is not available.
     HttpServer(std::uint16_t port, Respond respond);
     ~HttpServer();
 
     [[nodiscard]] std::uint16_t port() const;
-    /// Answers what has come, and waits at most so long for the first question.
+    /// Answers pending requests; waits at most this time for the first one.
     void run(std::chrono::milliseconds at_most);
-    /// To every open stream. One whose reader is far behind is closed.
+    /// Sends events to every open stream. A stream with a slow reader is closed.
     void publish(std::string_view events);
     [[nodiscard]] std::size_t streams() const;
 

@@ -1,5 +1,4 @@
-// Work that a page asks for, each in a process of its own at low priority: a film, an answer to SQL. They end with this
-// object.
+// Jobs requested by a page (a film, an answer to SQL), each in a process of low priority. They end with this object.
 #pragma once
 
 #include "sweep/files/descriptor.hpp"
@@ -23,12 +22,13 @@ public:
     Jobs& operator=(const Jobs&) = delete;
     ~Jobs();
 
-    /// What one job may take.
+    /// Limits of a job.
     struct Bounds {
-        std::size_t most_at_once = 4;  ///< it does not start beside so many
-        std::int64_t most_bytes = 0;   ///< of a file that it writes
+        std::size_t most_at_once = 4;  ///< most jobs at the same time
+        std::int64_t most_bytes = 0;   ///< largest size of its output file
     };
-    /// Runs this program with these arguments; its number, or nothing where enough are running or none can be started.
+    /// Runs this program with these arguments. Returns the number of the job; empty if too many are running or it
+    /// cannot be started.
     [[nodiscard]] std::optional<std::int64_t> start(const std::vector<std::string>& arguments,
                                                     const std::filesystem::path& folder, const Bounds& bounds);
     struct Ended {
@@ -39,26 +39,27 @@ public:
         bool known = false;
         std::optional<Ended> ended;
     };
-    /// A job that has ended is forgotten by the call that says so.
+    /// Returns the state of a job; removes the job if it has ended.
     [[nodiscard]] State look_at(std::int64_t number);
 
 private:
     struct Job {
         pid_t process = 0;
         files::Descriptor out, err;
-        std::optional<int> code = {};  ///< once it has ended
-        /// Whether it still runs.
+        std::optional<int> code = {};  ///< exit code, once it has ended
+        /// Returns whether it still runs.
         [[nodiscard]] bool goes_on();
     };
-    static constexpr std::size_t most_kept = 16;  ///< ended jobs whose reader does not come
+    static constexpr std::size_t most_kept = 16;  ///< most ended jobs that are kept
     std::map<std::int64_t, Job> jobs_;
     std::int64_t last_ = 0;
 };
 
-/// A run that a page started. It goes on when this object ends, as one from a shell would.
+/// Run that a page started. It continues after this object ends, like a run started from a shell.
 class Runner {
 public:
-    /// Standard output and error go to x.run.log beside the database x.db. False where it cannot be started.
+    /// Starts a run; standard output and error are written to x.run.log beside the database x.db. Returns false if it
+    /// cannot be started.
     [[nodiscard]] bool start(const std::vector<std::string>& arguments, const std::filesystem::path& database);
     [[nodiscard]] bool running();
 

@@ -1,6 +1,5 @@
-// What a run does at this moment, for readers beside it: a small text file beside the database, written anew each
-// second and gone when the run ends. It is a help, no record: a file that was not written lately says nothing, and an
-// error while it is written is passed over.
+// Present state of a run, for other programs: a small text file beside the database, written every second and removed
+// at the end of the run. It is not reliable: an old file is ignored, and so are errors of writing.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +11,18 @@
 
 namespace grainsweep::live {
 
-/// A case that a worker has.
+/// Case of a worker.
 struct RunningCase {
     std::string case_id;
     std::int64_t attempt = 0;
-    std::optional<double> share;  ///< done, 0 to 1; none: not known
-    double seconds = 0;           ///< since it was handed out
+    std::optional<double> share;  ///< share done, 0 to 1; empty: unknown
+    double seconds = 0;           ///< since it was given to the worker
     std::string host;
 };
 
 struct Now {
     std::string campaign, host;
-    std::int64_t process = 0;  ///< its number on that host
+    std::int64_t process = 0;  ///< id of its process on this host
     std::int64_t questions = 0, decided = 0, failed = 0;
     std::int64_t settled = 0;  ///< results of this run on disk
     double seconds = 0;        ///< since the run began
@@ -33,11 +32,11 @@ struct Now {
     std::vector<RunningCase> running;
 };
 
-/// "x.now" for x.db, in its folder.
+/// Returns "x.now" for x.db, in its folder.
 [[nodiscard]] std::filesystem::path now_file(const std::filesystem::path& database);
 
 void write_now(const std::filesystem::path& file, const Now& now);
-/// What the file says; none where there is no such file, it was not written for ten seconds, or it is no such text.
+/// Returns the contents of the file; empty if there is no file, it is older than ten seconds, or invalid.
 [[nodiscard]] std::optional<Now> read_now(const std::filesystem::path& database);
 
 [[nodiscard]] std::string text_of(const Now& now);

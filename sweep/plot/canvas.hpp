@@ -1,4 +1,4 @@
-// What is drawn on: lines and texts in points of print (1/72 inch), y downwards.
+// Canvas for lines and texts in points of print (1/72 inch), y downwards.
 #pragma once
 
 #include "sweep/plot/plot.hpp"
@@ -13,12 +13,12 @@ namespace grainsweep::plot {
 inline constexpr double points_per_mm = 72 / 25.4;
 inline constexpr double title_size = 8, label_size = 7, line_height = 1.25;
 
-/// Which point of a text stands at a place.
+/// Point of a text that is at the given place.
 enum class Anchor { start, middle, end };
 
 class Canvas {
 public:
-    /// `context` stays its owner's.
+    /// `context` is not owned.
     explicit Canvas(_cairo* context);
 
     [[nodiscard]] _cairo* context() const { return context_; }
@@ -29,11 +29,11 @@ public:
     void stroke();
     void fill();
 
-    /// Width of a line of text. Raised digits (m³, 10⁻⁶) are drawn as small ones, which every font has.
+    /// Returns the width of a line of text. Raised digits (m³, 10⁻⁶) are drawn as small digits, which every font has.
     [[nodiscard]] double width(const std::string& text, double size);
-    /// `y` is the middle of small letters' height; `turn` in radians, clockwise.
+    /// Draws a text. `y`: middle of the height of small letters; `turn`: radians, clockwise.
     void text(double x, double y, const std::string& text, double size, Anchor anchor = Anchor::start, double turn = 0);
-    /// The text in lines no longer than `length`, broken at spaces.
+    /// Returns the text in lines not longer than `length`, broken at spaces.
     [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, double size, double length);
 
 private:

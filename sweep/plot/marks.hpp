@@ -1,4 +1,4 @@
-// The marks of a panel, drawn between its axes.
+// Drawing of the marks of a panel.
 #pragma once
 
 #include "sweep/plot/axes.hpp"
@@ -6,7 +6,7 @@
 namespace grainsweep::plot {
 
 void draw_mark(Canvas& canvas, const PlacedAxis& x, const PlacedAxis& y, const Mark& mark);
-/// A sign as Points are drawn.
+/// Draws a sign of Points.
 void draw_sign(Canvas& canvas, double x, double y, Points::Shape shape, double radius, Colour tone);
 
 }  // namespace grainsweep::plot

@@ -1,4 +1,4 @@
-// The catalogue of figures for print, one row each; figures.hpp has what callers need.
+// Catalogue of figures for print, one row each; callers use figures.hpp.
 #pragma once
 
 #include "sweep/report/figures.hpp"
@@ -18,11 +18,11 @@ using PanelNames = std::vector<std::string>;
 
 struct FigureKind {
     std::string_view name, shows;
-    /// Names of the panels; {""}: a single one; empty: the campaign has no such figure.
+    /// Returns the names of the panels; {""}: a single one; empty: the campaign has no such figure.
     PanelNames (*panels)(const FigureSubject& subject);
     plot::Figure (*draw)(const FigureSubject& subject, const PanelNames& panels);
-    bool has_choice = false;  ///< takes across, up
-    bool has_colour = false;  ///< takes colour
+    bool has_choice = false;  ///< has the options across and up
+    bool has_colour = false;  ///< has the option colour
 };
 
 // Rows, by file.
@@ -39,22 +39,22 @@ struct FigureKind {
 [[nodiscard]] FigureKind curves_figure();     // curve_figures.cpp
 [[nodiscard]] FigureKind posterior_figure();  // posterior_figures.cpp
 
-/// Names of the factors that vary.
+/// Returns the names of the varied factors.
 [[nodiscard]] PanelNames factor_panels(const FigureSubject& subject);
 [[nodiscard]] const study::FactorColumn& factor_named(const FigureSubject& subject, std::string_view name);
-/// Whether values of the response count.
+/// Returns whether the response has values.
 [[nodiscard]] bool has_values(const FigureSubject& subject);
-/// Factors by what they explain of the response, the most influential first.
+/// Returns the factors by their share of the response's variance, the most influential first.
 [[nodiscard]] std::vector<const study::FactorColumn*> by_influence(const FigureSubject& subject);
-/// A variable that the options name: factor, response or "point". Throws WrongQuestion with the nearest name.
+/// Returns the variable that an option names: factor, response or "point". Throws WrongQuestion with the nearest name.
 [[nodiscard]] Variable named_variable(const FigureSubject& subject, std::string_view option, const std::string& name);
 
-/// Rows of cases that failed.
+/// Returns the rows of failed cases.
 [[nodiscard]] std::vector<std::size_t> failed_rows(const study::Responses& responses);
-/// Crosses, and their line of the legend.
+/// Return crosses, and their entry of the legend.
 [[nodiscard]] plot::Points crosses(std::vector<double> x, std::vector<double> y);
 [[nodiscard]] plot::Key failed_key();
-/// Colours along a scale for numbers of a quantity, and the axis of the scale.
+/// Colour scale for numbers of a quantity, with its axis.
 struct ColourScale {
     plot::Axis axis;
     [[nodiscard]] plot::Colour of(double shown) const;

@@ -1,6 +1,6 @@
-// The figures of the report for print: the same data from sweep/study, as panels with axes.
+// Figures of the report for print: the data of sweep/study as panels with axes.
 //
-// A figure of several panels (one per factor, say) is drawn whole by its name, and one panel of it by "NAME:PANEL".
+// "NAME" draws a whole figure, "NAME:PANEL" one of its panels (for example, one factor).
 #pragma once
 
 #include "sweep/plot/plot.hpp"
@@ -13,25 +13,24 @@
 
 namespace grainsweep::report {
 
-/// What is drawn: one response of one campaign.
+/// Subject of a figure: one response of one campaign.
 struct FigureSubject {
     const store::Store& store;
     const study::Responses& responses;
     const study::ResponseColumn& response;
-    /// Of the figures that have a choice, names of variables; empty: the response over the two most influential
-    /// factors.
+    /// Names of variables, for figures with such options; empty: the response and the two most influential factors.
     std::string across = {}, up = {}, colour = {};
 };
 
 struct FigureInfo {
     std::string name, shows;
-    std::vector<std::string> panels;  ///< empty: the figure is one panel
+    std::vector<std::string> panels;  ///< empty: the figure has only one panel
 };
-/// Figures that this campaign has data for.
+/// Returns the figures for which this campaign has data.
 [[nodiscard]] std::vector<FigureInfo> figures_for(const FigureSubject& subject);
 
-/// "effects", or "effects:friction". Throws WrongQuestion for a name that figures_for() does not have, with the nearest
-/// one; for a model that is refused; and for a choice that the figure does not have.
+/// Returns the figure of a name such as "effects" or "effects:friction". Throws WrongQuestion for a name that is not in
+/// figures_for(), with the nearest one; for a refused model; and for an option that the figure does not have.
 [[nodiscard]] plot::Figure figure_named(const FigureSubject& subject, std::string_view name);
 
 }  // namespace grainsweep::report

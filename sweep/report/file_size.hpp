@@ -1,4 +1,4 @@
-// How large a file is, for the line that says it was written.
+// Size of a file, for the message that it was written.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace grainsweep::report {
 
-/// 999 -> "999 B", 1234567 -> "1.2 MB"; decimal units, two digits below ten.
+/// Returns a size as text: 999 -> "999 B", 1234567 -> "1.2 MB"; decimal units, two digits below ten.
 [[nodiscard]] std::string size_text(std::uintmax_t bytes);
-/// "c.db (852 kB)"; the name alone where its size cannot be found.
+/// Returns a text such as "c.db (852 kB)"; only the name if the size is unknown.
 [[nodiscard]] std::string named_with_size(const std::filesystem::path& file);
 
 }  // namespace grainsweep::report

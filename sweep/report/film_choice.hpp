@@ -1,4 +1,4 @@
-// Chooses the cases of a database that are worth watching: they span the values of a response.
+// Choice of cases of a database for films: they span the values of a response.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -14,9 +14,9 @@ struct FilmChoice {
     std::string says;  ///< "largest mfr, 0.41"
 };
 
-/// At most that number of cases, shared by the campaigns: of the completed cases of each, by its main observable, the
-/// smallest, the largest and cases at even quantiles between them; one alone is the median. A campaign without a
-/// finite value has none.
+/// Returns at most `count` cases, shared between the campaigns. Each campaign has the completed cases with the smallest
+/// and the largest main observable, and cases at even quantiles between them; a single one is the median. A campaign
+/// without a finite value has none.
 [[nodiscard]] std::vector<FilmChoice> cases_to_watch(const store::Store& store, std::size_t count);
 
 }  // namespace grainsweep::report

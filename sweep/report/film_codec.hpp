@@ -1,4 +1,4 @@
-// Whole numbers over the frames of a film, packed by zlib: positions, colours and slices of a page to watch.
+// Packing of whole numbers of a film's frames by zlib: positions, colours and slices.
 //
 // A column is frames x items of 16-bit numbers, frame by frame. Each number is written as its difference r to the same
 // item of the frame before (in the first frame: to the item before it, and the first item to 0), modulo 2^16 and
@@ -12,7 +12,7 @@
 
 namespace grainsweep::report {
 
-/// values: a whole number of frames of `items` each.
+/// Returns the packed column; `values`: complete frames of `items` each.
 [[nodiscard]] std::string pack_film_column(std::span<const std::uint16_t> values, std::size_t items);
 
 }  // namespace grainsweep::report

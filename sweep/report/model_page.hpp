@@ -1,14 +1,14 @@
-// A response model in pictures: the response against every factor with its bands, and over the two factors that matter
-// most, the other factors averaged over their ranges or at the middle.
+// Figures of a response model: the response against every factor with its bands, and a map of the two most influential
+// factors. The other factors are averaged over their ranges, or at the middle.
 //
-//   averaged   mean over 128 Sobol points of the other factors of the mean response; points that the campaign's `where`
-//              leaves out and points where an answer is less likely than none (answers.hpp) do not count, where less
-//              than four are left there is nothing
-//   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of
-//              the mean and of a single run about it
+//   averaged   mean of the mean response at 128 Sobol points of the other factors. Points that the campaign's `where`
+//              excludes, and points where an answer is less likely than a failure (answers.hpp), do not count. If less
+//              than four are left, nothing is drawn
+//   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of the
+//              mean and of a single run
 //
-// Curves have 31 points, the map 21 x 21 cells, evenly over the ranges (logarithmic ones over their logarithms). A
-// factor matters by the range of its averaged curve.
+// Curves have 31 points, the map 21 x 21 cells, evenly along the ranges (logarithmic ranges in their logarithms). The
+// influence of a factor is the range of its averaged curve.
 #pragma once
 
 #include "sweep/report/table.hpp"
@@ -21,14 +21,14 @@
 
 namespace grainsweep::report {
 
-/// Against one factor; NaN where nothing is drawn.
+/// Curve against one factor; NaN: not drawn.
 struct ModelCurve {
     std::vector<double> at, averaged, mean, mean_half_width, run_half_width;
 
-    /// Of `averaged`: largest less smallest.
+    /// Returns the largest minus the smallest value of `averaged`.
     [[nodiscard]] double range() const;
 };
-/// Over two factors, row by row along `up`.
+/// Map of two factors, row by row along `up`.
 struct ModelMap {
     std::size_t across = 0, up = 0;
     std::size_t count = 0;  ///< cells along a range
@@ -37,17 +37,22 @@ struct ModelMap {
 struct ModelPictures {
     study::Setting middle;
     std::vector<ModelCurve> curves;  ///< one per factor
-    std::vector<std::size_t> order;  ///< factors by how much they matter
-    std::optional<ModelMap> map;     ///< of the first two; none: there is one factor
+    std::vector<std::size_t> order;  ///< factors by their influence
+    std::optional<ModelMap> map;     ///< of the first two; empty: there is only one factor
 };
-/// `admits`: settings that are left out are empty.
+/// Computes the figures. Settings that `admits` excludes are empty.
 [[nodiscard]] ModelPictures model_pictures(const study::ModelCases& cases, const study::ObservableModel& model,
                                            const std::function<bool(const study::Setting&)>& admits);
 
-/// {"observable", "unit", "says": lines, "factors", "order": factors by how much they matter, "middle": {"setting",
-/// "texts"}, "failed": settings and outcomes of failed cases, "curves": one per factor {"at", "averaged", "mean",
-/// "mean_half_width", "run_half_width"}, "map": of the first two of `order` or null {"across", "up", "across_edges",
-/// "up_edges", "columns", "rows", "averaged", "slice"}}. `admits`: settings that are left out are empty.
+/// Returns the data of the figures; settings that `admits` excludes are empty:
+///
+///   {"observable", "unit", "says": lines, "factors",
+///    "order": factors by their influence,
+///    "middle": {"setting", "texts"},
+///    "failed": settings and outcomes of failed cases,
+///    "curves": one per factor {"at", "averaged", "mean", "mean_half_width", "run_half_width"},
+///    "map": of the first two of `order` or null {"across", "up", "across_edges", "up_edges", "columns", "rows",
+///           "averaged", "slice"}}
 [[nodiscard]] Json model_page_data(const study::ModelCases& cases, const study::ObservableModel& model,
                                    const std::function<bool(const study::Setting&)>& admits);
 

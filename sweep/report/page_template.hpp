@@ -1,4 +1,4 @@
-// Pages from skeletons with named places in double braces.
+// Pages from skeletons with named placeholders in double braces.
 #pragma once
 
 #include <iosfwd>
@@ -9,12 +9,12 @@
 
 namespace grainsweep::report {
 
-/// Writes the skeleton with each part in the place of its name. A place without a part stays empty.
+/// Writes the skeleton with each placeholder replaced by its part, or by nothing if there is none.
 void fill(std::ostream& out, std::string_view skeleton,
           const std::vector<std::pair<std::string_view, std::string_view>>& parts);
 
 /// Writes a page of figures: its script, its data (safe_in_script), and the elements of films with their script.
-/// `asks`: sources that the script may connect to, "'self'" its server; empty: none. Returns the content security
+/// `asks`: sources to which the script may connect, "'self'" for its server; empty: none. Returns the content security
 /// policy of the page.
 std::string write_figures(std::ostream& out, std::string_view script, std::string_view data,
                           std::string_view films = "", std::string_view film_script = "", std::string_view asks = "");

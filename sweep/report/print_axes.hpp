@@ -1,4 +1,4 @@
-// Names, units and ranges of a campaign as the axes of a figure for print: one engineering prefix per axis.
+// Axes of figures for print, from names, units and ranges of a campaign, with one engineering prefix per axis.
 #pragma once
 
 #include "sweep/plot/plot.hpp"
@@ -12,10 +12,10 @@
 
 namespace grainsweep::report {
 
-/// J/m3 as J/m³, L^2/alpha as L²/α; empty for a pure number.
+/// Returns a unit for print: J/m3 as J/m³, L^2/alpha as L²/α; empty for a pure number.
 [[nodiscard]] std::string printed_unit(std::string_view unit);
 
-/// Something with numbers: they are shown multiplied by `factor`, under `title`.
+/// Quantity, whose numbers are shown multiplied by `factor`, with `title`.
 struct Quantity {
     std::string title;
     double factor = 1;
@@ -23,41 +23,42 @@ struct Quantity {
     [[nodiscard]] double of(double x) const { return factor * x; }
     [[nodiscard]] std::vector<double> of(std::span<const double> numbers) const;
 };
-/// Chooses the prefix that brings `largest` between 1 and 1,000: 0.0036 m is shown as 3.6 mm. Units without prefix get
-/// a power of ten where numbers are 10,000 or more, or all below 0.01. Underscores of the name become spaces.
+/// Returns the quantity with the prefix that brings `largest` between 1 and 1,000: 0.0036 m is shown as 3.6 mm. Units
+/// without prefixes get a power of ten if numbers are 10,000 or more, or all below 0.01. Underscores of the name become
+/// spaces.
 [[nodiscard]] Quantity quantity_of(std::string_view name, std::string_view unit, double largest);
 
-/// A variable of a campaign against which others are drawn: factor, response or number of the point.
+/// Variable of a campaign for an axis: factor, response or number of the point.
 struct Variable {
     std::string name, unit;
     std::vector<std::string> levels;  ///< empty: numbers
-    double low = 0, high = 0;         ///< of numbers
+    double low = 0, high = 0;         ///< range of numbers
     bool log = false;
     std::vector<double> values;  ///< one per row
 
     [[nodiscard]] Quantity quantity() const;
-    /// The levels as they are shown: numbers in the unit of the title.
+    /// Returns the levels for display: numbers in the unit of the title.
     [[nodiscard]] std::vector<std::string> shown_levels() const;
-    /// `margin`: room beyond both ends, a share of the length.
+    /// Returns the axis. `margin`: room beyond both ends, as a share of the length.
     [[nodiscard]] plot::Axis axis(double margin = 0.02) const;
-    /// A number as the axis places it: of levels their index.
+    /// Returns a number as on the axis; for levels the index.
     [[nodiscard]] double shown(double x) const { return levels.empty() ? quantity().of(x) : x; }
-    /// The levels as lines of a legend, the first one with the title, in the colours of categories.
+    /// Returns the levels as entries of a legend, the first one with the title, in the colours of categories.
     [[nodiscard]] std::vector<plot::Key> keys(plot::Key::Kind kind) const;
-    /// The value of a row as the axis places it; cases of one level are spread sideways by a fixed sequence.
+    /// Returns the value of a row as on the axis; cases of one level are spread sideways by a fixed sequence.
     [[nodiscard]] double place(std::size_t row) const;
 };
 [[nodiscard]] Variable variable_of(const study::FactorColumn& factor);
 [[nodiscard]] Variable variable_of(const study::ResponseColumn& response);
-/// The same of a factor of a response model, without rows.
+/// Returns the variable of a factor of a response model, without rows.
 [[nodiscard]] Variable variable_of(const study::ModelFactor& factor);
 
-/// Smallest and largest finite number; 0 and 1 where there is none. One number gets some room.
+/// Smallest and largest finite number; 0 and 1 if there is none. A single number gets some room.
 struct NumberRange {
     double low = 0, high = 1;
 };
 [[nodiscard]] NumberRange finite_range(std::span<const double> numbers);
-/// From the range, widened by a share of its length.
+/// Returns an axis of the range, widened by a share of its length.
 [[nodiscard]] plot::Axis number_axis(const Quantity& quantity, const NumberRange& range, bool log = false,
                                      double margin = 0.05);
 

@@ -1,4 +1,4 @@
-// SHA-256 (FIPS 180-4): how a page's content security policy names the scripts that it runs.
+// SHA-256 (FIPS 180-4), for the scripts in a page's content security policy.
 #pragma once
 
 #include <array>

@@ -1,10 +1,10 @@
-// A table as aligned text that fits a width, by the first of these that is enough:
+// Table as aligned text that fits a width. The first sufficient measure is used:
 //
 //   cells of text are wrapped, and headings behind an underscore
-//   columns with the same value in every row are given in one line below
-//   case ids are shortened to their beginning, which every command takes
-//   columns are left out: whole numbers beyond 2^53 (seeds), then columns on how a case was computed (wall_seconds,
-//   attempts), then from the right; a line below names them
+//   columns with the same value in every row are printed in one line below
+//   case ids are shortened to their beginning, which every command accepts
+//   columns are left out, and a line below names them: whole numbers beyond 2^53 (seeds), then columns on how a case
+//     was computed (wall_seconds, attempts), then from the right
 //
 // Numbers are aligned to the right and never broken.
 #pragma once
@@ -17,10 +17,10 @@
 
 namespace grainsweep::report {
 
-/// No line is longer than `width`.
+/// Writes the table with lines of at most `width` columns.
 void write_text(std::ostream& out, const store::Table& table, std::size_t width);
 
-/// A cell on one line: numbers to 6 digits, control characters shown, nothing for an absent value.
+/// Returns a cell on one line: numbers to 6 digits, control characters made visible, empty for an absent value.
 [[nodiscard]] std::string cell_text(const store::Table::Cell& cell);
 
 }  // namespace grainsweep::report

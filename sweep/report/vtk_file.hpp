@@ -1,10 +1,11 @@
-// One moment of a scene in the files of VTK: particles and walls as poly data, a flow as the grid it lives on.
+// Files of VTK for one moment of a scene: particles and walls as poly data, a flow on its grid.
 //
 // XML with appended raw binary, little endian, 32-bit floats, each block after its length in bytes (64 bits).
 // https://docs.vtk.org, "VTK XML formats".
-//   VTP  particles: one point each and one cell that shows them all; walls: lines and triangles
-//   VTI  a flow on equal cells; VTR a flow on clustered ones, as they are: resampling would smear what clustering
-//        resolves, and every filter of ParaView takes both
+//   VTP  particles: one point each and one cell for all of them; walls: lines and triangles
+//   VTI  a flow on equal cells
+//   VTR  a flow on clustered cells, without resampling, which would lose resolution; all filters of ParaView accept
+//        both
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -14,16 +15,17 @@
 
 namespace grainsweep::report {
 
-/// Whether a scene has particles at all: a cell that ran empty has none any more, but has their columns.
+/// Returns whether a scene has particles; an empty cell still has their columns.
 [[nodiscard]] bool shows_particles(const Snapshot& snapshot);
 
-/// The file's bytes. Columns of another length than the positions: std::invalid_argument.
+/// Returns the bytes of the file. Throws std::invalid_argument if a column has another length than the positions.
 [[nodiscard]] std::string vtp(const Snapshot& snapshot, double time);
 [[nodiscard]] std::string vtp(const WallSurface& wall, double time);
 
-/// ".vti" where the cells are equal along each axis (to 1e-9 of it), else ".vtr".
+/// Returns ".vti" if the cells are equal along each axis (to 1e-9 of it), else ".vtr".
 [[nodiscard]] std::string_view extension_of(const FlowField& field);
-/// The bytes of such a file. Quantities of another length than the cells, axes that do not grow: std::invalid_argument.
+/// Returns the bytes of such a file. Throws std::invalid_argument if a quantity has another length than the cells, or
+/// an axis is not ascending.
 [[nodiscard]] std::string vtk_grid(const FlowField& field, double time);
 
 }  // namespace grainsweep::report

@@ -1,5 +1,5 @@
-// A scene as it goes, for ParaView and everything else that reads VTK: files of single moments (vtk_file.hpp), and a
-// PVD file that says when each of them is.
+// Time series of a scene for ParaView and other readers of VTK: files of single moments (vtk_file.hpp), and a PVD file
+// with their times.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -16,10 +16,10 @@ class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
 
-    /// Writes the files of the moment, then NAME.pvd anew, which names all so far. Particles are NAME_0000.vtp,
-    /// NAME_0001.vtp, ...; a flow is NAME_FIELD_0000.vti or .vtr. A wall is NAME_WALL_0000.vtp, numbered by the moment
-    /// since which it has not moved: one that never moves is one file. Makes the folder where there is none; the
-    /// first moment takes away an older series of this name. Throws BrokenWorld where it cannot.
+    /// Writes the files of the moment, and NAME.pvd, which names all files so far. Particles are in NAME_0000.vtp,
+    /// NAME_0001.vtp, ...; a flow is in NAME_FIELD_0000.vti or .vtr. A wall is in NAME_WALL_0000.vtp, with the number
+    /// of its last movement, so a fixed wall needs one file. Makes the folder if there is none; the first moment
+    /// removes an older series of this name. Throws BrokenWorld on failure.
     void add(const Snapshot& snapshot, double time);
     [[nodiscard]] std::size_t size() const { return moments_; }
     [[nodiscard]] std::filesystem::path collection() const { return folder_ / (name_ + ".pvd"); }
@@ -39,7 +39,7 @@ private:
     std::size_t moments_ = 0;
     std::map<std::string, Wall, std::less<>> walls_;
     std::vector<std::string> parts_;  ///< names, in the order of their numbers
-    std::string entries_;             ///< of the collection
+    std::string entries_;             ///< entries of the collection
 };
 
 }  // namespace grainsweep::report

@@ -1,4 +1,4 @@
-// The page of one case: its film and the player. It requests nothing from a network.
+// Page of one case: its film and the player. It needs no network.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -8,7 +8,7 @@
 
 namespace grainsweep::report {
 
-/// The text beside the film: title, inputs and results with their units, and why a failed case ended.
+/// Returns the text beside the film: title, inputs and results with their units, and why a failed case ended.
 [[nodiscard]] Json about_case(const campaign::Case& question, const campaign::CaseResult& result);
 
 /// Returns the page. Throws std::invalid_argument for a film that shows nothing.

@@ -1,4 +1,4 @@
-// A process window as text, rows and JSON.
+// Process window as text, rows and JSON.
 #pragma once
 
 #include "sweep/report/document.hpp"
@@ -6,9 +6,9 @@
 
 namespace grainsweep::report {
 
-/// Text: share of the box, best setting, front, next cases, models and notes. Rows: one per setting: part ("best",
-/// "surest", "front", "next"), factors, probability, where cases failed answers, near_cases and near_failed, and for
-/// each model NAME, NAME_error, NAME_scatter.
+/// Returns the document. Text: share of the box, best setting, front, next cases, models and notes. Rows, one per
+/// setting: part ("best", "surest", "front", "next"), factors, probability; if cases failed, also answers, near_cases
+/// and near_failed; for each model NAME, NAME_error, NAME_scatter.
 [[nodiscard]] Document window_document(const study::ModelCases& cases, const study::WindowRequest& request,
                                        const study::Window& window);
 /// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "share_failed", "best":

@@ -1,12 +1,12 @@
-// Rows as a workbook that spreadsheets read (Office Open XML, .xlsx).
+// Workbook of rows for spreadsheets (Office Open XML, .xlsx).
 //
-//   numbers       cells of numbers with 16 significant digits, which is what the library writes; csv and json have 17
-//   whole numbers beyond 2^53 (seeds) are text, because a spreadsheet's numbers are doubles
-//   infinities    the texts "inf" and "-inf": a cell has no such number
+//   numbers       numeric cells with 16 significant digits, the most that the library writes; csv and json have 17
+//   whole numbers text beyond 2^53 (seeds), because a spreadsheet's numbers are doubles
+//   infinities    the texts "inf" and "-inf", because a cell cannot have such a number
 //   NULL          an empty cell
-//   texts         never a formula; one beyond 32,767 characters, the most that a cell holds, is cut
+//   texts         never a formula; cut after 32,767 characters, the most of a cell
 //
-// The same rows give the same bytes: the file holds no time of writing.
+// The same rows give the same bytes, because the file has no time of writing.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -25,14 +25,14 @@ public:
     Workbook& operator=(const Workbook&) = delete;
     ~Workbook();
 
-    /// Writes the first row of the sheet "rows", which stays in view. `units`: one per column, empty where unknown.
+    /// Writes the fixed first row of the sheet "rows". `units`: one per column, empty if unknown.
     void begin(const std::vector<std::string>& columns, const std::vector<std::string>& units);
-    /// Throws WrongQuestion beyond 1,048,575 rows, the most that a sheet holds.
+    /// Adds a row. Throws WrongQuestion beyond 1,048,575 rows, the most of a sheet.
     void add(const std::vector<store::Table::Cell>& row);
-    /// Texts that were cut so far.
+    /// Returns the number of texts cut so far.
     [[nodiscard]] std::int64_t cut_texts() const;
-    /// Returns the bytes of the file, with the second sheet "provenance". Nothing may be added any more. Throws
-    /// BrokenWorld where there is no room for temporary files.
+    /// Returns the bytes of the file, with the second sheet "provenance". No row may be added afterwards. Throws
+    /// BrokenWorld if there is no room for temporary files.
     [[nodiscard]] std::string finish(const store::Table& provenance);
 
 private:

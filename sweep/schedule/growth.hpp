@@ -1,4 +1,4 @@
-// Designs that grow: what the archive knows of a campaign's points decides which come next.
+// Designs that grow: the stored answers of a campaign decide its next points.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -9,17 +9,17 @@
 
 namespace grainsweep::schedule {
 
-/// Puts what `store` knows of the campaign's points into its request, and says whether that brings points beyond those
-/// there were. Does nothing for a design that does not grow, and for a campaign that is not stored.
+/// Adds the stored answers of the campaign's points to its design request. Returns whether the design then has more
+/// points than before. Does nothing for a design that does not grow, and for a campaign that is not stored.
 ///
-/// Settled without an answer are: cases that crashed or ran out of time as often as allowed, unstable and rejected
-/// cases, cases whose observable is undefined, and points that the `where` clause leaves out. Throws WrongQuestion
-/// where another campaign is stored under the name.
+/// Points settled without an answer: cases that crashed or timed out in all their attempts, unstable and rejected
+/// cases, cases whose observable is undefined, and points that the `where` clause excludes. Throws WrongQuestion where
+/// another campaign is stored under the name.
 bool grow(campaign::Campaign& campaign, const store::Store& store);
 
 using Answers = decltype(designs::DesignRequest::answers);
-/// What is known of the points of a stored campaign, of these scalars or places along curves; "heap/angle" is that of
-/// the campaign that runs the experiment "heap" of the same calibration.
+/// Returns the stored answers of a campaign's points, for these scalars or places along curves. "heap/angle" is the
+/// observable `angle` of the campaign that runs the experiment "heap" of the same calibration.
 [[nodiscard]] Answers known_answers(const store::Store& store, const store::CampaignRecord& record,
                                     std::span<const std::string> observables);
 

@@ -1,11 +1,10 @@
-// Whether the statistics of the campaign are good enough: values in, verdict out.
+// Decides from the values of a campaign whether its statistics are good enough.
 //
-// Only gapless beginnings of the design are judged, block by block, so the verdict does not depend on the
-// number of workers or on the order of finishing. A block is `block` design points; those that the `where` clause
-// filtered out contribute nothing. A case that stands at several points counts once, at the first of them. A case
-// without an answer (unstable, rejected, given up) is left out and counted. The rules and their errors:
-// stats/convergence.hpp; of `assisted`, whose checks are fewer and take time: stats/assisted_convergence.hpp and
-// assisted_judge.hpp.
+// Only prefixes of the design are judged, block by block, so the verdict depends neither on the number of workers nor
+// on the order in which cases finish. A block is `block` design points; points that the `where` clause excludes
+// contribute nothing. A case that stands at several points counts once, at the first of them. A case without an answer
+// (unstable, rejected, given up) is left out and counted. The rules and their errors are in stats/convergence.hpp. The
+// rule `assisted` has fewer checks, which take time: stats/assisted_convergence.hpp and assisted_judge.hpp.
 #pragma once
 
 #include "stats/convergence.hpp"
@@ -26,35 +25,37 @@ namespace grainsweep::schedule {
 
 class Judge {
 public:
-    /// `placed` in the order of the plan (point, replicate); `known` values of what the archive already has
-    /// (NaN: none). `sequences` that repeat one another independently, see independent_sequences().
-    /// `candidates`: how many points the design numbers, before `where` filters them; where it is not given,
-    /// a last block whose last points were filtered out is not judged.
-    /// `view`: what the rule `assisted` needs, and no other.
+    /// `placed`: cases in the order of the plan (point, replicate). `known`: their stored values (NaN: none).
+    /// `sequences`: number of independent sequences, see independent_sequences(). `candidates`: number of points of the
+    /// design before `where` filters them. Without it, a last block whose last points were filtered out is not judged.
+    /// `view`: only for the rule `assisted`.
     /// `repeats_weigh`: a run weighs as many places as hold it (campaign::repeats_weigh); else it counts once.
     /// Throws std::invalid_argument for settings that cannot be judged (`replicates` with fewer than 4 sequences,
     /// `assisted` without a view).
     Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences, std::vector<double> known,
           std::optional<std::int64_t> candidates = {}, std::optional<ModelView> view = {}, bool repeats_weigh = false);
 
-    /// The answer to a question, at every place where it is asked. No such scalar: no answer.
+    /// Stores the answer of a case at every place where the case stands. Without the judged scalar it counts as no
+    /// answer.
     void learn(const campaign::CaseId& id, const Observations& observations);
-    /// Judges every block that lies within the first `settled` placed cases and was not judged before. Where
-    /// convergence stops the campaign, nothing after the block that converged. Checks that fit models are waited for,
-    /// or made beside: then a later call brings what they say.
+    /// Judges every block that lies within the first `settled` placed cases and was not judged before. If convergence
+    /// stops the campaign, no block after the converged one is judged. `Models`: wait for checks that fit models, or
+    /// make them on a thread; a later call then takes their results.
     enum class Models { awaited, beside };
     [[nodiscard]] std::vector<store::ConvergenceRow> judge(std::size_t settled, Models models = Models::awaited);
-    /// A check is under way.
+    /// Returns whether a check is being made.
     [[nodiscard]] bool busy() const { return assisted_ && assisted_->busy(); }
-    /// Points of the prefix at which the statistics converged.
+    /// Returns the points of the prefix at which the statistics converged.
     [[nodiscard]] std::optional<std::int64_t> converged_at() const;
     [[nodiscard]] bool stops() const { return wanted_.stop; }
-    /// Share of the design's points after which convergence is expected to stop the campaign; none: it stops nothing,
-    /// or no check has said yet.
+    /// Returns the share of the design's points after which convergence is expected to stop the campaign. Empty:
+    /// convergence does not stop the campaign, or no check gives an estimate yet.
     [[nodiscard]] std::optional<double> expected_share() const;
-    /// Whether checks have come past so many points without convergence: an earlier stop there was of another rule.
+    /// Returns whether checks of more points than `stop` have not converged: the earlier stop there came from another
+    /// rule.
     [[nodiscard]] bool overturns(std::int64_t stop) const;
-    /// The last verdict in one line: what holds it back and how many more points it probably takes.
+    /// Returns the last verdict in one line: the statistic that is not converged yet, and how many more points it
+    /// probably needs.
     [[nodiscard]] const std::string& verdict() const { return verdict_; }
 
 private:
@@ -63,28 +64,29 @@ private:
 
     campaign::Convergence wanted_;
     stats::ConvergenceSettings settings_;
-    std::unique_ptr<stats::Convergence> plain_;  ///< one of the two
+    std::unique_ptr<stats::Convergence> plain_;  ///< either this or assisted_
     std::unique_ptr<AssistedJudge> assisted_;
     std::int64_t candidates_;
     campaign::Cases placed_;
     std::vector<double> values_;     ///< of each place
-    std::vector<std::int64_t> met_;  ///< of each run, by its first place: places seen; empty: a run counts once
+    std::vector<std::int64_t> met_;  ///< places seen of each run, by the first place of the run; empty: a run counts
+                                     ///< once
     std::size_t fed_ = 0;            ///< placed cases the statistics have seen
     std::size_t judged_ = 0;         ///< blocks judged
     std::string verdict_;
 };
 
-/// How many sequences of a design repeat one another independently. Those of `saltelli` and `morris` are parts of
-/// one estimate: 1.
+/// Returns how many sequences of a design are independent replicates of one another. For `saltelli` and `morris`, whose
+/// sequences are parts of one estimate: 1.
 [[nodiscard]] std::size_t independent_sequences(std::string_view design, std::size_t sequences);
 
-/// The words of a campaign file -> the settings of the rule. Throws std::invalid_argument for an unknown word.
+/// Returns the settings of the rule that the campaign file names. Throws std::invalid_argument for an unknown word.
 [[nodiscard]] stats::ConvergenceSettings settings_of(const campaign::Convergence& wanted, std::size_t sequences);
 
-/// A check as the archive keeps it.
+/// Returns a check as a row of the database.
 [[nodiscard]] store::ConvergenceRow row_of(const stats::Checkpoint& check, std::string_view observable);
 
-/// A check in one line: "kurtosis 1.4 % > 1 %, about 800 more points". `candidates`: points of the design.
+/// Returns a check in one line: "kurtosis 1.4 % > 1 %, about 800 more points". `candidates`: points of the design.
 [[nodiscard]] std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceSettings& settings,
                                      std::int64_t candidates);
 

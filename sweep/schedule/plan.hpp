@@ -1,8 +1,9 @@
-// What to compute next, what a result means, when to give up. Pure: sees no process, clock or archive.
+// Decides which case runs next, whether a failed case is tried again, and when a run stops. Pure: uses no process,
+// clock or database.
 //
-// Work is per question: cases that stand at several places of a design are computed once. Order is the design's, so
-// that the finished part is always a usable prefix. Long cases go first only where they would otherwise be what the end
-// waits for: where what is left is less than a few times the longest case on every worker.
+// A question is a distinct case: a case that stands at several places of the design is computed once. Cases run in the
+// order of the design, so that the finished part is always a usable prefix. Long cases run first only near the end,
+// when the remaining work is less than a few times the longest case on every worker.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -18,33 +19,33 @@
 
 namespace grainsweep::schedule {
 
-/// What the archive knew of a question when the run began.
+/// Stored state of a question at the start of the run.
 struct History {
     std::int32_t attempts = 0;  ///< highest attempt number
     std::int32_t failures = 0;  ///< of those, crashed or timed out
     std::optional<campaign::Outcome> outcome = {};
-    bool asked =
-        true;  ///< by this run; false: of a larger design that is stored, counted in the prefix, never computed
+    bool asked = true;  ///< wanted by this run; false: belongs to a larger stored design, counts in the prefix, is
+                        ///< never computed
 };
 
 struct Rules {
     std::int64_t attempts = 3;     ///< tries of a case that crashes or times out
-    std::int64_t give_backs = 10;  ///< times in this run that a case may come back no further than before
-    std::optional<std::int64_t> stop_after_failures = {};  ///< start nothing more after so many failed cases
+    std::int64_t give_backs = 10;  ///< times in this run that a case may be given back without progress
+    std::optional<std::int64_t> stop_after_failures = {};  ///< start no case after so many failed cases
     std::optional<std::int64_t> max_cases = {};            ///< settle at most so many in this run
-    std::optional<campaign::Outcome> again = {};           ///< ask again what ended like this
-    std::size_t workers = 1;                               ///< how many cases are computed at once
+    std::optional<campaign::Outcome> again = {};           ///< rerun cases with this outcome
+    std::size_t workers = 1;                               ///< cases computed at the same time
 };
 
-/// The different cases of a plan: a repeated case stands here once.
+/// Distinct cases of a plan: a repeated case stands here once.
 struct Questions {
     std::function<campaign::Case(std::uint32_t question)> ask;
     std::vector<History> histories;
     std::vector<double> predicted;  ///< seconds
     /// Index of the question of each placed case. Empty: place i has question i.
     std::vector<std::uint32_t> places;
-    /// Number of the block after which the campaign may stop, growing; no case is brought forward out of a later block
-    /// than the design is in. Empty: nothing stops it.
+    /// Block of each question, in ascending order. The campaign may stop after each block, so no case of a later block
+    /// is brought forward. Empty: convergence does not stop the campaign.
     std::vector<std::uint32_t> blocks;
 };
 
@@ -57,46 +58,46 @@ public:
         campaign::Case question;
         double predicted_seconds = 0;
     };
-    /// The next attempt to start, if there is one now.
+    /// Returns the next attempt to start, if there is one now.
     [[nodiscard]] std::optional<Start> next();
-    /// Predicted seconds of what next() would return; nothing when there is nothing.
+    /// Returns the predicted seconds of the attempt that next() would return, if any.
     [[nodiscard]] std::optional<double> next_predicted() const;
-    /// How many next() could return one after the other now.
+    /// Returns how many attempts next() could return now, one after the other.
     [[nodiscard]] std::size_t waiting() const;
 
-    /// Predicted seconds of those, in their order, where they are not more than `most`.
+    /// Returns the predicted seconds of the waiting attempts, in their order, if they are at most `most`.
     [[nodiscard]] std::optional<std::vector<double>> last_predicted(std::size_t most) const;
 
-    /// Predicted seconds of a running attempt; 0: it is not running.
+    /// Returns the predicted seconds of a running attempt; 0: it is not running.
     [[nodiscard]] double predicted(const campaign::Attempt& attempt) const;
     [[nodiscard]] std::size_t workers() const { return rules_.workers; }
-    /// Of a running attempt: those predicted, less what it has done. 0: it is not running.
+    /// Returns the predicted seconds that a running attempt still needs; 0: it is not running.
     [[nodiscard]] double seconds_left(const campaign::Attempt& attempt) const;
-    /// A running attempt has come so far, 0 to 1.
+    /// Stores the share that a running attempt has done, 0 to 1.
     void advanced(const campaign::Attempt& attempt, double share);
 
     enum class Verdict { settled, again, gave_up, stale };
-    /// A running attempt ended so.
+    /// Stores the outcome of an attempt that ended.
     Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome);
-    /// It was given back unfinished, which costs no try: the question returns to the head of the queue. One that comes
-    /// back again and again without getting further is given up in this run.
+    /// Returns an unfinished case to the head of the queue; its attempt does not count. A case given back too often
+    /// without progress is given up in this run.
     Verdict given_back(const campaign::Attempt& attempt);
-    /// It was handed out but no worker began it: the same, and its number is free again.
+    /// Returns a case that no worker began to the head of the queue, and frees the number of the attempt.
     void never_begun(const campaign::Attempt& attempt);
-    /// Start none that is predicted to take longer than this, in this run.
+    /// Starts no case in this run that is predicted to take longer.
     void leave_out_longer_than(double seconds);
     [[nodiscard]] std::size_t left_out() const { return left_out_; }
-    /// Of those the shortest prediction, seconds.
+    /// Returns the shortest prediction among the cases left out by leave_out_longer_than(), seconds.
     [[nodiscard]] double shortest_left_out() const { return shortest_left_out_; }
-    /// Start nothing more.
+    /// Starts no further case.
     void close() { closed_ = true; }
 
     [[nodiscard]] bool too_many_failures() const {
         return rules_.stop_after_failures && std::cmp_greater_equal(tally_.failed_now, *rules_.stop_after_failures);
     }
-    /// Nothing running and nothing that could still be started.
+    /// Returns whether no case is running and none can be started.
     [[nodiscard]] bool over() const { return under_way_.empty() && !next_predicted(); }
-    /// Length of the longest prefix of the placed cases all of whose questions are decided.
+    /// Returns the length of the longest prefix of the placed cases in which every question is decided.
     [[nodiscard]] std::size_t settled_prefix();
 
     struct Tally {
@@ -125,14 +126,14 @@ private:
         double furthest = 0;  ///< share done when it was given back
     };
 
-    /// Long cases first near the end: of the queue or of what this run may settle.
+    /// Puts long cases first near the end of the queue, or near the last case that this run may settle.
     void order_the_end(std::span<const std::uint32_t> blocks);
     [[nodiscard]] std::size_t question_at(std::size_t placed) const {
         return places_.empty() ? placed : places_[placed];
     }
     [[nodiscard]] std::size_t placed() const { return places_.empty() ? entries_.size() : places_.size(); }
     [[nodiscard]] bool queue_is_empty() const { return returned_.empty() && head_ == queue_.size(); }
-    /// In this run.
+    /// Returns how many cases this run has begun.
     [[nodiscard]] std::size_t begun() const { return tally_.settled_now + tally_.failed_now + under_way_.size(); }
     [[nodiscard]] std::size_t queued() const { return returned_.size() + queue_.size() - head_; }
     [[nodiscard]] std::uint32_t front() const { return returned_.empty() ? queue_[head_] : returned_.back(); }
@@ -147,9 +148,9 @@ private:
     std::vector<std::uint32_t> places_;
     std::vector<std::uint32_t> queue_;  ///< from head_ on
     std::size_t head_ = 0;
-    std::vector<std::uint32_t> returned_;  ///< before the queue, the last one first
+    std::vector<std::uint32_t> returned_;  ///< cases given back; they run before the queue, the last one first
     UnderWay under_way_;
-    std::unordered_map<std::uint32_t, GiveBacks> give_backs_;  ///< by question, of those that were given back
+    std::unordered_map<std::uint32_t, GiveBacks> give_backs_;  ///< by question
     Rules rules_;
     Tally tally_;
     std::size_t prefix_ = 0;

@@ -1,5 +1,5 @@
-// The one loop: hand out what the plan says, record what the crew answers, ask the judge whether it is
-// enough. Decisions are the plan's and the judge's, processes the crew's, the disk the recorder's.
+// The loop of a run: takes cases from the plan, gives them to the crew, stores the answers with the recorder, and stops
+// when the judge reports convergence.
 #pragma once
 
 #include "sweep/schedule/judge.hpp"
@@ -18,45 +18,46 @@
 
 namespace grainsweep::schedule {
 
-/// Why a run ended.
+/// Reason why a run ended.
 enum class Ending {
     finished,   ///< every case is settled or given up
-    converged,  ///< the statistics were good enough
-    limited,    ///< as many cases as asked for in this run
+    converged,  ///< the statistics reached their tolerance
+    limited,    ///< the run reached its limit of cases
     too_many_failures,
     interrupted,
-    out_of_time,   ///< what is left does not fit into the time there is
-    asked_to_end,  ///< by a system that will let it go on later
-    too_long,      ///< what is left is predicted to fit into no run
+    out_of_time,   ///< the remaining cases do not fit into the time left
+    asked_to_end,  ///< by a batch system that will continue the run later
+    too_long,      ///< the remaining cases are predicted to take longer than any run
 };
 
-/// How long a run may take. Seconds.
+/// Limit of a run's time, in seconds.
 struct Walltime {
-    std::function<double()> left = {};  ///< until every worker must have been asked to stop; empty: no limit
-    double whole = 0;                   ///< what `left` begins with in a run of full length
-    bool cases_go_on = true;            ///< an unfinished case goes on in another run from where it was
-    double shortest_part = 0;           ///< such a case is not begun for less
+    std::function<double()> left = {};  ///< time until every worker must have received the request to stop; empty: no
+                                        ///< limit
+    double whole = 0;                   ///< value of `left` at the start of a run of full length
+    bool cases_go_on = true;            ///< an unfinished case continues in another run from its checkpoint
+    double shortest_part = 0;           ///< a case that can continue is started only if at least this much time is left
 };
 
-/// A case that a worker has, begun or queued behind another.
+/// Case given to a worker, begun or queued behind another.
 struct UnderWay {
     std::int64_t attempt = 0;
     std::shared_ptr<const campaign::Computer> computer;
-    std::optional<double> share;  ///< done, 0 to 1, as last reported; none: not begun, or not known
+    std::optional<double> share;  ///< share done, 0 to 1, as last reported; empty: not begun, or unknown
     double given = 0;             ///< when it was handed out, in seconds of the run
 };
 
-/// What watchers get. Counts are of results on disk.
+/// Progress of a run for displays. Counts are of results on disk.
 struct Progress {
     Plan::Tally tally;
     std::size_t durable = 0;  ///< results of this run on disk
     std::map<campaign::CaseId, UnderWay> under_way;
     double seconds = 0;   ///< since the run began
     double computed = 0;  ///< seconds, all workers together
-    /// The same, of what it will still compute: all that is left, or less where the number of cases is limited or the
-    /// statistics are expected to converge before.
+    /// Seconds still to compute, all workers together: all remaining cases, or fewer if the number of cases is limited
+    /// or convergence is expected earlier.
     double to_compute = 0;
-    bool at_most = false;   ///< it may end sooner: the statistics do not say yet when they will have converged
+    bool at_most = false;   ///< the run may end sooner: the point of convergence cannot be estimated yet
     std::string judgement;  ///< last verdict on convergence in one line
 };
 
@@ -71,18 +72,18 @@ public:
     Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
               Watchers watchers, Walltime walltime = {});
 
-    /// Runs until nothing is left to do, the judge is satisfied or the user interrupts. Returns with
-    /// everything on disk. Throws only for a broken world.
+    /// Runs until no case is left, the statistics converge or the user interrupts. All results are on disk when it
+    /// returns. Throws only BrokenWorld.
     Ending run();
 
 private:
     using Clock = std::chrono::steady_clock;
 
     void hand_out();
-    /// Leaves out what does not fit into the time left, and stops when there is none.
+    /// Leaves out cases that do not fit into the time left, and stops the run when no time is left.
     void look_at_time();
     [[nodiscard]] Ending ending() const;
-    /// Of what is left, the part that is computed before the statistics are expected to converge; none: not known yet.
+    /// Returns the share of the remaining cases that is computed before convergence is expected; empty: unknown.
     [[nodiscard]] std::optional<double> share_to_go() const;
     [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
     void handle(workers::PoolEvent event);
@@ -102,10 +103,10 @@ private:
     Walltime walltime_;
     Clock::time_point began_ = Clock::now();
     TimeLeft time_left_;
-    double estimated_ = -1;  ///< when, in seconds of the run
+    double estimated_ = -1;  ///< time of the last estimate, in seconds of the run
     Progress progress_;
     std::optional<Ending> early_;
-    std::optional<std::string> broken_;  ///< why nothing more can be computed
+    std::optional<std::string> broken_;  ///< reason why no further case can be computed
     bool at_once_ = false;
     std::vector<campaign::CaseId> checkpointed_;
 };

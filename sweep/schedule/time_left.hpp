@@ -1,4 +1,4 @@
-// How long the rest of a run will take, learned from what it has computed so far. Pure: sees no clock.
+// Estimate of a run's remaining time from the cases it has computed. Pure: uses no clock.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -11,27 +11,27 @@
 
 namespace grainsweep::schedule {
 
-/// Estimates the seconds of computing that are left: predictions times a pace, the ratio of the seconds that cases took
-/// to those predicted. A running case that reports its share goes on as fast as it came so far. Cases that end before
-/// their share is 1, because nothing moves any more, teach where the next ones will end. All times in seconds of the
-/// run.
+/// Estimator of the computing seconds that are left: predicted seconds times the ratio of measured to predicted seconds
+/// so far. A running case that reports its share is assumed to continue at its speed so far. Cases can end before their
+/// share is 1, when no particle moves any more; the shares at which they ended are used for the next ones. All times
+/// are in seconds of the run.
 class TimeLeft {
 public:
     void begun(const campaign::Attempt& attempt, double predicted, double now);
-    /// The case has done a share of 0 to 1 of what it may compute. What a later attempt reports first was in a
-    /// checkpoint.
+    /// Stores the share, 0 to 1, that a case has done of its longest computation. The first share that a later attempt
+    /// reports comes from a checkpoint.
     void reported(const campaign::Attempt& attempt, double share, double now);
-    /// The case ended after so many seconds of computing.
+    /// Stores that the case ended after `taken` seconds of computing.
     void ended(const campaign::Attempt& attempt, double taken, double now);
-    /// The case was handed out for nothing, or will begin again.
+    /// Removes a case that was never begun, or that will start again.
     void taken_back(const campaign::CaseId& id) { running_.erase(id); }
 
     struct Seconds {
         double done = 0;   ///< all workers together, in this run
         double to_go = 0;  ///< all workers together
     };
-    /// `waiting`: predicted seconds of all cases that are not handed out yet. `last`: of each of them, in their order,
-    /// near the end of the run, where some workers have nothing left to do while others still compute.
+    /// Returns the estimate. `waiting`: predicted seconds of all waiting cases. `last`: those of each waiting case, in
+    /// their order; given near the end of the run, when some workers are idle while others still compute.
     [[nodiscard]] Seconds estimate(double waiting, std::size_t workers, double now,
                                    const std::optional<std::vector<double>>& last = {}) const;
 
@@ -44,7 +44,8 @@ private:
         double predicted = 0, given = 0;
         std::optional<Report> first, last;
     };
-    /// Share per second since the case was given, or since its first report where there may have been a checkpoint.
+    /// Returns the share per second since the case was given to a worker, or, if there may have been a checkpoint,
+    /// since its first report.
     using Cases = std::map<campaign::CaseId, Running>;
     [[nodiscard]] Cases::iterator find(const campaign::Attempt& attempt);
     [[nodiscard]] static double speed(const Running& one);
@@ -54,7 +55,8 @@ private:
 
     Cases running_;
     double taken_ = 0, predicted_ = 0;    ///< of the cases that ended
-    double end_shares_ = 0, shared_ = 0;  ///< shares at which cases ended, weighed by their predictions; the weights
+    double end_shares_ = 0, shared_ = 0;  ///< weighted sum of the shares at which cases ended, and the sum of the
+                                          ///< weights, which are their predictions
 };
 
 }  // namespace grainsweep::schedule

@@ -1,4 +1,4 @@
-// What a spool's tasks have answered, case by case, for an archive.
+// Import of the answers of a spool's tasks into a database, case by case.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -15,22 +15,22 @@ namespace grainsweep::spool {
 
 struct Collected {
     std::size_t imported = 0;  ///< cases
-    std::size_t known = 0;     ///< cases that were settled in the archive before
-    std::size_t claimed = 0;   ///< files of attempts that have not ended
-    std::size_t unusable = 0;  ///< files that are damaged, half written, or of another campaign
+    std::size_t known = 0;     ///< cases that were already settled in the database
+    std::size_t claimed = 0;   ///< files of unfinished attempts
+    std::size_t unusable = 0;  ///< files that are damaged, incomplete, or of another campaign
 };
 
 struct Collector {
-    /// Whether the archive needs no answer of the case any more.
+    /// Whether the case is already settled in the database.
     std::function<bool(const campaign::CaseId&)> is_settled;
-    /// The attempts that ended a case: failed ones, then the answer, if it was not given up.
+    /// Called with the attempts of a finished case: failed ones, then the answer unless the case was given up.
     std::function<void(const campaign::CaseId&, std::vector<Answer>)> import;
-    /// A sentence on every file that cannot be used.
+    /// Called with a sentence on every unusable file.
     std::function<void(const std::string&)> note;
 };
 
-/// Reads every file of cases/, and hands over what has ended for good: an answer, the one of the lowest number, or as
-/// many failures as limits.attempts.
+/// Reads every file of cases/ and imports finished cases: with an answer, that of the lowest number, or with
+/// limits.attempts failures.
 [[nodiscard]] Collected collect(const std::filesystem::path& cases_folder, const campaign::Campaign& campaign,
                                 const campaign::Cases& cases, const Collector& collector);
 

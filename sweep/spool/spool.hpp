@@ -1,17 +1,21 @@
-// A folder in which tasks without a main program share a campaign: each claims cases, computes them and leaves one
-// file for each. Nothing else connects them, and any of them may be killed at any moment.
+// Spool: a folder in which tasks without a main program share a campaign. Each task claims cases, computes them and
+// writes one file per case. Tasks communicate only by these files, and may be killed at any moment.
 //
-//     campaign                 the campaign file, and what it asks
-//     tasks/NAME               of a task that runs: touched again and again; its age says whether it lives
-//     cases/ID.N               attempt N at a case: a claim that names its task, until the answer takes its place
+//     campaign                 the campaign file and the requested cases
+//     tasks/NAME               file of a running task, touched repeatedly; its age shows whether the task lives
+//     cases/ID.N               attempt N at a case: a claim with the name of its task, later replaced by the answer
 //     artefacts/               shared starting states and checkpoints
 //
-// What is assumed of the file system. open(2) with O_CREAT and O_EXCL makes a file for one caller only (NFS since
-// version 3, Lustre, GPFS, BeeGFS, CIFS, every local one); rename(2) replaces a file whole; a file opened anew shows
-// what was written before it was closed elsewhere (close-to-open, as NFS gives); the modification times that two nodes
-// set differ by less than the lease. Where the first or the last does not hold, a case may be computed twice: its
-// answers are equal, and one of them counts. Nothing rests on locks, on memory mappings, or on the age of directory
-// listings.
+// Assumptions about the file system:
+//
+//     open(2) with O_CREAT and O_EXCL makes a file for one caller only (NFS since version 3, Lustre, GPFS, BeeGFS,
+//       CIFS, all local ones)
+//     rename(2) replaces a file completely
+//     a newly opened file shows all data written before another process closed it (close-to-open, as NFS guarantees)
+//     modification times set by two nodes differ by less than the lease
+//
+// Where the first or the last does not hold, a case may be computed twice: its answers are equal, and one of them
+// counts. Locks, memory mappings and fresh directory listings are not needed.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -28,16 +32,16 @@
 
 namespace grainsweep::spool {
 
-/// An attempt that has ended, and what computed it.
+/// Finished attempt, with its program and machine.
 struct Answer {
     campaign::CaseResult result;
     campaign::Computer computer;
 };
-/// A task is at it.
+/// Claim of a running task.
 struct Claim {
-    std::string task;  ///< empty: not written yet
+    std::string task;  ///< name; empty: not written yet
 };
-/// No file of a spool, or not whole.
+/// File that is no entry of a spool, or incomplete.
 struct Damaged {
     std::string why;
 };
@@ -47,17 +51,17 @@ using Entry = std::variant<Answer, Claim, Damaged>;
 [[nodiscard]] std::string text_of(const Claim& claim);
 [[nodiscard]] Entry entry_in(std::string_view text);
 
-/// The entry that a file of cases/ holds; nothing where it is gone. Damaged, too: what is no regular file of a spool's
-/// size, and an answer that the scene cannot give or that belongs to another attempt than the file's name says.
+/// Returns the entry in a file of cases/; empty if there is no file. Damaged also means: no regular file of a plausible
+/// size, an answer that the scene cannot give, or an answer of another attempt than the file's name.
 [[nodiscard]] std::optional<Entry> entry_of(const std::filesystem::path& file, const campaign::Attempt& named,
                                             const SceneInfo& scene);
 
-/// A file of cases/. Nothing where the name is none of a spool's.
+/// Returns the attempt of a file name in cases/; empty if the name is invalid.
 [[nodiscard]] std::optional<campaign::Attempt> attempt_named(std::string_view file);
 
-/// What a spool is of.
+/// Campaign of a spool.
 struct Asked {
-    std::filesystem::path folder;  ///< where the files lie that the campaign file names
+    std::filesystem::path folder;  ///< folder of the files that the campaign file names
     std::string cases;             ///< hash of the ids in order
     std::string text;              ///< the campaign file
 };
@@ -65,20 +69,20 @@ struct Asked {
 
 class Spool {
 public:
-    /// Throws WrongQuestion where there is no spool.
+    /// Reads the campaign of a spool. Throws WrongQuestion if there is no spool.
     [[nodiscard]] static Asked asked_in(const std::filesystem::path& folder);
 
-    /// Makes the folder where there is none; throws WrongQuestion where it is a spool of other cases, BrokenWorld where
-    /// it cannot be written. `scene`: that answers the cases.
+    /// Makes the folder if there is none. Throws WrongQuestion if it is a spool of other cases, BrokenWorld if it
+    /// cannot be written. `scene`: scene of the cases.
     Spool(std::filesystem::path folder, const Asked& asked, const SceneInfo& scene);
 
-    /// Creates the claim; false where something is there.
+    /// Creates the claim. Returns false if the file exists.
     [[nodiscard]] bool claim(const campaign::Attempt& attempt, const std::string& task) const;
-    /// Nothing where there is no such file.
+    /// Reads the entry of an attempt; empty if there is no such file.
     [[nodiscard]] std::optional<Entry> read(const campaign::Attempt& attempt) const;
-    /// On disk when this returns, in the place of the claim.
+    /// Replaces the claim by the answer; it is on disk when this returns.
     void answer(const Answer& answer) const;
-    /// The attempt was never begun: its number is free again.
+    /// Removes the claim of an attempt that was never begun; its number is free again.
     void release(const campaign::Attempt& attempt) const;
 
     [[nodiscard]] std::filesystem::path artefacts() const { return folder_ / "artefacts"; }
@@ -91,35 +95,35 @@ private:
     const SceneInfo* scene_;
 };
 
-/// Makes the file of a running task, and keeps it young; removes it in the end.
+/// File of a running task, which is touched repeatedly and removed at the end.
 class TaskFile {
 public:
-    /// A task counts as dead if its file is older than `lease` seconds, or if this process has not seen the file change
-    /// for that time: a date in the future is no sign of life.
+    /// `lease`: a task counts as dead if its file is older than this, s, or did not change for this time while watched,
+    /// so that a date in the future does not count as life.
     TaskFile(const Spool& spool, double lease);
     TaskFile(const TaskFile&) = delete;
     TaskFile& operator=(const TaskFile&) = delete;
     ~TaskFile();
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// To be called often; touches the file a few times per lease.
+    /// Touches the file a few times per lease; must be called often.
     void keep_young(double now);
     enum class State {
         lives,
-        renewed,  ///< it has touched its file since it was first looked at
+        renewed,  ///< it has touched its file since the first check
         dead,
     };
     [[nodiscard]] State state_of(const std::string& task);
-    /// Of a claim that names no task.
+    /// Returns whether a claim without the name of a task is abandoned.
     [[nodiscard]] bool is_abandoned(const campaign::Attempt& attempt);
 
 private:
-    /// A file that others touch, as it was seen so far.
+    /// File of another task, with the times seen so far.
     struct Watched {
         std::int64_t first = 0, last = 0;  ///< modification times, ns
         double changed = 0;                ///< when `last` was first seen, s of the steady clock
     };
     void touch();
-    /// Whether it is too old, or has not changed for too long; looked at now.
+    /// Returns whether the file is too old now, or has not changed for too long.
     [[nodiscard]] bool is_silent(const std::filesystem::path& file, std::int64_t modified);
     const Spool& spool_;
     std::string name_;

@@ -1,5 +1,6 @@
-// One task of a campaign without a main program: claims cases, has them computed, leaves their answers in the spool.
-// Its own share first, the longest first; then what other tasks have not begun, or left unfinished.
+// Task of a campaign without a main program: claims cases, lets a crew compute them, and writes the answers to the
+// spool. It begins with its own share, the longest cases first. Then it takes cases that other tasks have not begun or
+// have left unfinished.
 #pragma once
 
 #include "sweep/campaign/cases.hpp"
@@ -18,7 +19,7 @@
 
 namespace grainsweep::spool {
 
-/// Part `part` of `of`, from 1 on.
+/// Share: part `part` of `of`, from 1.
 struct Share {
     std::int64_t part = 1, of = 1;
 };
@@ -26,23 +27,23 @@ struct Share {
 struct TaskRules {
     Share share;
     std::int64_t attempts = 3;  ///< tries of a case that crashes or times out, by all tasks
-    double lease = 300;         ///< s; what a task that gave no sign of life for so long had claimed is free
+    double lease = 300;         ///< s; claims of a task that is silent for this time are free
     schedule::Walltime walltime = {};
 };
 
-/// The order in which a task of this share takes the cases: places of `predicted`, which are seconds.
+/// Returns the order in which a task of this share takes the cases, as indices of `predicted` (seconds).
 [[nodiscard]] std::vector<std::uint32_t> order_of(const std::vector<double>& predicted, const Share& share);
 
 class Task {
 public:
     struct Tally {
-        std::size_t cases = 0;         ///< different ones
-        std::size_t answered = 0;      ///< by any task, as far as this one knows
+        std::size_t cases = 0;         ///< distinct cases
+        std::size_t answered = 0;      ///< by any task, as known to this one
         std::size_t failed = 0;        ///< of those: given up, unstable or rejected
         std::size_t computed = 0;      ///< by this task
-        std::size_t elsewhere = 0;     ///< at the end: other tasks that live are at them
-        std::size_t left_out = 0;      ///< they do not fit into the time there is
-        double shortest_left_out = 0;  ///< of those the shortest prediction, s
+        std::size_t elsewhere = 0;     ///< at the end: claimed by other living tasks
+        std::size_t left_out = 0;      ///< cases that do not fit into the time left
+        double shortest_left_out = 0;  ///< shortest prediction of these cases, s
     };
     struct Watchers {
         std::function<void(const Tally&)> progress = [](const Tally&) {};
@@ -50,12 +51,12 @@ public:
         std::function<void(const campaign::CaseId&)> forget_checkpoint = [](const campaign::CaseId&) {};
     };
 
-    /// `predicted`: seconds of each place.
+    /// `predicted`: seconds of the case at each place.
     Task(const Spool& spool, campaign::Cases cases, const std::vector<double>& predicted, workers::Crew& crew,
          TaskRules rules, Watchers watchers);
 
-    /// Runs until no case is left for it; `limited` is returned where other tasks are at the rest. Throws only for a
-    /// broken world.
+    /// Runs until no case is left for this task. Returns `limited` if other tasks compute the rest. Throws only
+    /// BrokenWorld.
     schedule::Ending run();
     [[nodiscard]] const Tally& tally() const { return tally_; }
 
@@ -93,13 +94,13 @@ private:
     TaskRules rules_;
     Watchers watchers_;
     TaskFile file_;
-    std::deque<std::uint32_t> open_;        ///< in the order in which they are taken
+    std::deque<std::uint32_t> open_;        ///< in the order in which this task takes them
     std::vector<std::uint32_t> elsewhere_;  ///< claimed by others
     std::map<std::uint32_t, Progress> known_;
     std::map<campaign::CaseId, Running> running_;
     Tally tally_;
     double looked_elsewhere_ = 0;
-    bool waits_ = true;  ///< for others that may be dead
+    bool waits_ = true;  ///< the task waits for others that may be dead
     bool at_once_ = false, closed_ = false;
     std::optional<schedule::Ending> early_;
     std::optional<std::string> broken_;

@@ -1,6 +1,6 @@
-// Statistics SQLite does not have, for `grainsweep query`: SELECT median(mfr) FROM wu2020_lds.
+// Statistics that SQLite lacks, for `grainsweep query`: SELECT median(mfr) FROM wu2020_lds.
 //
-// All skip NULL; a row of two arguments where either is NULL.
+// All skip NULL; functions of two arguments skip a row with a NULL in either.
 //   sd(x)                sqrt(sum (x - mean)^2 / N), and those of Wu et al. 2020, eq. 18-21, with it:
 //   pearson_skewness(x)  3 (mean - median) / sd
 //   g1(x)                sum (x - mean)^3 / (N sd^3)
@@ -12,8 +12,8 @@
 //   quantile(x, p)       p from 0 to 1, linear between the sorted values at (N - 1) p (R's type 7)
 //   percentile(x, P)     quantile(x, P / 100)
 //   corr(x, y)           Pearson's correlation; NULL where x or y does not vary
-//   covar_pop(x, y), covar_samp(x, y)   covariance over N, over N - 1
-// Skewnesses and kurtosis are NULL where all values are equal.
+// covar_pop(x, y), covar_samp(x, y)   covariance, divided by N or by N - 1
+// Skewnesses and kurtosis are NULL if all values are equal.
 #pragma once
 
 #include "sweep/store/database.hpp"

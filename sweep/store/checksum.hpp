@@ -1,8 +1,8 @@
-// Checksums over what is stored, so that a damaged byte is found and never read as data.
+// Checksums of stored data, so that a damaged byte is detected and never used.
 //
 // A checksum is the XXH3 64-bit hash of canonical bytes: every value with its type, numbers as eight bytes, -0 as 0,
-// NaN as absent (as SQLite stores them). The rows of an answer or of a table are summed, modulo 2^64, so that their
-// order does not matter and rows can be added.
+// NaN as absent (as SQLite stores them). The digests of the rows of an answer or a table are summed modulo 2^64, so
+// their order does not matter and rows can be added.
 #pragma once
 
 #include "sweep/store/database.hpp"
@@ -15,7 +15,7 @@
 
 namespace grainsweep::store {
 
-/// Values in the order they are added.
+/// Digest of values in the order of their addition.
 class Digest {
 public:
     Digest& add(std::int64_t whole);
@@ -35,8 +35,8 @@ private:
     std::string bytes_;
 };
 
-/// What a case measured. The second sum weighs every row by its observable: where one observable is damaged, the two
-/// differences tell which.
+/// Sums of the observables of a case. The second sum weights every row by its observable, so that the two differences
+/// identify a single damaged observable.
 struct MeasuredSum {
     std::uint64_t plain = 0, by_observable = 0;
 
@@ -45,18 +45,18 @@ struct MeasuredSum {
     void add(std::uint64_t observable_hash, std::int64_t sample, double time, double bin, double value);
 };
 
-/// Of a case besides what it measured.
+/// Returns the checksum of a case without its observables.
 [[nodiscard]] std::uint64_t checksum_of_case(std::int64_t key, std::string_view id, std::string_view outcome,
                                              double wall_seconds);
 
-/// A finished attempt.
+/// Finished attempt.
 struct AttemptRow {
     std::int64_t key = 0, number = 0, provenance = 0, computer = 0;
     std::string_view started = {}, outcome = {};
     std::optional<std::string_view> message = {};
     double wall_seconds = 0, cpu_seconds = 0, particle_steps = 0;
     std::optional<std::string_view> phases = {};
-    /// NaN: not known. Then no part of the checksum, which is what it was before there was such a column.
+    /// NaN: unknown. Then it is no part of the checksum, which equals the checksum before this column existed.
     double threads = std::numeric_limits<double>::quiet_NaN();
 };
 [[nodiscard]] std::uint64_t checksum_of(const AttemptRow& attempt);
@@ -72,11 +72,11 @@ struct RowSum {
     bool operator==(const RowSum&) const = default;
 };
 
-/// One place of a design.
+/// Returns the checksum of a place of a design.
 [[nodiscard]] std::uint64_t checksum_of_place(std::int64_t point, std::int64_t replicate, std::int64_t sequence,
                                               std::int64_t case_key);
 
-/// SQL keeps signed numbers.
+/// Returns the checksum as a signed number, because SQL has no unsigned ones.
 [[nodiscard]] inline std::int64_t as_sql(std::uint64_t checksum) {
     return static_cast<std::int64_t>(checksum);
 }

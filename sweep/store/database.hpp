@@ -1,10 +1,10 @@
-// SQLite, thinly: a connection, a prepared statement with typed columns, a transaction.
+// Thin layer on SQLite: connection, prepared statement with typed columns, transaction.
 //
 //     auto row = db.ask("SELECT name FROM campaign WHERE seed > ?", 7);
 //     while (row.next()) use(row.get<std::string>(0));
 //
-// Statements are prepared once per text and kept. What the disk or another process did throws BrokenWorld with
-// a sentence; what SQLite found wrong with the text of a statement throws RefusedSql with SQLite's words.
+// Statements are prepared once per text and kept. Errors of the disk or of other processes throw BrokenWorld with a
+// sentence. Errors in the text of a statement throw RefusedSql with SQLite's message.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -29,37 +29,37 @@ struct sqlite3_stmt;
 
 namespace grainsweep::store {
 
-/// SQLite does not accept the statement: syntax, unknown name, not authorised, a constraint. Of a statement of our
-/// own this says that the file is not as we made it; callers that pass on a user's statement catch it.
+/// Error: SQLite refuses the statement (syntax, unknown name, not authorised, a constraint). For the program's own
+/// statements it means that the file has been changed. Callers that run a user's statement catch it.
 class RefusedSql : public BrokenWorld {
 public:
     explicit RefusedSql(std::string words, const std::string& file = "the database")
         : BrokenWorld(file + ": not as this program made it, damaged or altered (" + words + ")"),
           words_(std::move(words)) {}
-    [[nodiscard]] const std::string& words() const { return words_; }  ///< SQLite's
+    [[nodiscard]] const std::string& words() const { return words_; }  ///< message of SQLite
 
 private:
     std::string words_;
 };
 
-/// A statement was stopped by a limit of time or memory (Connection::stop_after, limit_memory).
+/// Error: a limit of time or memory stopped a statement (Connection::stop_after, limit_memory).
 class StatementLimit : public RefusedSql {
 public:
     using RefusedSql::RefusedSql;
 };
 
-/// Bytes that SQLite may take in this process, for all connections; 0: no limit.
+/// Limits the memory of SQLite in this process, bytes, for all connections; 0: no limit.
 void limit_memory(std::int64_t bytes);
 
-/// NULL, integer, real, text.
+/// Value: NULL, integer, real, text.
 using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
-/// Bytes that are no text.
+/// Bytes, not text.
 struct Blob {
     std::string_view bytes;
 };
 
-/// A prepared statement. Parameters count from 1, columns from 0.
+/// Prepared statement. Parameters count from 1, columns from 0.
 class Statement {
 public:
     Statement() = default;
@@ -80,23 +80,24 @@ public:
         value ? bind(parameter, *value) : bind(parameter, std::nullopt);
     }
 
-    [[nodiscard]] bool step();  ///< true: a row is there
+    [[nodiscard]] bool step();  ///< returns whether there is a row
     void reset();
     [[nodiscard]] bool valid() const { return handle_ != nullptr; }
-    [[nodiscard]] bool busy() const;  ///< between its first row and its reset
+    [[nodiscard]] bool busy() const;  ///< returns whether it is between its first row and its reset
     [[nodiscard]] bool read_only() const;
     [[nodiscard]] int parameters() const;
     [[nodiscard]] int columns() const;
     [[nodiscard]] std::string column_name(int column) const;
 
     [[nodiscard]] bool is_null(int column) const;
-    /// int64, double (NULL is NaN), string, string_view (until the next step) or an optional of them.
+    /// Returns a column as int64, double (NULL is NaN), string, string_view (valid until the next step) or an optional
+    /// of these.
     template <class T>
     [[nodiscard]] T get(int column) const;
     [[nodiscard]] SqlValue cell(int column) const;
-    [[nodiscard]] Value value(int column) const;  ///< of a column that is never NULL
+    [[nodiscard]] Value value(int column) const;  ///< value of a column that is never NULL
     [[nodiscard]] std::string blob(int column) const;
-    /// What of the text was left after the first statement (the text given to the constructor must still live).
+    /// Returns the text after the first statement (the text of the constructor must still exist).
     [[nodiscard]] std::string_view tail() const { return tail_; }
 
 private:
@@ -111,7 +112,7 @@ private:
     std::string_view tail_;
 };
 
-/// A kept statement in use: reset for the next user when it goes.
+/// Kept statement in use; it is reset when this object is destroyed.
 class Rows {
 public:
     explicit Rows(Statement& statement) : statement_(&statement) {}
@@ -134,10 +135,10 @@ private:
     Statement* statement_;
 };
 
-/// What a statement wants to do, as SQLite's authorizer reports it while preparing. `control`: attach, detach,
-/// transactions, savepoints.
+/// Action of a statement, as reported by SQLite's authorizer. `control`: attach, detach, transactions, savepoints.
 enum class SqlAction { select, recursive, read, function, pragma, control, other };
-/// Says yes to an action; for `read` table and column, for `function` its name, for `pragma` name and argument.
+/// Function that returns whether an action is permitted. Arguments: for `read` table and column, for `function` its
+/// name, for `pragma` name and argument.
 using Authorizer = std::function<bool(SqlAction action, std::string_view first, std::string_view second)>;
 
 class Connection {
@@ -145,19 +146,18 @@ public:
     enum class Access { write, read };
     enum class Journal { write_ahead, rollback };
 
-    /// write: makes the file where absent, synchronous FULL. read: no statement changes anything; opening recovers and
-    /// closing brings home what a dead writer left in its journal, where the file may be written. A file in a folder
-    /// that cannot be written is read as it lies.
+    /// write: makes the file if absent, synchronous FULL. read: no statement changes the file. If the file is writable,
+    /// opening and closing recover the journal of a dead writer. A file in a read-only folder is read without recovery.
     Connection(const std::filesystem::path& file, Access access);
     [[nodiscard]] static Connection in_memory();
 
-    /// A write-ahead log lets readers and the writer go on side by side but needs shared memory, which
-    /// network file systems do not give: there the rollback journal. Both are synced at every commit.
+    /// Chooses the journal. A write-ahead log lets readers and the writer work at the same time, but needs shared
+    /// memory, which network file systems lack; these need the rollback journal. Both are synced at every commit.
     void use(Journal journal);
 
     /// Runs every statement of a script.
     void execute(std::string_view script);
-    /// Runs one kept statement to its end; returns the number of rows it changed.
+    /// Runs one kept statement to its end. Returns the number of changed rows.
     template <class... Arguments>
     std::int64_t run(std::string_view sql, const Arguments&... arguments) {
         Statement& statement = kept(sql);
@@ -176,43 +176,42 @@ public:
         (statement.bind(++parameter, arguments), ...);
         return Rows(statement);
     }
-    /// The first column of every row.
+    /// Returns the first column of every row.
     template <class T, class... Arguments>
     [[nodiscard]] std::vector<T> column(std::string_view sql, const Arguments&... arguments) const {
         std::vector<T> values;
         for (auto rows = ask(sql, arguments...); rows.next();) values.push_back(rows.template get<T>(0));
         return values;
     }
-    /// The first column of the first row; none where there is no row.
+    /// Returns the first column of the first row; empty if there is no row.
     template <class T, class... Arguments>
     [[nodiscard]] std::optional<T> value(std::string_view sql, const Arguments&... arguments) const {
         auto rows = ask(sql, arguments...);
         return rows.next() ? std::optional<T>(rows.template get<T>(0)) : std::nullopt;
     }
-    /// A statement of its own, not kept.
+    /// Returns a new statement, which is not kept.
     [[nodiscard]] Statement prepare(std::string_view sql) const { return {handle_.get(), sql}; }
 
     [[nodiscard]] std::int64_t last_row() const;
     [[nodiscard]] std::int64_t changes() const;
     [[nodiscard]] bool in_transaction() const;
-    /// Whether the file's name no longer leads to the file that was opened: moved, deleted or replaced.
+    /// Returns whether the opened file was moved, deleted or replaced.
     [[nodiscard]] bool has_moved() const;
-    /// The file as it lies, without what waits in a write-ahead log. Through SQLite's own descriptor: to open and close
-    /// the file once more would end this process's locks on it.
+    /// Returns the size of the file, without a write-ahead log. Uses SQLite's own descriptor, because opening and
+    /// closing the file again would end this process's locks on it.
     [[nodiscard]] std::int64_t file_bytes() const;
     void read_file(std::int64_t offset, std::span<std::byte> into) const;
 
-    /// Every statement prepared from now on must please the authorizer; empty: all do.
+    /// Sets the authorizer of all statements prepared from now on; empty: all are permitted.
     void authorize(Authorizer authorizer) const;
-    /// From now on statements may take so much processor time together before StatementLimit; 0: no limit.
+    /// Limits the total processor time of the statements from now on; more throws StatementLimit; 0: no limit.
     void stop_after(double seconds) const;
-    /// Longest text, bytes: a statement that makes a longer one is refused.
+    /// Limits the length of texts, bytes; statements that make longer texts are refused.
     void limit_lengths(int value) const;
-    /// Adds an aggregate over the rows of a group, each of `arguments` numbers, one row after another; a row with a
-    /// NULL is skipped, an empty answer is NULL. What the statistic throws (std::invalid_argument) refuses the
-    /// statement.
+    /// Adds an aggregate of the rows of a group, each with `arguments` numbers, row after row. Rows with a NULL are
+    /// skipped; an empty result is NULL. If the statistic throws std::invalid_argument, the statement is refused.
     void add_aggregate(const char* name, int arguments, std::optional<double> (*statistic)(std::span<double> numbers));
-    /// The functions that statements may call.
+    /// Returns the functions that statements may call.
     [[nodiscard]] std::vector<std::string> functions() const;
 
 private:
@@ -222,7 +221,7 @@ private:
     explicit Connection(sqlite3* handle);
     [[nodiscard]] Statement& kept(std::string_view sql) const;
     void configure();
-    void probe() const;  ///< reads the first page, and recovers what a dead writer left in the log
+    void probe() const;  ///< reads the first page, and recovers the log of a dead writer
 
     struct TextHash : std::hash<std::string_view> {
         using is_transparent = void;
@@ -232,13 +231,14 @@ private:
     mutable std::unique_ptr<Authorizer> authorizer_;
     struct Allowance {
         double seconds = 0;
-        double since = -1;  ///< processor time of the thread; negative: not begun
+        double since = -1;  ///< processor time of the thread at the start; negative: not started
     };
     mutable std::unique_ptr<Allowance> allowance_;
     static int look_at_time(void* allowance);
 };
 
-/// BEGIN ... COMMIT; rolls back unless committed. A transaction that only reads sees one state of the file.
+/// Transaction: BEGIN ... COMMIT; it rolls back unless committed. A transaction that only reads sees one state of the
+/// file.
 class Transaction {
 public:
     enum class Kind { write, read };
@@ -252,9 +252,9 @@ private:
     Connection* connection_;
 };
 
-/// Whether SQLite reads the word as one of its language's own, whatever its case.
+/// Returns whether a word, in any case, is a keyword of SQLite.
 [[nodiscard]] bool is_sql_word(std::string_view word);
-/// An identifier or a word of text as SQL writes it.
+/// Return an identifier, or a text, quoted for SQL.
 [[nodiscard]] std::string quoted_name(std::string_view name);
 [[nodiscard]] std::string quoted_text(std::string_view text);
 

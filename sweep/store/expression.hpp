@@ -1,5 +1,5 @@
-// SQL expressions over a case's inputs, evaluated by SQLite itself: the `where` clause, and numbers made of inputs.
-// Two rules differ from SQL (expression_text.hpp): a quotient is real, and comparisons are not chained.
+// SQL expressions of a case's inputs, evaluated by SQLite: the `where` clause, and numbers computed from inputs. Two
+// rules differ from SQL (expression_text.hpp): a quotient is real, and chained comparisons are refused.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -12,25 +12,26 @@
 
 namespace grainsweep::store {
 
-/// Compiles `expression` over the given parameter names. Deterministic operators and functions only (no
-/// sub-select, no random(), no clock). Throws WrongQuestion (at $.where) with SQLite's own words, and the
-/// nearest name for an unknown column. An empty expression accepts everything. NULL counts as false.
+/// Compiles `expression` of the given parameter names. Only deterministic operators and functions are permitted (no
+/// sub-select, random() or clock). Throws WrongQuestion (at $.where) with SQLite's message, and the nearest name for an
+/// unknown column. An empty expression accepts every case. NULL counts as false.
 [[nodiscard]] campaign::Filter make_filter(std::string_view expression, std::span<const std::string> names);
 
-/// A compiled condition and the names that it reads.
+/// Compiled condition and the names that it reads.
 struct Condition {
     campaign::Filter holds;
     std::vector<std::string> reads;
 };
-/// The same for a condition at `path` that is not empty.
+/// Compiles a non-empty condition at `path` in the same way.
 [[nodiscard]] Condition make_condition(std::string_view expression, std::span<const std::string> names,
                                        std::string_view path);
 
-/// Values in the order of the names given -> one number per expression; NaN where an expression has none (NULL, text).
+/// Function from values, in the order of the names, to one number per expression; NaN if an expression has no number
+/// (NULL, text).
 using Numbers = std::function<std::vector<double>(std::span<const Value> values)>;
 
-/// Compiles expressions over the given names, under the rules of make_filter; each must read at least one name. The
-/// k-th is at `path`[k] in what is thrown. Each evaluation takes about a microsecond.
+/// Compiles expressions of the given names, under the rules of make_filter; each must read at least one name. Errors of
+/// the k-th expression name `path`[k]. An evaluation takes about a microsecond.
 [[nodiscard]] Numbers make_numbers(std::span<const std::string> expressions, std::span<const std::string> names,
                                    std::string_view path);
 

@@ -1,4 +1,4 @@
-// When: the archive's only clock.
+// The only clock of the store.
 #pragma once
 
 #include <chrono>
@@ -6,11 +6,11 @@
 
 namespace grainsweep::store {
 
-/// The present in UTC, ISO 8601 with milliseconds: 2026-01-31T12:00:00.000Z.
+/// Returns the present time in UTC, ISO 8601 with milliseconds: 2026-01-31T12:00:00.000Z.
 [[nodiscard]] std::string utc_now();
 
-/// Moments of one run by the clock as it stood when the run began: their differences are times that passed, also where
-/// the clock of the system is set meanwhile.
+/// Clock of one run, based on the system clock at its start: differences are elapsed times, even if the system clock is
+/// changed during the run.
 class RunClock {
 public:
     [[nodiscard]] std::string start() const;

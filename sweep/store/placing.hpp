@@ -1,6 +1,6 @@
-// Finds the cases and places of a campaign that are in the file, and enters the others. A long campaign is entered
-// piece by piece, in the order of its design, while its first cases are computed: where the program ends before it is
-// done, the next run goes on. Internal to enrolling.
+// Entry of the cases and places of a campaign that are not yet in the file. A long campaign is entered in pieces, in
+// the order of its design, while its first cases are computed. If the program ends before all are entered, the next run
+// continues. Internal to enrolling.
 #pragma once
 
 #include "sweep/campaign/cases.hpp"
@@ -24,15 +24,15 @@ struct DeclaredParameter {
 void enter_inputs(Connection& db, std::int64_t key, const campaign::Case& question,
                   const std::vector<DeclaredParameter>& parameters);
 
-/// The cases of a list as the file has them, place by place. A question that stands at several places has its key at
-/// the first of them.
+/// Stored state of the cases of a list, place by place. A case that stands at several places has its key at the first
+/// of them.
 struct KnownCases {
     std::vector<std::int64_t> keys;  ///< 0: not in the file
     std::vector<CaseState> states;
 };
 [[nodiscard]] KnownCases known_cases(const Connection& db, const campaign::Cases& cases);
 
-/// None where the column is NULL.
+/// Returns the outcome in a column; empty for NULL.
 [[nodiscard]] std::optional<campaign::Outcome> outcome_at(const Rows& rows, int column);
 
 class Placing {
@@ -44,18 +44,18 @@ public:
           parameters_(std::move(parameters)),
           campaign_key_(campaign_key) {}
 
-    /// Compares the places with those in the file. False where they cannot simply be added to: the file's are damaged,
-    /// or stand for other questions.
+    /// Compares the places with the stored ones. Returns false if the stored ones cannot simply be extended: they are
+    /// damaged, or have other cases.
     [[nodiscard]] bool adds_to(const Connection& db);
-    /// After adds_to(): whether a place is new and stands before one that is there.
+    /// Returns, after adds_to(), whether a new place stands before a stored one.
     [[nodiscard]] bool inside() const { return inside_; }
-    /// Enters up to that number of the places that are left, and their cases. Inside a transaction.
+    /// Enters up to `places` of the remaining places, and their cases. Inside a transaction.
     void enter(Connection& db, std::size_t places);
     [[nodiscard]] bool done() const { return next_ == cases_.size(); }
 
     /// Enters every case, without its places.
     void enter_cases(Connection& db);
-    /// Of the case at place i; 0: not entered.
+    /// Returns the key of the case at place i; 0: not entered.
     [[nodiscard]] std::int64_t key(std::size_t i) const { return keys_[cases_.first(i)]; }
 
 private:
@@ -68,7 +68,7 @@ private:
     std::vector<bool> there_;  ///< the place is in the file
     bool inside_ = false;
     std::size_t next_ = 0;
-    campaign::Case question_;  // kept for its memory
+    campaign::Case question_;  // reused to avoid allocations
 };
 
 }  // namespace grainsweep::store

@@ -1,5 +1,5 @@
-// The archive's pen: writes on a thread of its own in durable groups, so that dispatch never waits for the
-// disk. What was written is known to be on disk only when take_durable() returns it.
+// Recorder of results: writes to the database on a thread of its own in durable groups, so that the scheduler never
+// waits for the disk. A result is on disk when take_durable() returns it.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -31,23 +31,22 @@ public:
     };
     using Entry = std::variant<Begun, campaign::CaseResult, Checked, Stopped>;
 
-    /// The store must outlive the recorder and is the recorder's alone until drain() returned.
+    /// The store must outlive the recorder; only the recorder may use it until drain() returns.
     explicit Recorder(Store& store);
     ~Recorder();
 
-    /// Hands over; returns at once, unless more waits for the disk than memory should hold. Throws what an earlier
-    /// write failed with.
+    /// Queues an entry and returns at once, unless the queue is too long for memory. Throws the error of an earlier
+    /// write.
     void write(Entry entry);
-    /// Results that reached the disk since the last call, in the order written.
+    /// Returns the results that reached the disk since the last call, in the order of writing.
     [[nodiscard]] std::vector<campaign::CaseResult> take_durable();
-    /// Waits until everything handed over is on disk, and every place of the enrolled campaign; throws what a write
-    /// failed with.
+    /// Waits until all queued entries and all places of the enrolled campaign are on disk. Throws the error of a write.
     void drain();
 
 private:
     void run();
     void rethrow();
-    /// Writes what waits, and some of what is left to enrol. False where that failed.
+    /// Writes the queue, and some of the places left to enrol. Returns false if this failed.
     bool write_waiting(std::unique_lock<std::mutex>& lock);
     void write_group(std::vector<Entry>& group, std::vector<campaign::CaseResult>& kept);
 
@@ -55,12 +54,12 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Entry> waiting_;
-    std::size_t weight_ = 0;  ///< of what waits
+    std::size_t weight_ = 0;  ///< weight of the queue
     std::vector<campaign::CaseResult> durable_;
     std::exception_ptr failure_;
     bool busy_ = false, closing_ = false;
-    bool enrols_;        ///< places of the campaign are left to be entered
-    std::size_t piece_;  ///< of them, between two groups
+    bool enrols_;        ///< places of the campaign are not entered yet
+    std::size_t piece_;  ///< places entered between two groups
     std::thread thread_;
 };
 

@@ -1,4 +1,4 @@
-// The text of results_schema/, compiled in: the statements that update a file of each version.
+// Text of results_schema/, compiled in: the statements that update a file of each version.
 #pragma once
 
 #include <span>
@@ -6,9 +6,9 @@
 
 namespace grainsweep::store {
 
-/// Migrations in order; a database of user_version n has seen the first n of them.
+/// Returns the migrations in order; the first n have been applied to a database of user_version n.
 [[nodiscard]] std::span<const std::string_view> schema_migrations();
-/// Drops and creates the fixed views; runs after every migration.
+/// Returns the script that drops and creates the fixed views; it runs after every migration.
 [[nodiscard]] std::string_view schema_views();
 
 }  // namespace grainsweep::store

@@ -1,9 +1,9 @@
-// The archive: every result of every campaign in one SQLite file.
+// Store: all results of all campaigns in one SQLite file.
 //
-// One writer: an advisory lock on the file itself, which ends with its holder. Readers go on beside it, and the last
-// one to close the file, reader or writer, leaves nothing beside it. WAL, synchronous FULL; on a network disk, asked
-// for, a rollback journal. A result is on disk before it is shown: callers write inside group() and show
-// what the group held only after it returned. A Store belongs to one thread.
+// There is one writer, by an advisory lock on the file itself, which ends with its process. Readers work at the same
+// time. The last process to close the file leaves no other file beside it. The journal is WAL with synchronous FULL,
+// or, on request for a network disk, a rollback journal. A result is on disk before it is shown: callers write inside
+// group() and show results only after it has returned. A Store belongs to one thread.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -25,12 +25,13 @@
 
 namespace grainsweep::store {
 
-/// What runs a campaign, and where: stored once per run. What computed an attempt is stored with the attempt.
+/// Program and machine of a run, stored once per run. The program and machine of an attempt are stored with the
+/// attempt.
 struct Provenance {
     std::string version, commit, compiler, flags, instruction_path, processor, host;
 };
 
-/// State of a case of the campaign in the archive.
+/// State of a case in the database.
 struct CaseState {
     std::int32_t attempts = 0;                 ///< highest attempt number begun
     std::int32_t failures = 0;                 ///< attempts that crashed or timed out
@@ -39,23 +40,23 @@ struct CaseState {
 
 struct LoggedAttempt {
     std::int64_t number = 0;
-    std::optional<campaign::Outcome> outcome;  ///< none: running, or its main program died
+    std::optional<campaign::Outcome> outcome;  ///< empty: running, or its main program died
     std::string message;
     double wall_seconds = 0;  ///< NaN: running, or its main program died
     std::string started;
-    campaign::Computer computer;  ///< of an archive older than these columns: what ran the campaign; no build
-    double threads = std::numeric_limits<double>::quiet_NaN();  ///< a mean over its computing time; NaN: not known
-    std::optional<campaign::ProgramFacts> program = {};         ///< none: a scene of the solver
+    campaign::Computer computer;  ///< in a database older than these columns: program of the run, without build
+    double threads = std::numeric_limits<double>::quiet_NaN();  ///< mean over its computing time; NaN: unknown
+    std::optional<campaign::ProgramFacts> program = {};         ///< empty: a scene of the solver
 };
 
-/// Rows for the commands: column names and cells (NULL, integer, real, text).
+/// Table for commands: column names and cells (NULL, integer, real, text).
 struct Table {
     using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
     std::vector<std::string> columns;
     std::vector<std::vector<Cell>> rows;
 };
 
-/// One checkpoint of a campaign's convergence. NaN: undefined, stored as NULL.
+/// Checkpoint of a campaign's convergence. NaN: undefined, stored as NULL.
 struct ConvergenceRow {
     std::string observable;
     std::int64_t points = 0;
@@ -66,197 +67,204 @@ struct ConvergenceRow {
     bool converged = false;
 };
 
-/// A stored value of one scalar at one place of the design.
+/// Stored value of a scalar at a place of the design.
 struct PlacedValue {
     std::int64_t point = 0, sequence = 0, replicate = 0;
-    std::int64_t case_key = 0;  ///< the same at every place where the case stands
+    std::int64_t case_key = 0;  ///< the same at every place of the case
     std::optional<campaign::Outcome> outcome;
-    double value = 0;  ///< NaN where there is none
+    double value = 0;  ///< NaN: none
 };
 
-/// The places that one curve of a point covers.
+/// First and last place of a curve of a point.
 struct CurveExtent {
     std::int64_t point = 0;
     double first = 0, last = 0;
 };
 
-/// Where a case stands, and what decides there whether it runs.
+/// Place of a case, with the conditions that decide there whether it runs.
 struct CasePlace {
     std::string campaign;
     std::int64_t point = 0;
     std::optional<std::int64_t> stopped_at;  ///< of the campaign
-    std::optional<std::int64_t> attempts;    ///< limits.attempts of its last run, where that said so
+    std::optional<std::int64_t> attempts;    ///< limits.attempts of its last run, if given
 };
 
-/// A file that a campaign used.
+/// File that a campaign used.
 struct StoredFile {
-    std::string place, name, hash;      ///< where its campaign file names it, how, and the hash of its contents
-    std::optional<std::int64_t> bytes;  ///< none: the contents are not stored
+    std::string place, name, hash;      ///< path in the campaign file, name there, and hash of its contents
+    std::optional<std::int64_t> bytes;  ///< empty: the contents are not stored
 };
 
-/// How much of its design a campaign has: points the design numbers, and repeats of each.
+/// Extent of a campaign's design: number of points, and replicates of each.
 struct Extent {
-    std::int64_t candidates = 0;  ///< those that the `where` clause leaves out included
+    std::int64_t candidates = 0;  ///< including points that the `where` clause excludes
     std::int64_t replicates = 1;
     bool operator==(const Extent&) const = default;
 };
 
-/// Content of a campaign, and how far it has come.
+/// Stored campaign and its progress.
 struct CampaignRecord : campaign::Identity {
-    std::string text;  ///< the campaign file of its last run
+    std::string text;  ///< campaign file of its last run
     std::int64_t sequences = 1, replicates = 1;
-    Extent stored;  ///< never shrinks: what view and statistics are over
-    Extent asked;   ///< by the last run
+    Extent stored;  ///< never shrinks; used by the view and the statistics
+    Extent asked;   ///< requested by the last run
     std::optional<campaign::Convergence> convergence;
-    std::optional<std::int64_t> stopped_at;  ///< it converged and stopped: points numbered below this count
+    std::optional<std::int64_t> stopped_at;  ///< it converged and stopped: points with smaller numbers count
 
-    /// The last run asked for a part of what is stored.
+    /// Returns whether the last run requested only a part of the stored extent.
     [[nodiscard]] bool shrunk() const {
         return asked.candidates < stored.candidates || asked.replicates < stored.replicates;
     }
 };
 
-/// The places of a campaign's design, ordered by (point, replicate), and the state of their cases in the archive.
+/// Places of a campaign's design, ordered by (point, replicate), and the states of their cases.
 struct StoredPlaces {
     std::vector<campaign::Place> places;
     std::vector<campaign::CaseHash> hashes;
     std::vector<CaseState> states;
 };
 
-/// What is not as it was written.
+/// Damage in the database.
 struct Damage {
     std::string kind;        ///< "case", "table" or "file"
     std::string case_id;     ///< of a case
-    std::string campaign;    ///< one or several, as far as it belongs to any
-    std::string observable;  ///< where one alone is damaged
-    std::string what;        ///< in words
+    std::string campaign;    ///< one or several; empty: none
+    std::string observable;  ///< if only one observable is damaged
+    std::string what;        ///< description
 };
 
 class Store {
 public:
     enum class Mode { create, read };
-    /// A network disk gets a rollback journal instead of a write-ahead log; found out by statfs(2) it is refused.
+    /// Kind of disk. A network disk gets a rollback journal instead of a write-ahead log. With `found_out`, a network
+    /// disk (by statfs(2)) is refused.
     enum class Disk { found_out, local, network };
-    /// create: makes the file and its schema where absent, takes the writer's lock and updates an older schema. A
-    /// second writer is refused with a sentence that names the first. read: changes no content and no schema. Throws
-    /// BrokenWorld, or WrongQuestion when the file is no grainsweep database.
+    /// create: makes the file and its schema if absent, takes the writer's lock and updates an older schema. A second
+    /// writer is refused with a sentence that names the first. read: changes neither content nor schema. Throws
+    /// BrokenWorld, or WrongQuestion if the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
     Store& operator=(Store&&) noexcept;
 
-    /// Records campaign and cases (idempotent; extends), makes its view, closes attempts of a dead main program as
-    /// abandoned. Returns the state of each case, in the order given. Not inside group().
+    /// Stores or extends campaign and cases, makes its view, and closes attempts of a dead main program as abandoned.
+    /// Repeating it has no effect. Returns the state of each case, in the given order. Not inside group().
     ///
-    /// Throws WrongQuestion naming both for another scene, revision, default, factor set, range, fixed value,
-    /// condition, seed, kind of design, scramble or first index under the same name. So does another size of a design
-    /// that does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
-    /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). If a factor of a lattice
-    /// gains levels, the points are renumbered. New places replace the old ones, and every answer is kept and stays in
-    /// the view. Convergence is judged anew, as after another rule or more replicates. A list only grows at
+    /// Throws WrongQuestion with both values if scene, revision, default, factor set, range, fixed value, condition,
+    /// seed, kind of design, scramble or first index differ under the same name. Another size of a design that is not
+    /// extensible (latin_hypercube, levels of a lattice) throws, too. More points or replicates extend the campaign. A
+    /// smaller extent is accepted, removes nothing, and is stored beside the larger one (CampaignRecord). New levels of
+    /// a factor of a lattice renumber the points: new places replace the old ones, and every answer is kept and stays
+    /// in the view. Convergence is then judged anew, as after another rule or more replicates. A list can only grow at
     /// its end.
     ///
-    /// Places beyond `at_once` new ones are left to enrol_more(), so that a long campaign can begin before all of it is
-    /// in the file. Places that are missing when the program ends are added by its next run.
+    /// At most `at_once` new places are entered; enrol_more() enters the others, so that a long campaign can begin
+    /// early. The next run adds places that are missing when the program ends.
     std::vector<CaseState> enrol(const campaign::Campaign& campaign, const campaign::Cases& cases,
                                  const Provenance& provenance,
                                  std::size_t at_once = std::numeric_limits<std::size_t>::max());
-    /// Whether places of the campaign enrolled last are left.
+    /// Returns whether places of the campaign enrolled last are left.
     [[nodiscard]] bool enrols() const;
-    /// Adds up to that number of them, on disk when this returns. Not inside group().
+    /// Enters up to `places` of them; they are on disk when it returns. Not inside group().
     void enrol_more(std::size_t places);
 
-    /// What the last enrol found damaged and what it did about it, a sentence each.
+    /// Returns a sentence on each damage found by the last enrol and its treatment.
     [[nodiscard]] const std::vector<std::string>& notes() const;
 
-    /// Throws BrokenWorld where the file was moved, deleted or replaced since it was opened; group() does, too.
+    /// Throws BrokenWorld if the file was moved, deleted or replaced since it was opened; group() does, too.
     void require_in_place() const;
 
-    /// Checks every row, then stores a checksum of the file: unchanged, it need not be checked again. Throws
-    /// BrokenWorld naming what was damaged during the run. Does nothing where something was damaged before.
+    /// Checks every row, then stores a checksum of the file, so that an unchanged file needs no further check. Throws
+    /// BrokenWorld with damage that occurred during the run. Does nothing if there was damage before.
     void remember_file();
 
-    /// Runs `writes` in one durable transaction: on disk when this returns, absent when it throws.
+    /// Runs `writes` in one durable transaction: on disk when it returns, absent when it throws.
     void group(const std::function<void()>& writes);
     // Inside group():
-    /// Numbers only grow: throws std::logic_error for a case that is unknown or has begun a later attempt. Where the
-    /// case is among those left to enrol_more(), all of them are entered.
-    /// `computer`: what computes it; all empty where that is not known.
+    /// Stores the begin of an attempt. Throws std::logic_error for an unknown case, or one with a later attempt. If the
+    /// case is left to enrol_more(), all remaining places are entered first. `computer`: program and machine; all empty
+    /// if unknown.
     void begin(const campaign::Attempt& attempt, const campaign::Computer& computer = {});
-    /// An answer (completed, skipped, unstable, rejected) replaces what an earlier attempt left; an attempt that
-    /// brought none leaves an earlier answer in place. A result whose attempt is not the case's latest, or is closed
-    /// already, is stale: dropped, returns false. NaN is stored as NULL, a scalar that is NaN not at all. Throws
+    /// Stores the result of an attempt. An answer (completed, skipped, unstable, rejected) replaces an earlier answer;
+    /// an attempt without an answer does not. Returns false for a stale result, which is dropped: its attempt is not
+    /// the case's latest, or is already closed. NaN is stored as NULL; a scalar NaN is not stored. Throws
     /// std::logic_error for an observable that the scene has not declared.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
-    /// Stores where the campaign converged and stopped; nothing: it goes on.
+    /// Stores the points at which the campaign converged and stopped; empty: it continues.
     void stop(std::string_view campaign, std::optional<std::int64_t> points);
 
-    // Questions. Those about results compare what they read with its checksums, once per Store, and throw BrokenWorld
-    // naming what is damaged; status, places, attempts and query do not.
+    // Queries. Queries of results check the checksums, once per Store, and throw BrokenWorld with the damage; status,
+    // places, attempts and query do not.
     [[nodiscard]] std::vector<CampaignRecord> campaigns() const;
-    /// The names of a campaign's factors in the order that fixes the dimensions of its design; empty where there is
-    /// no campaign of that name.
+    /// Returns the names of a campaign's factors in the order of its design's dimensions; empty if there is no campaign
+    /// of this name.
     [[nodiscard]] std::vector<std::string> factor_order(std::string_view campaign) const;
-    /// The stored campaign of that name, none where there is none. Throws WrongQuestion where enrol() would, because it
-    /// is another campaign.
+    /// Returns the stored campaign of this name, if there is one. Throws WrongQuestion like enrol() if it differs.
     [[nodiscard]] std::optional<CampaignRecord> stored(const campaign::Campaign& campaign) const;
-    /// How many of these cases are settled, whichever campaign asked them.
+    /// Returns how many of these cases are settled, by any campaign.
     [[nodiscard]] std::int64_t settled(const campaign::Cases& cases) const;
     [[nodiscard]] bool is_settled(std::string_view case_id) const;
     [[nodiscard]] StoredPlaces placement(std::string_view campaign) const;
-    /// Throws WrongQuestion where several cases begin so.
+    /// Returns the case of an id or its beginning. Throws WrongQuestion if several cases match.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
-    /// The program that answers the cases of a scene, with the contents of its files; none where it is no program's, or
-    /// of an archive that has none. Throws BrokenWorld where it is not as it was written.
+    /// Returns the program of a scene, with the contents of its files; empty for other scenes, or if the database has
+    /// no programs. Throws BrokenWorld if it is damaged.
     [[nodiscard]] std::shared_ptr<const campaign::Program> program(std::string_view scene) const;
-    /// Files of the campaigns that a case belongs to.
+    /// Returns the files of the campaigns of a case.
     [[nodiscard]] std::vector<StoredFile> files_of(std::string_view case_id) const;
-    /// Makes the contents of files that a case names known to this process, as far as they are stored: they stand
-    /// before what lies at the paths of then. Throws BrokenWorld where they are not as written.
+    /// Registers the stored contents of the files of a case in this process; they have precedence over the files at
+    /// their paths. Throws BrokenWorld if they are damaged.
     void enter_files_of(const campaign::Case& question) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
     [[nodiscard]] std::vector<CasePlace> places(std::string_view case_id) const;
-    /// The answer that stands, or how the last attempt ended where there is none.
+    /// Returns the answer of a case, or the result of its last attempt if there is none.
     [[nodiscard]] std::optional<campaign::CaseResult> result(std::string_view case_id) const;
-    /// One scalar over the campaign's design, ordered by (point, replicate).
+    /// Returns one scalar at all places of the campaign's design, ordered by (point, replicate).
     [[nodiscard]] std::vector<PlacedValue> values(std::string_view campaign, std::string_view observable) const;
-    /// The same of a series or profile, at one place along it: time, or bin at the last time. Between two samples on
-    /// the line through them, in whichever order they are stored; several at one place count as their mean; NaN outside
-    /// of them all.
+    /// Returns the same for a series or profile at one place along it: time, or bin at the last time. Values are linear
+    /// between two samples, whatever their stored order. Several samples at one place are averaged. NaN outside all
+    /// samples.
     [[nodiscard]] std::vector<PlacedValue> values_along(std::string_view campaign, std::string_view observable,
                                                         double at) const;
-    /// First and last place of every curve of an observable that has one.
+    /// Returns the first and last place of every curve of an observable.
     [[nodiscard]] std::vector<CurveExtent> curve_extents(std::string_view campaign, std::string_view observable) const;
     [[nodiscard]] std::vector<ConvergenceRow> convergence(std::string_view campaign, std::string_view observable) const;
-    /// One row per campaign: campaign, scene, cases, one count per outcome, waiting (no outcome yet), stopped_at,
-    /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known); then
-    /// candidates (points the design numbers), dropped (of those, left out by the `where` clause), points (the rest),
-    /// replicates, finished (cases with an outcome, abandoned ones not counted) and what the last run asked for,
-    /// asked_points (candidates) and asked_replicates.
+    /// Returns one row per campaign with these columns:
+    ///
+    ///   campaign, scene, cases, one count per outcome
+    ///   waiting     cases without an outcome
+    ///   stopped_at
+    ///   rate        answers per second of the last run
+    ///   time_left   s, at this rate; NULL: unknown
+    ///   candidates  points of the design
+    ///   dropped     candidates that the `where` clause excludes
+    ///   points      the other candidates
+    ///   replicates
+    ///   finished    cases with an outcome other than abandoned
+    ///   asked_points, asked_replicates   requested by the last run (points: candidates)
     [[nodiscard]] Table status() const;
-    /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence, the names there are
-    /// and the nearest. Has SQLite's own functions and the aggregates of aggregates.hpp.
+    /// Runs one statement of read-only SQL, with SQLite's functions and the aggregates of aggregates.hpp. Anything else
+    /// throws WrongQuestion with SQLite's message, the existing names and the nearest one.
     [[nodiscard]] Table query(std::string_view sql) const;
-    /// The same row by row: bounded memory, whatever there is to tell.
+    /// Limits of a query that returns its rows one by one, with bounded memory.
     struct QueryLimits {
         double seconds = 0;      ///< of processor time; 0: no limit
-        std::int64_t bytes = 0;  ///< that SQLite may take; 0: no limit
+        std::int64_t bytes = 0;  ///< memory of SQLite; 0: no limit
     };
     void query(std::string_view sql, const QueryLimits& limits,
                const std::function<void(const std::vector<std::string>& columns)>& begin,
                const std::function<void(const std::vector<Table::Cell>& row)>& each) const;
-    /// Canonical text of all results, line by line without line breaks: no times, attempts, hosts; equal for equal
-    /// science. The form is described in dump.cpp.
+    /// Writes the canonical text of all results, line by line without line breaks. It has no times, attempts or hosts,
+    /// so equal results give equal texts. dump.cpp describes its form.
     void dump(const std::function<void(std::string_view line)>& sink) const;
 
-    /// Reads everything, compares every checksum, recomputes every id from the stored inputs. Empty: nothing is
-    /// damaged.
+    /// Checks the whole database: every checksum, and every id from the stored inputs. Returns the damage; empty: none.
     [[nodiscard]] std::vector<Damage> verify() const;
-    /// Whether the file has checksums: one from before has none until the next run brings it up to date.
+    /// Returns whether the file has checksums. An older file gets them in the next run.
     [[nodiscard]] bool has_checksums() const;
 
-    struct Impl;  ///< known to the files of this folder only
+    struct Impl;  ///< defined for the files of this folder only
 
 private:
     std::unique_ptr<Impl> impl_;

@@ -1,4 +1,4 @@
-// The `when` conditions of factors: compiled, and put into an order in which each finds what it needs.
+// Compiled `when` conditions of factors, each after the conditions on which it depends.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -9,7 +9,7 @@
 namespace grainsweep::store {
 
 /// Compiles the conditions of the factors, each after the conditions of the factors that it reads. Throws WrongQuestion
-/// where one cannot be read, needs itself, reads an expression or no factor at all.
+/// if one is invalid, depends on itself, or reads an expression or no factor at all.
 [[nodiscard]] std::vector<campaign::WhenClause> when_clauses(const campaign::ParameterSpace& space);
 
 }  // namespace grainsweep::store

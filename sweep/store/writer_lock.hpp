@@ -1,5 +1,5 @@
-// One writer per database: a lock of the operating system on the database file itself. It goes with its holder,
-// however the holder dies, and leaves no file behind. All names of a file (links, other paths) share it.
+// Lock for one writer per database: a lock of the operating system on the database file itself. It ends with its
+// process in all cases and leaves no file behind. All names of a file (links, other paths) share it.
 #pragma once
 
 #include "sweep/files/descriptor.hpp"
@@ -12,8 +12,8 @@ namespace grainsweep::store {
 
 class WriterLock {
 public:
-    /// Takes the lock, making an empty file where there is none; nothing where another one holds it. Throws
-    /// BrokenWorld where the file cannot be opened to write or its file system gives no locks.
+    /// Takes the lock, making an empty file if there is none. Returns nothing if another process has the lock. Throws
+    /// BrokenWorld if the file cannot be opened for writing or its file system has no locks.
     [[nodiscard]] static std::optional<WriterLock> take(const std::filesystem::path& database);
 
 private:
@@ -21,12 +21,13 @@ private:
     files::Descriptor descriptor_;
 };
 
-/// The magic number of statfs(2) of the file system on which the file lies, or would; 0: not known.
+/// Returns the magic number of statfs(2) of the file's file system, also for a file that does not exist yet; 0:
+/// unknown.
 [[nodiscard]] long file_system_of(const std::filesystem::path& file);
-/// Its name where that is of a network or cluster file system, whose shared memory between hosts does not exist and
-/// whose write-ahead logs therefore tear; empty: it is none.
+/// Returns the name of a network or cluster file system; empty for others. Hosts do not share memory there, so
+/// write-ahead logs would be damaged.
 [[nodiscard]] std::string_view network_file_system(long magic);
-/// Throws WrongQuestion, with what to do instead, for a database on a file system of that number.
+/// Throws WrongQuestion, with an alternative, for a database on a network file system.
 void refuse_network(const std::filesystem::path& database, long magic);
 
 }  // namespace grainsweep::store

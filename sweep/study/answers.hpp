@@ -1,16 +1,14 @@
-// How likely a case at a setting has an answer, from where cases failed.
+// Probability that a case at a setting has an answer, from the settings where cases failed.
 //
-// Outcomes that a case earns by itself (unstable, rejected, crashed, timed out) are failures. Two things are known:
+// The outcomes unstable, rejected, crashed and timed out are failures. Two sources are used:
 //
-//   the scene's own check   settings whose inputs do not go together (a particle larger than the gap) are rejected;
-//   where
-//                           it explains a rejected case the border is known exactly, and the probability beyond it is 0
-//   a model of the rest     stats/probability_model.hpp on the features of the response models (the default ones where
-//   a
-//                           written feature has no number at a failed case); cases that the check explains are left out
+//   the scene's check   rejects impossible inputs, such as a particle larger than the gap. If it explains a rejected
+//                       case, the border is known exactly and the probability beyond it is 0
+//   a model             stats/probability_model.hpp of all other cases, on the features of the response models (the
+//                       default features if a written feature has no number at a failed case)
 //
-// Cases near a setting are the five nearest by the lengths that this model learned, so that a factor which does not
-// decide where cases fail brings none nearer. They are shown and decide nothing.
+// The nearest cases of a setting are the five nearest by the lengths of this model, so a factor that does not affect
+// failures does not count in the distance. They are shown only.
 #pragma once
 
 #include "stats/probability_model.hpp"
@@ -25,13 +23,13 @@
 
 namespace grainsweep::study {
 
-/// Failed cases near a setting.
+/// Cases near a setting, with those that failed.
 struct Near {
-    std::size_t cases = 0;            ///< nearest cases that were counted; as near as the fifth counts, too
-    std::vector<std::size_t> failed;  ///< those that failed: indices of ModelCases::failed, growing
+    std::size_t cases = 0;            ///< number of nearest cases; ties with the fifth are included
+    std::vector<std::size_t> failed;  ///< indices of ModelCases::failed, ascending
 };
 
-/// Cheap to copy, but for the rows of the cases.
+/// Probability model of answers. Cheap to copy, except for the rows of the cases.
 class Answers {
 public:
     explicit Answers(const ModelCases& cases);
@@ -40,9 +38,9 @@ public:
         double probability = 1;
         double low = 1;  ///< lower end of its 95 % interval
     };
-    /// Both are 1 everywhere where no case failed.
+    /// Returns the probability of an answer at each setting; 1 everywhere if no case failed.
     [[nodiscard]] std::vector<Answer> at(std::span<const Setting> settings) const;
-    /// Whether an answer is likelier than none, which is faster.
+    /// Returns whether the probability of an answer is above 1/2; faster than at().
     [[nodiscard]] std::vector<bool> expected(std::span<const Setting> settings) const;
     [[nodiscard]] Near near(const Setting& setting) const;
 
@@ -51,14 +49,14 @@ private:
 
     Features features_;
     std::function<bool(const Setting&)> possible_;
-    std::optional<stats::ProbabilityModel> model_;  ///< none: no failure is left to be explained
+    std::optional<stats::ProbabilityModel> model_;  ///< empty: no failure is left that the check does not explain
     std::size_t failed_ = 0;
     std::vector<double> rows_, lengths_;  ///< of the failed cases, then of the answered ones
 };
 
-/// "4 of the 5 nearest cases failed (3 crashed, 1 unstable)"
+/// Returns a text such as "4 of the 5 nearest cases failed (3 crashed, 1 unstable)".
 [[nodiscard]] std::string near_text(const ModelCases& cases, const Near& near);
-/// "12 of 40 cases failed (12 crashed)"; empty where none did.
+/// Returns a text such as "12 of 40 cases failed (12 crashed)"; empty if no case failed.
 [[nodiscard]] std::string failed_text(const ModelCases& cases);
 
 }  // namespace grainsweep::study

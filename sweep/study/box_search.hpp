@@ -1,5 +1,6 @@
-// Settings of a campaign's box: spread over all of it, or about one of them. Of a factor with a distribution the box is
-// the range of ModelFactor, and settings are spread as the distribution is: a share of them is a probability.
+// Settings in a campaign's box, spread over the whole box or around one setting. For a factor with a distribution the
+// box is the range of ModelFactor, and the settings follow the distribution, so that a share of settings is a
+// probability.
 #pragma once
 
 #include "sweep/designs/design.hpp"
@@ -13,36 +14,37 @@
 
 namespace grainsweep::study {
 
-/// A design of the catalogue's kind "sobol"; options that are not given have their default values.
+/// Returns a design of the kind "sobol"; options that are not given have their default values.
 [[nodiscard]] designs::PointSet sobol_points(designs::DesignRequest request);
 
-/// A setting and where it stands in the unit cube.
+/// Setting and its point in the unit cube.
 struct BoxPoint {
     std::vector<double> u;
     Setting setting;
 };
 
-/// Empty: every setting passes.
+/// Filter of settings; empty: all are admitted.
 using Admits = std::function<bool(const Setting&)>;
 
-/// `count` Sobol points of the box, without the points that are not admitted.
+/// Returns those of `count` Sobol points of the box that are admitted.
 [[nodiscard]] std::vector<BoxPoint> spread_points(std::span<const ModelFactor> factors, const Admits& admits,
                                                   std::size_t count);
-/// Sobol points of the box of half-width `reach` (in ranges) about a point, cut at the walls; factors with levels stay.
+/// Returns Sobol points of the box of half-width `reach` (a fraction of the ranges) around a point, cut at the bounds.
+/// Factors with levels keep their level.
 [[nodiscard]] std::vector<BoxPoint> points_about(const BoxPoint& centre, double reach,
                                                  std::span<const ModelFactor> factors, const Admits& admits,
                                                  std::size_t count);
 
-/// What a share of the settings is a share of: "the box", or the distribution of the factors.
+/// Returns the words for the whole that a share of settings refers to: "the box", or the distribution of the factors.
 [[nodiscard]] std::string_view share_of(std::span<const ModelFactor> factors);
-/// The number of a factor at share u of its range; of levels one by its place among them.
+/// Returns the number of a factor at the fraction u of its range; for levels, the level at this fraction of their list.
 [[nodiscard]] double number_along(const ModelFactor& factor, double u);
 /// Returns the setting at a point of the unit cube, by the distributions of the factors where they have some. Values
-/// are rounded to a thousandth of the range's order of magnitude (of the value's, where the range is logarithmic),
-/// within the range. Shares add to one, all but the last rounded to a thousandth. A factor that does not
-/// count has its default.
+/// are rounded to a thousandth of the range's order of magnitude (of the value's order if the range is logarithmic),
+/// within the range. Shares add to one; all but the last are rounded to a thousandth. A factor that does not count has
+/// its default.
 [[nodiscard]] Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u);
-/// The same without rounding, as in a design.
+/// Returns the same without rounding, as in a design.
 [[nodiscard]] Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u);
 
 }  // namespace grainsweep::study

@@ -1,4 +1,4 @@
-// What a refine campaign has found: where its observable passes the threshold, combination by combination.
+// Results of a refine campaign: the threshold crossing of its observable for each combination of levels.
 #pragma once
 
 #include "sweep/designs/refine.hpp"
@@ -14,11 +14,11 @@ struct Brackets {
     std::string factor, factor_unit, observable, observable_unit;
     double threshold = 0, width = 0;
     std::vector<std::string> others;               ///< factors with levels, in their order
-    std::vector<std::vector<std::string>> levels;  ///< of each combination, as words
-    std::vector<designs::Bracket> found;           ///< the same combinations
+    std::vector<std::vector<std::string>> levels;  ///< levels of each combination, as words
+    std::vector<designs::Bracket> found;           ///< one bracket per combination
 };
 
-/// None for a campaign of another design.
+/// Returns the brackets; empty for a campaign of another design.
 [[nodiscard]] std::optional<Brackets> brackets_of(const store::Store& store, const store::CampaignRecord& record);
 
 }  // namespace grainsweep::study

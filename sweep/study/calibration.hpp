@@ -1,5 +1,5 @@
-// What a calibration has found: how the waves closed in, the posterior of the factors, and whether fresh runs at
-// settings drawn from it reproduce what was measured.
+// Results of a calibration: how its waves narrowed the settings, the posterior of the factors, and whether fresh runs
+// at settings drawn from the posterior reproduce the measurements.
 #pragma once
 
 #include "sweep/designs/calibration.hpp"
@@ -12,34 +12,34 @@
 
 namespace grainsweep::study {
 
-/// Of one factor.
+/// Posterior of one factor.
 struct FactorPosterior {
     std::string name, unit;
     double mean = 0, sd = 0;   ///< in its unit
     double low = 0, high = 0;  ///< 5 and 95 % quantiles
     double share_of_range =
-        0;  ///< sd over that of the uniform prior, in the scale of the factor; near 1: not determined
+        0;  ///< sd divided by the sd of the uniform prior, in the scale of the factor; near 1: not determined
 };
 
-/// Of one target.
+/// Prediction and fresh runs of one target.
 struct TargetCheck {
     std::string observable, unit, condition;  ///< "rpm = 15"
-    std::string experiment = {};              ///< empty: the calibration has one
+    std::string experiment = {};              ///< empty: the calibration has only one experiment
     double value = 0, error = 0, discrepancy = 0;
-    double predicted = 0, predicted_error = 0;  ///< mean over the posterior, and its sd, of the response model
-    double checked = 0, checked_sd = 0;         ///< mean and sd of the fresh runs; NaN: none yet
+    double predicted = 0, predicted_error = 0;  ///< mean and sd of the response model over the posterior
+    double checked = 0, checked_sd = 0;         ///< mean and sd of the fresh runs; NaN: no run yet
     std::size_t runs = 0;
     std::optional<double> z = {};  ///< distance of the fresh runs from the measurement (designs::miss_of)
-    double beyond = 0;             ///< how far it lies beyond every case, in standard deviations; 0: within
-    std::string refusal;           ///< why it has no model; empty: it has one
-    /// Of a place along a curve that no case has answered: the first and last place of the curves under its condition.
+    double beyond = 0;             ///< distance from the range of all cases, in standard deviations; 0: inside
+    std::string refusal;           ///< why the target has no model; empty: it has one
+    /// For a place along a curve that no case has reached: first and last place of the curves under its condition.
     std::optional<std::pair<double, double>> covered = {};
 
-    /// "torque at rpm = 15", "heap angle"
+    /// Returns a name such as "torque at rpm = 15" or "heap angle".
     [[nodiscard]] std::string name() const;
 };
 
-/// What a calibration that has ended comes to, in one line: "calibrated", "not determined: friction along a ridge with
+/// Result of a finished calibration in one line: "calibrated", "not determined: friction along a ridge with
 /// rolling_friction", "not reproduced: rate flow_time by 3.1 sd".
 struct Verdict {
     std::string sentence;
@@ -50,11 +50,12 @@ struct CalibrationReport {
     designs::Calibration found;
     std::vector<FactorPosterior> factors;
     std::vector<TargetCheck> targets;
-    std::optional<Verdict> verdict;  ///< none while fresh runs are missing, and without a posterior
-    std::vector<std::string> notes;  ///< ridges, what is not determined, targets out of reach, contradictions, failures
+    std::optional<Verdict> verdict;  ///< empty while fresh runs are missing, and without a posterior
+    std::vector<std::string> notes;  ///< ridges, undetermined factors, unreachable targets, contradictions, failures
 };
 
-/// Of several experiments each campaign has the same report. None for a campaign of another design.
+/// Returns the report; every campaign of a calibration with several experiments has the same one. Empty for a campaign
+/// of another design.
 [[nodiscard]] std::optional<CalibrationReport> calibration_report(const store::Store& store,
                                                                   const store::CampaignRecord& record);
 

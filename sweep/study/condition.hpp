@@ -1,10 +1,11 @@
-// The condition of a process window: comparisons of observables and factors with numbers, joined by and, or, not.
+// Condition of a process window: comparisons of observables and factors with numbers, joined by and, or, not.
 //
 //   condition  = every { "or" every },   every = single { "and" single }
 //   single     = "not" single | "(" condition ")" | comparison
 //   comparison = NAME op NUMBER | NUMBER op NAME | NAME "between" NUMBER "and" NUMBER,   op: < <= > >=
 //
-// Undefined values make a comparison neither true nor false, as NULL does in SQL; only what is true holds.
+// An undefined value makes a comparison neither true nor false, as NULL does in SQL. The condition holds only if it is
+// true.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +19,15 @@ namespace grainsweep::study {
 
 class Condition {
 public:
-    /// Over the given names. Throws WrongQuestion at --where with what was expected and the nearest name.
+    /// Parses a condition of the given names. Throws WrongQuestion at --where with the expected words and the nearest
+    /// name.
     [[nodiscard]] static Condition read(std::string_view text, std::span<const std::string> names);
 
-    /// One value per name, NaN: undefined.
+    /// Returns whether the condition holds. `values`: one per name; NaN: undefined.
     [[nodiscard]] bool holds(std::span<const double> values) const;
-    /// Indices of the names it compares, in the order of their first mention.
+    /// Returns the indices of the compared names, in the order of their first mention.
     [[nodiscard]] std::vector<std::size_t> compared() const;
-    /// Which way the name must go for the condition: +1 where it is only bounded from below, -1 only from above, 0
-    /// both.
+    /// Returns the direction in which a name is bounded: +1 only from below, -1 only from above, 0 both.
     [[nodiscard]] int direction(std::size_t name) const;
 
 private:
@@ -35,7 +36,7 @@ private:
         Kind kind = Kind::all;
         std::size_t name = 0;
         double number = 0;
-        std::size_t first = 0, second = 0;  ///< of all, any; none: first
+        std::size_t first = 0, second = 0;  ///< operands: a range of nodes for all and any, `first` for none
     };
     friend class ConditionReader;
     [[nodiscard]] std::optional<bool> decide(std::size_t node, std::span<const double> values) const;

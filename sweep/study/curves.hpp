@@ -1,4 +1,4 @@
-// What a campaign measured over time or over bins: the curves that the page draws.
+// Curves over time or over bins that a campaign measured, for the report.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -11,23 +11,24 @@
 
 namespace grainsweep::study {
 
-/// One case; `label` says its factors, the same for its repeats.
+/// Curve of one case. `label` names its factors; replicates have the same label.
 struct Curve {
-    std::size_t row = 0;  ///< of the responses
+    std::size_t row = 0;  ///< row of Responses
     std::string label;
     std::vector<double> x, y;
 };
 
-/// One observable: of a series y over time; of a profile, or of a histogram at one of its times, y over bins.
+/// Curves of one observable: of a series, y against time; of a profile, or of a histogram at one of its times, y
+/// against bins.
 struct CurveFamily {
-    std::string name, unit, meaning, over;  ///< over: words of the horizontal axis
+    std::string name, unit, meaning, over;  ///< over: label of the horizontal axis
     bool over_bins = false;
     double at_time = std::numeric_limits<double>::quiet_NaN();  ///< of a histogram taken at several times
     std::vector<Curve> curves;
 };
 
-/// The curves of completed cases, at most `most_curves` of them drawn at random, thinned to `most_samples` each.
-/// A histogram taken at several times is shown at the one a quarter of the way.
+/// Curves of completed cases, at most `most_curves` of them chosen at random, each thinned to `most_samples`. A
+/// histogram taken at several times is shown at one quarter of them.
 struct CurveChoice {
     std::size_t most_curves = 24;
     std::size_t most_samples = 200;

@@ -1,5 +1,6 @@
-// Places along a factor at which pictures evaluate a response model. Curves have points that include the ends of the
-// range, maps the middles of cells. Logarithmic ranges are even in their logarithms; levels have one place each.
+// Places along a factor at which pictures evaluate a response model. The points of a curve include the ends of the
+// range; a map uses the middles of its cells. Logarithmic ranges are divided evenly in the logarithm. Each level has
+// one place.
 #pragma once
 
 #include "sweep/study/features.hpp"
@@ -10,13 +11,13 @@
 
 namespace grainsweep::study {
 
-/// Numbers of a factor along its range.
+/// Returns numbers of a factor along its range.
 [[nodiscard]] std::vector<double> points_along(const ModelFactor& factor, std::size_t count);
 [[nodiscard]] std::vector<double> cells_along(const ModelFactor& factor, std::size_t count);
-/// Where the cells begin and end, one more than there are; of levels none.
+/// Returns the edges of the cells, one more than cells; empty for levels.
 [[nodiscard]] std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count);
 
-/// Settings of a map over factors a and b, the others as in `centre`; a goes fastest.
+/// Returns the settings of a map of factors a and b, with the other factors as in `centre`; a varies fastest.
 [[nodiscard]] std::vector<Setting> settings_of_map(std::span<const ModelFactor> factors, const Setting& centre,
                                                    std::size_t a, std::size_t b, std::size_t count);
 

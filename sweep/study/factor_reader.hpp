@@ -9,10 +9,10 @@
 
 namespace grainsweep::study {
 
-/// A factor as its rows come by: numbers where it is continuous, else cells until all are known.
+/// Reader of one factor, row by row: numbers if it is continuous, else cells until all rows are read.
 class FactorReader {
 public:
-    /// `scene`: null where this program does not have it.
+    /// `scene`: null if this program does not have the scene.
     FactorReader(campaign::StatedFactor stated, const SceneInfo* scene);
     void add(const store::Table::Cell& cell);
     [[nodiscard]] FactorColumn take();
@@ -23,8 +23,8 @@ private:
     std::vector<store::Table::Cell> cells_;
 };
 
-/// Gives factors that take columns of one sample their coordinates: those of the design's points, and of settings that
-/// no design made the middle of the box of their row.
+/// Sets the coordinates of factors that take columns of one sample. They are the coordinates of the design's points.
+/// For a setting that is not of the design they are the middle of the box of its row.
 void add_joint_shares(Responses& responses);
 
 }  // namespace grainsweep::study

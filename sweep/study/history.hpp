@@ -1,4 +1,4 @@
-// How the moments of a response settled over its design, recomputed from the stored values, and what to make of it.
+// Moments of a response along its design, recomputed from the stored values, with a verdict.
 #pragma once
 
 #include "stats/convergence.hpp"
@@ -11,44 +11,45 @@
 namespace grainsweep::study {
 
 struct History {
-    stats::ConvergenceSettings
-        settings;           ///< the campaign's; else the default rule, or all_change where it cannot be used
-    bool has_rule = false;  ///< the campaign gives a rule
-    std::vector<stats::Checkpoint> checks;  ///< every complete block of the settled beginning
-    /// All settled points: the figures to quote. Where the points are no multiple of the block it is shown, never
+    stats::ConvergenceSettings settings;  ///< of the campaign; else of the default rule, or of all_change if the
+                                          ///< default cannot be used
+    bool has_rule = false;                  ///< the campaign gives a rule
+    std::vector<stats::Checkpoint> checks;  ///< one per complete block of the settled prefix
+    /// All settled points: the numbers to quote. If the points are no multiple of the block, it is shown but not
     /// judged. Errors are NaN for a lattice or a list.
     stats::Checkpoint all;
-    /// Over every finished case, wherever it stands: what is known while finished cases lie behind one that is not.
-    /// Not judged and not to be quoted. `points` counts the points with such a case. None where `all` has them all.
+    /// All finished cases, also behind an unfinished one. Not judged and not to be quoted. `points` counts the points
+    /// with a finished case. Empty if `all` already has all of them.
     std::optional<stats::Checkpoint> provisional;
     std::string verdict;                ///< one line
-    std::optional<bool> converged;      ///< by the campaign's rule; none: it gives no rule
-    std::vector<std::string> warnings;  ///< what a reader must know before quoting the figures
+    std::optional<bool> converged;      ///< by the campaign's rule; empty: the campaign has no rule
+    std::vector<std::string> warnings;  ///< to be read before the numbers are quoted
 };
 
-/// At most about `most` of the checks, evenly thinned, the last and the one that converged among them; after them `all`
-/// where it is no check. Pointers into the history.
+/// Returns pointers to about `most` of the checks, evenly thinned, including the last and the converged one; then `all`
+/// if it is no check.
 [[nodiscard]] std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most);
 
-/// Sentence on a campaign whose last run had fewer points than are stored, with both numbers; else empty.
+/// Returns a sentence if the last run of a campaign had fewer points than are stored, with both numbers; else empty.
 [[nodiscard]] std::string extent_note(const store::CampaignRecord& campaign);
-/// Candidates, those left out by the `where` clause, cases asked and finished, in one line.
+/// Returns in one line the candidates, the points that the `where` clause excludes, and the cases requested and
+/// finished.
 [[nodiscard]] std::string points_line(const Responses& responses);
 
 [[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
-/// The same without the checks on the way and their verdict, which take most of the time.
+/// Returns the same without the intermediate checks and their verdict, which take most of the time.
 [[nodiscard]] History figures_of(const Responses& responses, const ResponseColumn& response);
 
-/// One lattice of a family (same scene, factors and ranges) and how far its moments moved since the one before.
+/// Lattice of a family (same scene, factors and ranges) and the changes of its moments since the coarser one.
 struct LatticeStep {
     std::string campaign;
     std::int64_t points = 0;
     stats::Summary summary;
-    std::vector<double> changes;  ///< per stats::statistics, as a rule compares them; NaN at the first
+    std::vector<double> changes;  ///< one per stats::statistics, as a rule compares them; NaN for the first lattice
 };
 
-/// A lattice is judged by its finer and coarser siblings: all lattices of the database that ask the same scene about
-/// the same factors and ranges, by growing number of points. Empty where there is no second one.
+/// Returns the lattices of the database with the same scene, factors and ranges, by ascending number of points: a
+/// lattice is judged by the finer and coarser ones. Empty if there is no second one.
 [[nodiscard]] std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,
                                                       const ResponseColumn& response);
 

@@ -1,11 +1,11 @@
-// Which factor moves a response, from the values a campaign has: what `sensitivity` and the page show.
+// Influence of each factor on a response, from the stored values; shown by `sensitivity` and the report.
 //
-//   any design    first-order indices by binning: 16 bins of equal count, fewer below 256 points; a level, and a
+//   any design    first-order indices by binning: 16 bins of equal count, fewer below 256 points. Each level, and each
 //                 coordinate of a lattice, is a bin of its own
-//   saltelli      the same of the first two points of every block, and total indices by Jansen 1999
-//   morris        elementary effects per unit of the range: mu*, sigma (indices would mean nothing on so few points)
-// Beside them: which way the response goes with each factor, and what the main effects leave unexplained, split into
-// interactions and the scatter of single runs where replicates allow (stats/variance_split.hpp).
+//   saltelli      first-order indices from the first two points of every block, and total indices by Jansen 1999
+//   morris        elementary effects per unit of the range: mu*, sigma; no indices, because the points are too few
+// Shown beside them: the trend of the response with each factor, and the variance that main effects do not explain. If
+// there are replicates, this part is split into interactions and scatter of single runs (stats/variance_split.hpp).
 // Failed cases are left out and counted. Estimators and errors: stats/sensitivity.hpp.
 #pragma once
 
@@ -21,38 +21,38 @@
 
 namespace grainsweep::study {
 
-/// Which way the response goes with a factor, by its binned means.
+/// Trend of the response with a factor, from its binned means.
 enum class Trend {
-    unknown,  ///< words have no order; or there is no telling from zero
+    unknown,  ///< words have no order, or the influence cannot be distinguished from zero
     rises,    ///< the best rising curve explains 90 % of the variance of the binned means
     falls,
     bends  ///< neither
 };
-[[nodiscard]] std::string_view to_string(Trend trend);  ///< unknown: empty
+[[nodiscard]] std::string_view to_string(Trend trend);  ///< empty for `unknown`
 
 struct FactorInfluence {
-    std::string factor;                               ///< its name, or that of a group
-    std::vector<std::string> members;                 ///< of a group of several factors that move together: their names
-    std::size_t bins = 0;                             ///< behind `first`
+    std::string factor;                               ///< name of the factor, or of its group
+    std::vector<std::string> members;                 ///< names of the factors of a group, which change together
+    std::size_t bins = 0;                             ///< bins of `first`
     stats::SensitivityIndex first;                    ///< share of the variance the factor explains alone
-    stats::SensitivityIndex first_saltelli;           ///< saltelli: the same by Saltelli et al. 2010
+    stats::SensitivityIndex first_saltelli;           ///< saltelli: `first` by Saltelli et al. 2010
     stats::SensitivityIndex total;                    ///< saltelli: with all interactions
     std::optional<stats::ElementaryEffects> effects;  ///< morris
-    stats::SensitivityIndex rank_correlation;         ///< Spearman's, of factor and response; words: none
+    stats::SensitivityIndex rank_correlation;         ///< Spearman's, of factor and response; none for words
     Trend trend = Trend::unknown;
 };
 
 struct Influence {
     enum class Method { given_data, saltelli, morris };
     Method method = Method::given_data;
-    std::vector<FactorInfluence> factors;  ///< in the campaign's order; saltelli, morris: one a group
+    std::vector<FactorInfluence> factors;  ///< in the campaign's order; saltelli, morris: one per group
     std::int64_t used = 0;                 ///< cases (saltelli: base rows; morris: effects of the factor with fewest)
-    std::int64_t excluded = 0;             ///< of the same, for want of a value
-    stats::VarianceSplit split;            ///< of the variance of single runs; morris: pure error only
-    std::vector<std::string> notes;        ///< what a reader must know before quoting the figures
+    std::int64_t excluded = 0;             ///< left out because they have no value
+    stats::VarianceSplit split;            ///< parts of the variance of single runs; morris: pure error only
+    std::vector<std::string> notes;        ///< to be read before the numbers are quoted
 };
 
-/// What the indices leave unexplained, and what it is made of, in a sentence or two; empty where it cannot be said.
+/// Returns one or two sentences on the variance that the indices do not explain and its parts; empty if it is unknown.
 [[nodiscard]] std::string unexplained_text(const Influence& influence);
 
 [[nodiscard]] Influence influence_of(const Responses& responses, const ResponseColumn& response);

@@ -1,5 +1,5 @@
-// Figures from designs whose points belong together in blocks: total indices of saltelli, effects of morris. One entry
-// a group of factors that move together; a factor by itself is a group.
+// Indices from designs whose points form blocks: total indices of saltelli, elementary effects of morris. One entry per
+// group of factors that change together; a single factor is a group of one.
 #pragma once
 
 #include "sweep/study/influence.hpp"
@@ -8,16 +8,16 @@
 
 namespace grainsweep::study {
 
-/// Computes total and first-order indices of the groups, and notes of them in `influence`.
+/// Returns total and first-order indices of the groups. Adds notes to `influence`.
 [[nodiscard]] std::vector<FactorInfluence> add_saltelli(Influence& influence, const Responses& responses,
                                                         const ResponseColumn& response);
-/// Computes elementary effects of the groups, and of single factors in `influence`, which get a trend.
+/// Returns elementary effects of the groups. Sets effects and trends of single factors in `influence`.
 [[nodiscard]] std::vector<FactorInfluence> add_morris(Influence& influence, const Responses& responses,
                                                       const ResponseColumn& response);
-/// Puts the groups in the place of their factors; a factor by itself keeps what else is known of it.
+/// Replaces factors by their groups. A single factor keeps its other results.
 void join_groups(Influence& influence, const Responses& responses, std::vector<FactorInfluence> groups);
-/// Withdraws the errors of figures from blocks of points where most places repeat an earlier case: the blocks share
-/// their runs, and say of the scatter between them less than their number promises.
+/// Removes the errors of block designs if most places repeat an earlier case: the blocks then share runs and are not
+/// independent, so their scatter understates the error.
 void withdraw_errors_of_repeated_cases(Influence& influence, const Responses& responses);
 
 }  // namespace grainsweep::study

@@ -1,4 +1,4 @@
-// The cases of a campaign that models are learned from: settings, observables, and where cases failed.
+// Cases from which a campaign's models are fitted: settings, observables, and failures.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -14,47 +14,50 @@
 
 namespace grainsweep::study {
 
-/// A case with a final outcome and without an answer.
+/// Case with a final outcome and without an answer.
 struct FailedCase {
     Setting setting;
     campaign::Outcome outcome = campaign::Outcome::crashed;
 };
 
-/// What the models of a campaign are learned from.
+/// Cases from which the models of a campaign are fitted.
 struct ModelCases {
     store::CampaignRecord campaign;
-    std::vector<std::string> further;  ///< campaigns whose cases are there, too
+    std::vector<std::string> further;  ///< names of other campaigns whose cases are included
     std::vector<ModelFactor> factors;
-    std::vector<std::string> features;        ///< as the campaign file has them; empty: by default
+    std::vector<std::string> features;        ///< from the campaign file; empty: by default
     std::vector<Setting> settings;            ///< of the answered cases
     std::vector<ResponseColumn> observables;  ///< one value per setting
-    std::string main;                         ///< name of the main observable; empty: none has a value
-    std::string case_id;                      ///< of an answered case: it has the fixed values
+    std::string main;                         ///< name of the main observable; empty: no observable has a value
+    std::string case_id;                      ///< id of an answered case, which has the fixed values
     std::vector<FailedCase> failed;
-    /// Whether the scene accepts a setting, known without running it; empty: no case was rejected for its setting.
+    /// Check of the scene whether a setting is possible, without running it; empty: no case was rejected for its
+    /// setting.
     std::function<bool(const Setting&)> possible;
 
-    /// Throws WrongQuestion with the nearest name. Empty: the main observable.
+    /// Returns the observable of this name; empty name: the main observable. Throws WrongQuestion with the nearest
+    /// name.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
     [[nodiscard]] std::vector<std::string> observable_names() const;
     [[nodiscard]] std::vector<std::string> factor_names() const;
 };
 
-/// The campaign of that name. Empty: the only one there is, or those that ask the same with different points; throws
-/// WrongQuestion where that leaves a choice.
+/// Returns the cases of the named campaign. Empty name: of the only campaign, or of all campaigns that differ in their
+/// points alone; throws WrongQuestion if more than one choice is left.
 [[nodiscard]] ModelCases read_model_cases(const store::Store& store, std::string_view campaign);
 
-/// The answered cases of a campaign's settled beginning alone, which its statistics are over. `rows`: where each case
-/// stands in `responses`.
+/// Returns only the answered cases of a campaign's settled prefix, from which its statistics are computed. `rows`: the
+/// row of each case in `responses`.
 [[nodiscard]] ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* rows = nullptr);
 
-/// Whether the campaign's `where` clause lets a setting pass, and its shares add to one; empty where it has neither, or
-/// no case is answered.
+/// Returns a filter: whether the campaign's `where` clause accepts a setting and its shares add to one. Empty if the
+/// campaign has neither, or no case is answered.
 [[nodiscard]] std::function<bool(const Setting&)> admission(const store::Store& store, const ModelCases& cases);
 
-/// "friction = 0.1, gap = 0.003"
+/// Returns a text such as "friction = 0.1, gap = 0.003".
 [[nodiscard]] std::string setting_text(std::span<const ModelFactor> factors, const Setting& setting);
-/// "gap = 0.006 is above 0.001 to 0.005" for every factor outside of its range; empty: inside the box.
+/// Returns a text such as "gap = 0.006 is above 0.001 to 0.005" for every factor outside its range; empty: inside the
+/// box.
 [[nodiscard]] std::string outside_text(std::span<const ModelFactor> factors, const Setting& setting);
 
 }  // namespace grainsweep::study

@@ -1,8 +1,9 @@
-// Which factors move the mean response, alone and together, by a response model of the campaign's settled cases: total
-// indices and interactions from any design (stats/model_indices.hpp), beside the indices from the cases themselves.
+// Influence of factors on the mean response, alone and together, by a response model of the campaign's settled cases.
+// It gives total indices and interactions from any design (stats/model_indices.hpp), beside the indices from the cases
+// themselves.
 //
-// Refused where the model is (stats/response_model.hpp), and where the campaign's `where` leaves a part of the box out:
-// indices are over all of it, and there are no cases in that part. Errors come from leaving out independent sequences,
+// Refused if the model is refused (stats/response_model.hpp), or if the campaign's `where` excludes a part of the box:
+// the indices refer to the whole box, and that part has no cases. Errors come from leaving out independent sequences,
 // or eight stretches of the cases.
 #pragma once
 
@@ -18,18 +19,19 @@
 namespace grainsweep::study {
 
 struct ModelInfluence {
-    std::vector<std::string> factors;            ///< that vary, in the campaign's order
-    std::optional<stats::ModelIndices> indices;  ///< none: refused
+    std::vector<std::string> factors;            ///< varied factors, in the campaign's order
+    std::optional<stats::ModelIndices> indices;  ///< empty: refused
     std::optional<ObservableModel> model;
     std::size_t without_value = 0;     ///< settled cases
-    std::vector<std::string> noise;    ///< names of the noise factors that vary; empty: no share is made of them
-    std::vector<std::string> calmest;  ///< parts of the ranges of indices->noise->controls: "between 0.005 and 0.006"
-    std::string refused;               ///< why: one sentence without a full stop
+    std::vector<std::string> noise;    ///< names of the varied noise factors; empty: there is no share of noise
+    std::vector<std::string> calmest;  ///< for each of indices->noise->controls the part of its range, as text:
+                                       ///< "between 0.005 and 0.006"
+    std::string refused;               ///< reason: one sentence without a full stop
 };
 
-/// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.
+/// Fits a model and returns its indices. Throws WrongQuestion if a feature of the campaign file cannot be evaluated.
 [[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response);
-/// The same by a model that was learned of settled_cases(responses).
+/// Returns the indices of a model fitted to settled_cases(responses).
 [[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response,
                                                 const ObservableModel& model);
 

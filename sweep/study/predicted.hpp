@@ -1,4 +1,4 @@
-// What a response model predicts at settings, and how likely a case there has an answer.
+// Predictions of a response model at settings, with the probability that a case there has an answer.
 #pragma once
 
 #include "stats/response_model.hpp"
@@ -10,7 +10,7 @@
 
 namespace grainsweep::study {
 
-/// What a model predicts at settings.
+/// Predictions of a model at settings.
 struct Predicted {
     std::vector<Setting> settings;
     std::vector<stats::Prediction> predictions;  ///< NaN where an answer is less likely than none, unless extrapolated
@@ -18,12 +18,12 @@ struct Predicted {
     std::vector<double> answers;                 ///< probability that a case has an answer
     std::vector<Near> near;
 };
-/// Throws WrongQuestion where a feature has no number.
+/// Returns the predictions. Throws WrongQuestion if a feature is undefined at a setting.
 [[nodiscard]] Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
                                 bool extrapolate);
 
-/// "no case near x = 0.05 has an answer, with probability 0.99: 5 of the 5 nearest cases failed (5 crashed)", and how
-/// many such settings there are; empty: none.
+/// Returns a text such as "no case near x = 0.05 has an answer, with probability 0.99: 5 of the 5 nearest cases failed
+/// (5 crashed)", with the number of such settings; empty: there is none.
 [[nodiscard]] std::string failures_near(const ModelCases& cases, const Predicted& predicted);
 
 }  // namespace grainsweep::study

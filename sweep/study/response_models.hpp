@@ -1,11 +1,11 @@
-// Responses of a campaign as functions of its factors, learned from its cases: features.hpp says of what,
-// stats/response_model.hpp how, and with which errors.
+// Models of a campaign's responses as functions of its factors, fitted to its cases. Features: features.hpp; method and
+// errors: stats/response_model.hpp.
 //
-// A model rests on every answered case of the campaign, and on those of further campaigns of the database that ask the
-// same scene with the same factors and fixed values, wherever their points stand. Replicates are cases of their own.
-// A case without a number for the observable (NULL: undefined there) is left out of the model and counted. The
-// probability that a setting has one is a model of its own (stats/probability_model.hpp). So is an observable whose
-// values are 0 and 1 alone, like `jammed`: its mean is the probability of a 1.
+// A model uses every answered case of the campaign, and of other campaigns of the database with the same scene, factors
+// and fixed values. Each replicate is a case. A case without a number for the observable (NULL: undefined) is left out
+// and counted. A separate model gives the probability that the observable is defined (stats/probability_model.hpp). An
+// observable whose values are only 0 and 1, like `jammed`, also has a probability model: its mean is the probability of
+// a 1.
 #pragma once
 
 #include "stats/probability_model.hpp"
@@ -26,29 +26,29 @@ struct ObservableModel {
     Features features;
     std::variant<stats::ResponseModel, stats::ProbabilityModel> model;
     std::size_t undefined = 0;                           ///< answered cases without a number
-    std::vector<std::string> notes;                      ///< what a reader must know before quoting its figures
-    std::vector<double> case_features;                   ///< of all answered cases, row after row
-    std::optional<stats::ProbabilityModel> has_a_value;  ///< none: every case is defined
+    std::vector<std::string> notes;                      ///< to be read before its numbers are quoted
+    std::vector<double> case_features;                   ///< features of all answered cases, row after row
+    std::optional<stats::ProbabilityModel> has_a_value;  ///< empty: the observable is defined in every case
 
     [[nodiscard]] std::vector<stats::Prediction> predict(std::span<const Setting> settings) const;
-    /// Means only, which is faster; of rows of features.
+    /// Returns only the means at rows of features, which is faster.
     [[nodiscard]] std::vector<double> means(std::span<const double> rows) const;
-    /// Probability that the observable is defined.
+    /// Returns the probability that the observable is defined.
     [[nodiscard]] std::vector<double> defined(std::span<const Setting> settings) const;
-    /// Features of the settings, row after row.
+    /// Returns the features of the settings, row after row.
     [[nodiscard]] std::vector<double> rows(std::span<const Setting> settings) const;
-    /// The model with the response of a setting added, which may be a fantasy.
+    /// Returns the model with a case added; its response may be assumed instead of computed.
     [[nodiscard]] ObservableModel with_case(const Setting& setting, double response) const;
     [[nodiscard]] std::size_t cases() const;
     [[nodiscard]] bool is_probability() const { return std::holds_alternative<stats::ProbabilityModel>(model); }
-    /// Of its predictions, the same at every setting.
+    /// Returns the degrees of freedom of its predictions, the same at every setting.
     [[nodiscard]] double freedom() const;
 };
 
-/// Learns one observable. Throws WrongQuestion where a written feature cannot be evaluated.
+/// Fits a model of one observable. Throws WrongQuestion if a written feature cannot be evaluated.
 [[nodiscard]] std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases,
                                                                   const ResponseColumn& observable);
-/// The same; throws WrongQuestion with the sentence of the refusal.
+/// Fits a model of one observable. Throws WrongQuestion with the reason if the model is refused.
 [[nodiscard]] ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable);
 
 }  // namespace grainsweep::study

@@ -1,4 +1,4 @@
-// A campaign's cases in parts that are left out in turn: where the errors of its sample come from.
+// Parts of a campaign's cases that are left out in turn, to estimate the errors of its sample.
 #pragma once
 
 #include "sweep/study/responses.hpp"
@@ -11,12 +11,13 @@ namespace grainsweep::study {
 
 struct SampleParts {
     std::vector<std::size_t> labels;  ///< one per settled row, 0 ... G-1; repeats of a point have the same
-    bool independent = false;         ///< the parts repeat one another independently
-    std::string what;  ///< "the 8 independent sequences"; empty: the points are no sample (a lattice, a list)
+    bool independent = false;         ///< the parts are independent replicates of one another
+    std::string what;  ///< text such as "the 8 independent sequences"; empty: the points are no sample (a lattice, a
+                       ///< list)
 };
 
-/// Independent sequences where there are at least four, else eight stretches of whole blocks (saltelli, morris) or
-/// points; a list, which has no order, in parts drawn at random.
+/// Returns the independent sequences if there are at least four, else eight stretches of points or whole blocks
+/// (saltelli, morris). A list, which has no order, is divided at random.
 [[nodiscard]] SampleParts sample_parts(const Responses& responses);
 
 }  // namespace grainsweep::study

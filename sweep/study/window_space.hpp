@@ -1,13 +1,14 @@
-// What a window searches, and what stands behind a setting of it.
+// Settings that a window searches, and the full settings that each of them stands for.
 //
-// Control factors are searched. Noise factors ("role": "noise") vary and cannot be set: probabilities and
-// responses are averages over them. A factor of `for all` must meet the condition at each of its levels. A held factor
-// has one value. In a setting of a window the entry of a factor that is averaged or varied so is NaN; where it has a
-// number, this is its value.
+// Control factors are searched. Noise factors ("role": "noise") vary and cannot be set: probabilities and responses are
+// averages over them. The condition must hold at each level of a factor of `for all`. A held factor has one value. In a
+// setting of a window, the entry of a factor that is averaged or varied in this way is NaN; any number is the factor's
+// value.
 //
-// Behind a setting stand, for every combination of levels of `for all`, every combination of the levels of noise
-// factors (32 at most) times 64 Sobol points of the other noise factors, divided by the combinations, at least 16;
-// cells centred, all of one weight. Where there are more combinations levels are Sobol points, too.
+// The full settings of a window's setting: for every combination of levels of `for all`, every combination of the
+// levels of noise factors (at most 32), times Sobol points of the other noise factors. There are 64 Sobol points
+// divided by the number of combinations, but at least 16. Cells are centred, and all full settings have the same
+// weight. If there are more than 32 combinations, the levels are Sobol points, too.
 #pragma once
 
 #include "sweep/study/box_search.hpp"
@@ -21,28 +22,29 @@
 
 namespace grainsweep::study {
 
-/// A factor, by its place among the campaign's, and its one value.
+/// Held factors: index of each among the campaign's factors, and its value.
 using Held = std::vector<std::pair<std::size_t, double>>;
 
-/// "CONDITION for all A, B": the condition, and the names.
+/// Parts of "CONDITION for all A, B": the condition and the names.
 struct StatedCondition {
     std::string condition;
     std::vector<std::string> for_all;
 };
-/// Throws WrongQuestion at --where for a `for all` without a name.
+/// Splits a text into these parts. Throws WrongQuestion at --where for a `for all` without a name.
 [[nodiscard]] StatedCondition split_condition(std::string_view where);
 
 class WindowSpace {
 public:
-    /// Throws WrongQuestion for a name in `for_all` that is no factor, has no levels or is held, and where nothing is
-    /// left to be searched.
+    /// Throws WrongQuestion for a name in `for_all` that is no factor, has no levels or is held, and if no factor is
+    /// left to search.
     WindowSpace(const ModelCases& cases, const Held& held, const std::vector<std::string>& for_all, Admits admits);
 
-    /// Settings of the searched factors, less those behind which no setting is admitted.
+    /// Returns settings of the searched factors, without those that have no admitted full setting.
     [[nodiscard]] std::vector<BoxPoint> spread(std::size_t count) const;
     [[nodiscard]] std::vector<BoxPoint> about(const BoxPoint& centre, double reach, std::size_t count) const;
 
-    /// One list for each combination of levels of `for all`; those that are not admitted are missing.
+    /// Returns one list of full settings for each combination of levels of `for all`, without settings that are not
+    /// admitted.
     [[nodiscard]] std::vector<std::vector<Setting>> behind(const Setting& setting) const;
     [[nodiscard]] bool averages() const { return !noise_.empty() || !every_.empty(); }
     [[nodiscard]] bool searches(std::size_t factor) const;

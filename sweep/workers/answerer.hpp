@@ -1,5 +1,5 @@
-// What a worker asks for the answer of a case: a simulation of the solver, or a program. Nothing above the worker knows
-// which it is.
+// Interface by which a worker gets the answer of a case, from a simulation of the solver or from a program. Only the
+// worker distinguishes the two.
 #pragma once
 
 #include "sweep/workers/message.hpp"
@@ -15,12 +15,12 @@ public:
     Answerer& operator=(const Answerer&) = delete;
     virtual ~Answerer() = default;
 
-    /// Looks for what an earlier attempt left; whether the case goes on from there.
+    /// Looks for the checkpoint of an earlier attempt. Returns whether the case continues from it.
     [[nodiscard]] virtual bool prepare(const Run& run) = 0;
-    /// Answers the case prepared last; nothing where it was given up because the worker is to end. Throws BrokenWorld
-    /// where no other case would fare better.
+    /// Returns the answer of the case prepared last; empty if the case was interrupted because the worker must end.
+    /// Throws BrokenWorld for an error that every other case would meet, too.
     [[nodiscard]] virtual std::optional<campaign::CaseResult> answer(const Run& run) = 0;
-    /// Whether a state of the case is saved that is of no use once it is answered.
+    /// Returns whether a checkpoint of the case is stored, which is useless once the case is answered.
     [[nodiscard]] virtual bool left_checkpoint() const = 0;
 };
 

@@ -9,10 +9,11 @@ namespace grainsweep::workers {
 
 inline constexpr std::array asking_signals = {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2};
 
-/// Keeps them for attend(): to be called before there is another thread.
+/// Blocks these signals so that attend() receives them. Call it before any other thread starts.
 void hold_asking_signals();
-/// Calls `asked` for every one that comes, and `tick` every second. Counts seconds and looks at no clock of the day: a
-/// process that is stopped (Ctrl-Z, a suspended machine) could not hear its main program, which was stopped with it.
+/// Calls `asked` for every such signal, and `tick` every second. Counts the seconds itself instead of reading a clock:
+/// while this process is stopped (Ctrl-Z, a suspended machine) it cannot receive messages, and its main program was
+/// stopped with it.
 [[noreturn]] void attend(const std::function<void(int signal)>& asked, const std::function<void()>& tick);
 
 }  // namespace grainsweep::workers

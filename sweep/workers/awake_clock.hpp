@@ -1,4 +1,5 @@
-// Time in which this process ran: what it spent stopped (Ctrl-Z, a suspended machine) does not count.
+// Clock of the time in which this process ran. Time in which it was stopped (Ctrl-Z, a suspended machine) does not
+// count.
 #pragma once
 
 #include <algorithm>
@@ -6,16 +7,16 @@
 
 namespace grainsweep::workers {
 
-/// Asked several times a second; the time between two calls counts as a quarter of a second at most: a process that did
-/// not come to ask was stopped, or too busy to have noticed what it waits for.
+/// Clock that is read several times a second. The time between two readings counts as a quarter of a second at most:
+/// after a longer pause the process was stopped, or too busy to notice the event that it waits for.
 class AwakeClock {
 public:
     explicit AwakeClock(std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now())
         : asked_(start) {}
 
-    /// Seconds since it was made.
+    /// Returns the seconds since the clock was made.
     double now() { return at(Clock::now()); }
-    /// The same at a given moment of a clock.
+    /// Returns the same at a given moment of the steady clock.
     double at(std::chrono::steady_clock::time_point moment) {
         seconds_ += std::min(std::chrono::duration<double>(moment - asked_).count(), longest_gap);
         asked_ = moment;

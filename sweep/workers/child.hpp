@@ -1,5 +1,5 @@
-// Processes of this machine and their three pipes: started, written to, read from, signalled, waited for; and the loop
-// in which that happens. Nothing here knows what is written or why a process ends; the pool does.
+// Child processes on this machine with their three pipes, and the event loop that serves them: start, write, read,
+// signal, wait. The pool interprets the messages and the ends of the processes.
 #pragma once
 
 #include "sweep/workers/process.hpp"
@@ -13,7 +13,7 @@
 
 namespace grainsweep::workers {
 
-/// Calls what is due in the thread that runs it.
+/// Event loop that calls its handlers in the thread that runs it.
 class EventLoop {
 public:
     EventLoop();
@@ -21,13 +21,13 @@ public:
     EventLoop& operator=(const EventLoop&) = delete;
     ~EventLoop();
 
-    /// Waits until something is due, or for so long, and calls it.
+    /// Waits for an event, for at most this time, and calls its handler.
     void run_one_for(std::chrono::milliseconds at_most);
-    /// Calls what is due, one thing; false: nothing is.
+    /// Calls the handler of one event that is due. Returns false if none is due.
     bool poll_one();
-    /// To be called soon. From any thread.
+    /// Appends a call to the loop. Any thread may do so.
     void post(std::function<void()> call);
-    /// From now on these signals do nothing but this.
+    /// Replaces the effect of these signals by this call.
     void on_signals(const std::vector<int>& numbers, std::function<void(int number)> call);
 
     struct Impl;
@@ -39,15 +39,16 @@ private:
 
 class Child : public Process {
 public:
-    /// nullptr, and why in `error`, where there is no program of that name, or no descriptor, memory or process to be
-    /// had. Does not wait until the program is loaded: one that cannot be executed ends at once and says so in its log.
-    /// The process is the head of a group of its own: the terminal's Ctrl-C does not reach it.
+    /// Starts a process. Returns nullptr and sets `error` if no program has that name, or if the system has no
+    /// descriptor, memory or process left. Does not wait until the program is loaded: a program that cannot be executed
+    /// ends at once and writes the reason to its log. The process leads a process group of its own, so the terminal's
+    /// Ctrl-C does not reach it.
     [[nodiscard]] static std::shared_ptr<Child> start(EventLoop& loop, const std::vector<std::string>& argv,
                                                       std::error_code& error);
     [[nodiscard]] virtual int process_group() const = 0;
 };
 
-/// Calls until `condition` no longer holds, or for so long, with growing pauses.
+/// Evaluates `condition` with growing pauses until it is false, or for at most this time.
 void wait_while(const std::function<bool()>& condition, std::chrono::milliseconds at_most);
 
 }  // namespace grainsweep::workers

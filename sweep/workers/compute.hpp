@@ -1,4 +1,4 @@
-// One case, from question to answer, in this process: what a worker, `solve` and `replay` all do.
+// Computes one case in this process. Workers, `solve` and `replay` use it.
 #pragma once
 
 #include "solver/scenes/scene.hpp"
@@ -9,24 +9,23 @@
 
 namespace grainsweep::workers {
 
-/// Called between slices of the computation (about ten times a second); whatever it does cannot change
-/// the answer. Returns false to give the case up unfinished.
+/// Function called between slices of the computation, about ten times a second. It cannot change the answer. It returns
+/// false to interrupt the case.
 using Watch = std::function<bool(const Scene&)>;
 
-/// Takes pictures on the way: the first at the start, the last at the end, the others evenly spaced in the scene's
-/// time, as far as its progress after the first step foretells the end, but at most a quarter of them before its
-/// picture_focus(). Where the scene has a picture_period() shorter than their distance, at its nearest whole multiple.
-/// The same moments however the run is sliced.
+/// Camera that takes pictures during the run. The first picture is at the start, the last at the end. The others are
+/// evenly spaced in the scene's time, whose length is estimated from the progress after the first step. At most a
+/// quarter of them lie before picture_focus(). If picture_period() is shorter than the spacing, the spacing is rounded
+/// to a whole multiple of it. The moments do not depend on the slices.
 struct Camera {
     std::int64_t frames = 0;                  ///< 0: none
-    std::function<void(const Scene&)> shoot;  ///< reads only
+    std::function<void(const Scene&)> shoot;  ///< must not change the scene
 };
 
-/// Computes the case: skipped when its answer is proven, rejected when the scene cannot be made from its
-/// inputs or a file among them has changed, unstable when its state became untrustworthy, completed otherwise.
-/// `resume`, where given, is the checkpoint to continue from (one that does not fit is ignored: the case starts anew).
-/// `watch` returning false gives nullopt. Throws BrokenWorld where a file among the inputs is there and cannot
-/// be read.
+/// Computes a case. Its outcome is `skipped` if the answer is proven without a run, `rejected` if the scene cannot be
+/// made from the inputs or an input file has changed, `unstable` if the state became unphysical, else `completed`.
+/// `resume`: checkpoint from which the case continues; one that does not fit is ignored and the case starts anew.
+/// Returns empty if `watch` returned false. Throws BrokenWorld if an input file exists but cannot be read.
 [[nodiscard]] std::optional<campaign::CaseResult> compute(const campaign::Case& question, std::int64_t attempt,
                                                           Artefacts& artefacts, const std::optional<Bytes>& resume,
                                                           const Watch& watch, const Camera& camera = {});

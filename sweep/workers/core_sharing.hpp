@@ -1,5 +1,6 @@
-// How many threads compute each case of a pool. One while there are enough cases for all cores; where fewer are left,
-// the cores left over go to those that run, and come back when others begin. No bit of an answer depends on it.
+// Number of threads of each case of a pool. Each case has one thread while there are enough cases for all cores. If
+// fewer cases are left, idle cores go to the running cases, and come back when other cases begin. Answers have the same
+// bits for any number of threads.
 #pragma once
 
 #include "sweep/workers/crew.hpp"
@@ -14,30 +15,31 @@
 
 namespace grainsweep::workers {
 
-/// Threads of each of the cases that run on a node of so many cores, while `waiting` others could begin there: equal
-/// shares of what these leave, and where that does not come out even, one more for those with most seconds left.
+/// Returns the threads of each case that runs on a node with `cores` cores, while `waiting` other cases could begin
+/// there. One core is kept for each waiting case. The running cases share the rest equally; remaining cores go to the
+/// cases with most seconds left.
 [[nodiscard]] std::vector<std::int64_t> shared_cores(std::size_t cores, std::size_t waiting,
                                                      std::span<const double> seconds_left);
 
-/// Tells workers how many threads they may use.
+/// Sender of the numbers of threads to the workers.
 class CoreSharing {
 public:
-    /// `threads` of every case; none: shared as above. `cores` of every node, one for each worker.
+    /// `threads`: of every case; empty: shared as above. `cores`: of every node, one for each worker.
     CoreSharing(std::optional<std::int64_t> threads, std::size_t cores) : threads_(threads), cores_(cores) {}
 
-    /// A case is about to be written to this worker.
+    /// Sets the threads of a worker that is about to receive a case.
     void begin(PoolWorker& worker) const;
-    /// So many cases wait that no worker could take.
+    /// Shares the cores while `waiting` cases have no worker.
     void share(std::span<const std::shared_ptr<PoolWorker>> workers, std::size_t waiting,
                const Crew::SecondsLeft& left);
 
 private:
-    /// The workers that have cases, and the threads these have: as long as they are the same nothing is told anew.
+    /// Workers that have cases, and their threads. Resent only when this list changes.
     using Shares = std::vector<std::pair<const PoolWorker*, std::int64_t>>;
 
     std::optional<std::int64_t> threads_;
     std::size_t cores_;
-    bool shared_ = false;  ///< some case has more than one
+    bool shared_ = false;  ///< some case has more than one thread
     std::size_t waiting_ = 0;
     Shares shares_;
 };

@@ -1,4 +1,4 @@
-// What the scheduler sees of its workers: places to put cases, and events.
+// Workers as the scheduler sees them: places for cases, and events.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -14,19 +14,19 @@
 
 namespace grainsweep::workers {
 
-/// A worker's process ended, wrote nonsense or fell silent. The case it was computing has failed, or was interrupted;
-/// those that waited behind it were never begun.
+/// Event: a worker ended, sent an invalid message or became silent. Its running case failed or was interrupted. The
+/// cases queued behind it were never begun.
 struct Lost {
     std::optional<campaign::Attempt> running;
     std::vector<campaign::Attempt> queued;
     std::string reason;         ///< how it ended, and the last lines it wrote to standard error
-    double seconds = 0;         ///< since it began `running`
-    bool from_outside = false;  ///< no failure of the case: its worker was asked to end, or gave no sign of life
-    /// The checkpoint of `running` is not to be used again: the case crashed on it, or after it on its own account.
+    double seconds = 0;         ///< since the worker began `running`
+    bool from_outside = false;  ///< the case did not fail: its worker received a request to end, or was silent
+    /// Whether the checkpoint of `running` must not be used again, because the case crashed after it.
     bool spoils_checkpoint = false;
 };
 
-/// The case exceeded its wall time; its worker was ended.
+/// Event: the case exceeded its limit of wall time and its worker was ended.
 struct TimedOut {
     campaign::Attempt running;
     std::vector<campaign::Attempt> queued;
@@ -34,13 +34,13 @@ struct TimedOut {
     double seconds = 0;
 };
 
-/// Given back unfinished.
+/// Event: a worker returned a case unfinished.
 struct GivenBack {
     campaign::Attempt attempt;
     std::string reason;
-    double seconds = 0;   ///< since it was begun, 0 where it never was
-    bool asked = true;    ///< the worker had been asked to stop
-    bool broken = false;  ///< a file could not be written, a full disk say: no other case would fare better
+    double seconds = 0;   ///< since the case began; 0: it was never begun
+    bool asked = true;    ///< the worker had received a request to stop
+    bool broken = false;  ///< a file could not be written (a full disk): every other case would meet the same error
 };
 
 struct Finished {
@@ -53,23 +53,23 @@ struct Heartbeat {
     double progress = 0;
 };
 
-/// Something the user should know: which worker is waited for, which output was forgiven.
+/// Event: a message for the user, such as the worker that the run waits for, or output that was ignored.
 struct Remark {
     std::string text;
 };
 
-/// A request to stop: politely (first time) or at once (again).
+/// Event: a request to stop. The first one lets cases be saved, the second one stops at once.
 struct Interrupted {
     bool at_once = false;
-    bool goes_on = false;  ///< not the user: a system that will let it go on later
+    bool goes_on = false;  ///< from a batch system, which will continue the run later, not from the user
 };
 
 using PoolEvent = std::variant<Finished, Heartbeat, Lost, TimedOut, GivenBack, Remark, Interrupted>;
 
-/// Where the next case goes.
+/// Place for the next case.
 struct Place {
     std::size_t worker = 0;
-    std::shared_ptr<const campaign::Computer> computer;  ///< what it will be computed by
+    std::shared_ptr<const campaign::Computer> computer;  ///< program and machine that will compute it
 };
 
 class Crew {
@@ -79,22 +79,24 @@ public:
     Crew& operator=(const Crew&) = delete;
     virtual ~Crew() = default;
 
-    /// So many cases wait: workers are started for them as far as there may be more. They take cases once ready.
+    /// Starts workers for the waiting cases, up to the largest number of workers. A worker takes cases once it is
+    /// ready.
     virtual void expect(std::size_t cases) = 0;
-    /// So many cases wait still, after what could be handed out was. Cores that are left over then may go to cases that
-    /// run, those with most left of their predicted seconds first; a crew that knows of none takes no notice.
+    /// Gives idle cores to running cases, those with most predicted seconds left first. Called with the number of cases
+    /// that still wait after all places are filled. A crew without idle cores ignores it.
     using SecondsLeft = std::function<double(const campaign::Attempt&)>;
     virtual void share_cores(std::size_t waiting, const SecondsLeft& left) {
         static_cast<void>(waiting), static_cast<void>(left);
     }
-    /// Where a case can go now, if anywhere. Short cases queue up behind a running one. Good until wait().
+    /// Returns a place for a case, if there is one now. Short cases queue behind a running one. The place is valid
+    /// until wait().
     [[nodiscard]] virtual std::optional<Place> place_for(double predicted_seconds) = 0;
     virtual void give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) = 0;
-    /// The next event, or nothing: at the end of the time, or when a worker has become ready for its first case.
+    /// Returns the next event. Empty: the time ended, or a worker became ready for its first case.
     [[nodiscard]] virtual std::optional<PoolEvent> wait(std::chrono::milliseconds at_most) = 0;
-    /// Asks workers to finish or give back what they have and take nothing more.
+    /// Requests that workers finish or give back their cases. They receive no further case.
     virtual void retire() = 0;
-    /// Ends all workers now; what they were computing is lost.
+    /// Ends all workers at once. Their running cases are lost.
     virtual void dismiss() = 0;
 };
 

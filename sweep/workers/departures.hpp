@@ -1,5 +1,5 @@
-// Processes that no longer count, until they are gone: each is asked to end, then killed. Seconds are on any clock that
-// only grows.
+// Processes that the pool has given up, until they have ended: each receives TERM, later KILL. Times are seconds of any
+// clock that never goes back.
 #pragma once
 
 #include "sweep/workers/process.hpp"
@@ -12,17 +12,18 @@ namespace grainsweep::workers {
 
 class Departures {
 public:
-    /// To be asked at once, or, where it was not launched by another program, killed at once. A launcher is asked
-    /// first, so that it ends what it launched.
+    /// Kills a process at once. A process started by a launcher receives TERM first, so that the launcher ends its own
+    /// children.
     void hurry(std::shared_ptr<Process> child, bool launched, double now);
-    /// To end by itself; asked and killed where it takes its time.
+    /// Lets a process end by itself. It receives TERM, then KILL, if it takes too long.
     void let_go(std::shared_ptr<Process> child, double now);
     void keep_time(double now);
-    /// Processes that are ending still use the machine, but one that cannot be ended must not keep its place.
+    /// Returns how many of these processes still occupy a worker's place. A process that cannot be ended does not keep
+    /// its place for ever.
     [[nodiscard]] std::size_t places_taken(double now) const;
-    /// Ends all of these and those on their way out, and waits for it. A launcher has things to do after its worker has
-    /// ended (srun gives its part of the machine back), so all are waited for, asked by a signal, and killed last. What
-    /// cannot even be killed (it waits for a dead file server) is left behind.
+    /// Ends these processes and all that are already ending, and waits for them. A launcher still has work after its
+    /// worker has ended (srun returns its part of the machine), so it is waited for first, then receives TERM, and KILL
+    /// last. A process that cannot be killed (it waits for a dead file server) is left behind.
     void end_all(std::vector<std::shared_ptr<Process>> children);
 
 private:

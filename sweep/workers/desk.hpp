@@ -1,5 +1,5 @@
-// A worker's dealings with its main program: questions come in, signs of life, answers and what is given back go out.
-// Reading, signals and the clock have threads of their own, so that they are attended to in the middle of a case.
+// Messages between a worker and its main program. Cases come in; heartbeats, answers and returned cases go out.
+// Reading, signals and the clock have threads of their own, so that they are served while a case is computed.
 #pragma once
 
 #include "sweep/workers/message.hpp"
@@ -14,15 +14,16 @@
 
 namespace grainsweep::workers {
 
-/// Why a worker is to end.
+/// Reason why a worker must end.
 enum class Ending {
     none,
     asked,    ///< the main program wrote stop
-    signal,   ///< a signal that asks a process to end
+    signal,   ///< a signal that requests the end of a process
     silence,  ///< no message from the main program for too long
 };
 
-/// Belongs to the thread that computes, which makes it. Blocks the signals it waits for: make it before any thread.
+/// Desk of the thread that computes, which makes it. It blocks the signals that it waits for, so make it before any
+/// other thread starts.
 class Desk {
 public:
     struct Limits {
@@ -33,20 +34,20 @@ public:
     Desk(const Desk&) = delete;
     Desk& operator=(const Desk&) = delete;
 
-    /// Says that the worker is ready, and starts to listen.
+    /// Sends that the worker is ready, and starts to read.
     void open(const campaign::Computer& computer);
-    /// The next question; nothing once the worker is to end.
+    /// Returns the next case; empty once the worker must end.
     [[nodiscard]] std::optional<Run> next();
     void begin(const campaign::Attempt& attempt, bool resumed);
-    /// The case under way makes headway.
+    /// Stores the progress of the running case, for the heartbeats.
     void advanced(double progress);
     [[nodiscard]] Ending ending() const { return ending_; }
-    /// Ends the case under way.
+    /// Sends the answer of the running case.
     void answer(Done done);
     void give_back();
-    /// Gives back everything, for the reason that a file could not be written, and ends the process.
+    /// Gives back all cases because a file could not be written, and ends the process.
     [[noreturn]] void break_off(std::string reason);
-    /// Gives back what was never begun and ends the process.
+    /// Gives back the cases that were never begun, and ends the process.
     [[noreturn]] void close();
 
 private:
@@ -61,7 +62,7 @@ private:
 
     Limits limits_;
     clockid_t computing_{};  ///< processor time of the thread that computes
-    std::mutex mutex_;       ///< of all that follows but the atomics
+    std::mutex mutex_;       ///< guards all members below except the atomics
     std::condition_variable changed_;
     std::deque<Run> questions_;
     std::optional<campaign::Attempt> running_;

@@ -1,4 +1,4 @@
-// Workers that end before they begin a case: after several in a row the launcher is wrong, not the case.
+// Counter of workers that end before they begin a case. Several in a row mean that the launcher fails, not the case.
 #pragma once
 
 #include <optional>
@@ -11,19 +11,19 @@ class FruitlessLaunches {
 public:
     explicit FruitlessLaunches(const std::vector<std::string>& argv);
 
-    /// A worker began its first case.
+    /// Resets the counter: a worker began its first case.
     void fruitful();
-    /// A worker ended before it began a case. One that was killed says less about the launcher. Where others work on,
-    /// the next launch waits for a while, longer each time; returns what is to be said about it, once. Without others
-    /// no worker can be had: why().
+    /// Counts a worker that ended before it began a case. A killed worker counts less. If other workers run, the next
+    /// launch is delayed, longer each time; returns a message about it, once. If there are no others, no worker can be
+    /// started and why() gives the reason.
     [[nodiscard]] std::optional<std::string> ended(const std::string& reason, bool killed, std::size_t others,
                                                    double now);
-    /// The same of one that could not even be launched: another try at once would end alike.
+    /// Counts a worker that could not be launched at all. An immediate retry would fail in the same way.
     [[nodiscard]] std::optional<std::string> not_launched(const std::string& reason, std::size_t others, double now);
-    /// No other launch can do better.
+    /// Stops all launches.
     void give_up(const std::string& reason);
     [[nodiscard]] bool waits(double now) const { return now < not_before_; }
-    /// Why no worker can be had at all; empty: one can.
+    /// Returns the reason why no worker can be started; empty: workers can be started.
     [[nodiscard]] const std::string& why() const { return why_; }
     [[nodiscard]] const std::string& command() const { return command_; }
 

@@ -10,7 +10,7 @@
 //          close 7 SUM                      ended 7 9 33 SUM <log>   its status as of waitpid(2), the last it wrote
 //          lease                                                     to standard error
 //
-// `close`: the worker's pipes are closed; its end is still told. End of file in either direction means that the other
+// `close`: the worker's pipes are closed; `ended` still follows. End of file in either direction means that the other
 // side is gone.
 #pragma once
 
@@ -23,7 +23,7 @@
 namespace grainsweep::workers::frames {
 
 inline constexpr std::int64_t host_protocol = 2;
-/// Bytes that one frame carries.
+/// Largest number of bytes in one frame.
 inline constexpr std::size_t longest_piece = std::size_t{64} << 10U;
 
 using WorkerNumber = std::uint64_t;
@@ -36,7 +36,7 @@ struct Start {
 };
 struct Piece {
     WorkerNumber worker = 0;
-    std::string_view bytes;  ///< good during the call
+    std::string_view bytes;  ///< valid during the call
 };
 struct Signal {
     WorkerNumber worker = 0;
@@ -48,11 +48,11 @@ struct Close {
 struct Ended {
     WorkerNumber worker = 0;
     int status = 0;
-    std::string_view log;  ///< good during the call
+    std::string_view log;  ///< valid during the call
 };
-/// Of the main program `lease`, of a host `alive`: it lives.
+/// Heartbeat: `lease` of the main program, `alive` of a host.
 struct Beat {};
-/// A line before a host's first frame: its launcher's, which may greet.
+/// Line before a host's first frame, written by its launcher.
 struct Greeting {
     std::string_view line;
 };
@@ -60,7 +60,7 @@ using Frame = std::variant<Hello, Start, Piece, Signal, Close, Ended, Beat, Gree
 
 void add_hello(std::string& to);
 void add_start(std::string& to, WorkerNumber worker);
-/// Longer ones in several frames.
+/// Appends the bytes as one frame, or as several if they are longer than longest_piece.
 void add_piece(std::string& to, WorkerNumber worker, std::string_view bytes);
 void add_signal(std::string& to, WorkerNumber worker, int number);
 void add_close(std::string& to, WorkerNumber worker);
@@ -68,17 +68,17 @@ void add_ended(std::string& to, WorkerNumber worker, int status, std::string_vie
 inline constexpr std::string_view lease_frame = "lease\n";
 inline constexpr std::string_view alive_frame = "alive\n";
 
-/// Puts frames together from what a pipe brings, and never keeps more than one.
+/// Reader that assembles frames from the pieces of a pipe. It never stores more than one frame.
 class Reader {
 public:
     enum class Side {
-        main_program,  ///< reads what a host wrote: greetings until it says what it is
-        host,          ///< reads what the main program wrote
+        main_program,  ///< reads the output of a host: greetings until the host names itself
+        host,          ///< reads the output of the main program
     };
     explicit Reader(Side side) : greeted_(side == Side::host) {}
 
-    /// Calls `take(frame)` for every frame that is complete. Returns false at what is no frame: what follows has no
-    /// meaning.
+    /// Calls `take(frame)` for every complete frame. Returns false at an invalid frame; the bytes after it are not
+    /// read.
     template <class Take>
     [[nodiscard]] bool feed(std::string_view piece, Take&& take) {
         std::string joined;
@@ -101,7 +101,7 @@ public:
 
 private:
     static constexpr std::size_t nonsense = static_cast<std::size_t>(-1);
-    /// Bytes of the frame that begins here; 0: not complete yet.
+    /// Returns the bytes of the frame that begins here; 0: it is not complete yet.
     std::size_t parse(std::string_view text, Frame& frame);
 
     bool greeted_;

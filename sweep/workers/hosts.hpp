@@ -1,4 +1,4 @@
-// The hosts of a pool: when one is launched, given up and replaced, and on which a worker is started.
+// Hosts of a pool: decides when a host is launched, given up and replaced, and which host starts a worker.
 #pragma once
 
 #include "sweep/workers/departures.hpp"
@@ -31,16 +31,17 @@ public:
 
     Hosts(EventLoop& loop, HostPlan plan, Listener listener);
 
-    /// On the host with the fewest, a new one where there may be more; nullptr: none can be had now.
+    /// Starts a worker on the host with the fewest workers, or on a new host if more are allowed. Returns nullptr if
+    /// there is none now.
     [[nodiscard]] std::shared_ptr<Process> start_worker();
     void lease();
-    /// Gives up hosts that are not ready or not heard of in time.
+    /// Gives up hosts that are not ready in time or are silent for too long.
     void keep_time();
-    /// Asks for no more workers: a host that ends now needs no replacement and no remark.
+    /// Stops replacing hosts: a host that ends from now on needs no replacement and no message.
     void retire() { retired_ = true; }
-    /// Waits for these workers a moment, then ends all hosts; they end what is left of their workers.
+    /// Waits a moment for these workers, then ends all hosts. The hosts end their remaining workers.
     void end_all(std::vector<std::shared_ptr<Process>> workers);
-    /// Why no host can be had at all; empty: one can.
+    /// Returns the reason why no host can be started; empty: hosts can be started.
     [[nodiscard]] const std::string& why() const { return fruitless_.why(); }
 
 private:
@@ -53,7 +54,7 @@ private:
     Listener listener_;
     std::vector<std::shared_ptr<RemoteHost>> hosts_;
     FruitlessLaunches fruitless_;
-    int unsound_ = 0;  ///< hosts lost because a frame was not as it was written
+    int unsound_ = 0;  ///< hosts lost because of a damaged frame
     Departures leaving_;
     bool retired_ = false;
 };

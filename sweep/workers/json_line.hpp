@@ -1,6 +1,6 @@
-// JSON on one line, in one form: members in the order in which `describe` names them. Written and read without a
-// document in between, several times as fast as with one. What an object holds is described once, for both directions:
-// `describe(it, object)` calls it(name, value) for every member.
+// JSON on one line, in one form: members in the order in which `describe` names them. Reading and writing need no
+// document tree, which makes them several times faster. The members of an object are described once for both
+// directions: `describe(it, object)` calls it(name, value) for every member.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -30,22 +30,23 @@ public:
         line += ':';
         put(value);
     }
-    /// A member that is not always there.
+    /// Writes a member if `there` is true.
     template <class T>
     void maybe(std::string_view name, const T& value, bool there) {
         if (there) (*this)(name, value);
     }
 
-    /// A member whose value has a word.
+    /// Writes a member as the word of its value.
     template <class T, class ToWord>
     void word(std::string_view name, const T& value, ToWord to_word, const auto&) {
         (*this)(name, to_word(value));
     }
 
-    /// What is no UTF-8 (of a library's error text, say) is replaced.
+    /// Writes a text. Bytes that are not UTF-8, such as in a library's error text, are replaced.
     void put(std::string_view text) { campaign::append_json(line, text); }
     void put(const std::string& text) { put(std::string_view(text)); }
-    /// With ".0" where it is whole, so that the reader can tell a count from a real; what is not finite is null.
+    /// Writes a real number: with ".0" if it is whole, so that a reader can distinguish it from a count; null if it is
+    /// not finite.
     void put(double number) { campaign::append_json(line, number); }
     void put(std::integral auto number) { line += campaign::JsonText(number).text(); }
     void put(const Value& value);
@@ -82,7 +83,8 @@ private:
     }
 };
 
-/// Blanks may stand between words. Every function throws std::invalid_argument where something else stands there.
+/// Reader of such a line. Blanks may stand between words. Every function throws std::invalid_argument at an unexpected
+/// character.
 class Reader {
 public:
     explicit Reader(std::string_view line) : rest_(line) {}
@@ -143,7 +145,7 @@ public:
         expect("}");
     }
     void expect(std::string_view word);
-    /// Nothing but blanks is left.
+    /// Returns whether only blanks are left.
     [[nodiscard]] bool over();
     [[noreturn]] static void refuse(const char* what);
 
@@ -163,7 +165,7 @@ private:
     [[nodiscard]] static bool is_number(std::string_view word);
 
     std::string_view rest_;
-    char last_ = '\0';  ///< taken
+    char last_ = '\0';  ///< last character read
 };
 
 }  // namespace grainsweep::workers::json_line

@@ -1,4 +1,4 @@
-// Puts lines together from what a pipe brings, piece by piece, and never keeps more than one line.
+// Buffer that assembles lines from the pieces of a pipe. It never stores more than one line.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@ namespace grainsweep::workers {
 
 class LineBuffer {
 public:
-    /// `longest`: bytes of a line without its end.
+    /// `longest`: largest number of bytes of a line without its line end.
     explicit LineBuffer(std::size_t longest) : longest_(longest) {}
 
-    /// Calls `take(line)` for every line that `piece` completes, without its end, until it returns false. Returns
-    /// false where a line grows too long: the buffer is then of no further use.
+    /// Calls `take(line)` for every line that `piece` completes, without its line end, until `take` returns false.
+    /// Returns false if a line is too long; the buffer must not be used any more.
     template <class Take>
     [[nodiscard]] bool feed(std::string_view piece, Take&& take) {
         while (!piece.empty()) {
@@ -38,7 +38,7 @@ public:
         return true;
     }
 
-    /// A line without its end, so far.
+    /// Returns the incomplete last line.
     [[nodiscard]] std::string_view begun() const { return begun_; }
 
 private:

@@ -1,4 +1,4 @@
-// Memory that a process of this machine can have.
+// Memory that a process can use on this machine.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -7,10 +7,10 @@
 
 namespace grainsweep::workers {
 
-/// Bytes: the least of the machine's memory, the limits of the control groups (v1, v2) that this process is in, and its
-/// own limit of address space; infinite where none can be read. `root`: where /proc and /sys/fs/cgroup are found.
+/// Returns the bytes: the smallest of the machine's memory, the limits of the control groups (v1, v2) of this process,
+/// and its own limit of address space; infinite if none can be read. `root`: parent folder of /proc and /sys/fs/cgroup.
 [[nodiscard]] double memory_room(const std::string& root = "");
-/// The same for the workers of a campaign; infinite where a launcher starts them elsewhere.
+/// Returns the same for the workers of a campaign; infinite if a launcher starts them on other machines.
 [[nodiscard]] double memory_room(const campaign::Campaign& campaign);
 
 }  // namespace grainsweep::workers

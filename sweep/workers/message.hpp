@@ -57,12 +57,13 @@
 
 namespace grainsweep::workers {
 
-/// Grows whenever a message changes its meaning.
+/// Number of the protocol; raised whenever a message changes its meaning.
 inline constexpr std::int64_t protocol_number = 3;
-/// Bytes of a line. A million samples of a series do not fit; what does not fit is `rejected` by its worker.
+/// Largest number of bytes of a line. A million samples of a series do not fit. A worker reports a case that does not
+/// fit as `rejected`.
 inline constexpr std::size_t longest_line = std::size_t{16} << 20U;
 
-/// Of one case.
+/// Largest number of threads of one case.
 inline constexpr std::int64_t most_threads = 4096;
 
 struct Run {
@@ -92,7 +93,7 @@ struct Ready {
 struct Begun {
     static constexpr std::string_view word = "begun";
     campaign::Attempt attempt;
-    bool resumed = false;  ///< from a checkpoint
+    bool resumed = false;  ///< the case continues from a checkpoint
 };
 struct Alive {
     static constexpr std::string_view word = "alive";
@@ -112,10 +113,10 @@ struct GiveBack {
 };
 using ToBoss = std::variant<Ready, Begun, Alive, Done, GiveBack>;
 
-/// One line without its end. Numbers round-trip; NaN travels as null.
+/// Returns the message as one line without its line end. Numbers keep all their bits; NaN becomes null.
 [[nodiscard]] std::string encode(const ToWorker& message);
 [[nodiscard]] std::string encode(const ToBoss& message);
-/// Throws std::invalid_argument on anything that is not a message.
+/// Returns the message of a line. Throws std::invalid_argument if the line is no message.
 [[nodiscard]] ToWorker decode_to_worker(std::string_view line);
 [[nodiscard]] ToBoss decode_to_boss(std::string_view line);
 

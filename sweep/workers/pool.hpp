@@ -1,5 +1,5 @@
-// Worker processes of this same executable, kept for the whole campaign: when one is started, given up and replaced.
-// How a process is started, read and ended is child.hpp's, what a worker may write when worker_state.hpp's.
+// Pool of worker processes of this executable, which live for the whole campaign. It decides when a worker is started,
+// given up and replaced. child.hpp starts, reads and ends the processes; worker_state.hpp has the protocol.
 #pragma once
 
 #include "sweep/workers/crew.hpp"
@@ -17,12 +17,12 @@ struct PoolOptions {
     std::vector<std::string> launcher;  ///< argv prefix; empty: the workers are children of this process
     std::vector<std::string> command;   ///< executable, "worker", its arguments
     std::size_t workers = 1;
-    /// Where given, the launcher starts so many hosts instead, and each runs an equal part of the workers. `{host}` in
-    /// a word of the launcher is the host's number, from 1 on.
+    /// Number of hosts. If given, the launcher starts hosts instead of workers, and each host runs an equal part of the
+    /// workers. `{host}` in the launcher's command is replaced by the number of the host, from 1.
     std::optional<std::int64_t> hosts;
     std::vector<std::string> host_command;  ///< executable, "host", its arguments
-    /// Threads of every case; none: one, and the cores of a node that no case needs go to those that run there. A node
-    /// has as many cores for the campaign as workers.
+    /// Threads of every case. Empty: one, and idle cores of a node go to the cases that run there. The campaign may use
+    /// as many cores of a node as it has workers there.
     std::optional<std::int64_t> threads = 1;
     TimeLimits limits;  ///< in this process's running time
     Expected expected;
@@ -30,9 +30,9 @@ struct PoolOptions {
 
 class Pool final : public Crew {
 public:
-    /// Launches lazily: as many workers as cases wait, again after one was lost, and after a pause where several could
-    /// not be started in a row while others work. expect() and wait() throw std::runtime_error where no worker can be
-    /// had at all.
+    /// Starts workers only as cases need them, and replaces lost ones. If several launches in a row fail while other
+    /// workers run, the next launch is delayed. expect() and wait() throw std::runtime_error if no worker can be
+    /// started.
     explicit Pool(PoolOptions options);
     ~Pool() override;
 

@@ -1,4 +1,4 @@
-// A worker of the pool: its process, what it may write, and what is said of it.
+// Worker of the pool: its process, the state of its protocol, and messages about it.
 #pragma once
 
 #include "sweep/workers/crew.hpp"
@@ -15,7 +15,7 @@
 namespace grainsweep::workers {
 
 struct PoolWorker {
-    static constexpr double beats_apart = 0.5;  ///< s, of those that are passed on
+    static constexpr double beats_apart = 0.5;  ///< s; heartbeats that come faster are not passed on
 
     PoolWorker(std::shared_ptr<Process> process, const Expected& expected, double now)
         : state(expected, now), child(std::move(process)) {}
@@ -24,12 +24,13 @@ struct PoolWorker {
     LineBuffer lines{longest_line};
     double beat = -beats_apart;  ///< when a heartbeat was last passed on
     bool stop_sent = false, remarked = false;
-    std::int64_t threads = 1;  ///< of its case, as it was last told
+    std::int64_t threads = 1;  ///< threads of its case, as last sent
 
     [[nodiscard]] std::string name() const;
-    /// What it had in hands, and the reason why it is gone with what it wrote last.
+    /// Returns the attempts that the lost worker had, why it ended, and the end of its log.
     [[nodiscard]] Lost account(double now, const std::string& reason) const;
-    /// Which worker is waited for: once, at half of its time. `command` started it.
+    /// Returns a message that the run waits for this worker: once, at half of its time limit. `command`: the command
+    /// that started it.
     [[nodiscard]] std::optional<std::string> overdue_remark(const TimeLimits& limits, double now,
                                                             const std::string& command);
 };

@@ -1,5 +1,5 @@
-// A process that computes, as the pool sees it: written to, read from, signalled, waited for. A child of this process
-// (child.hpp), or a worker on a host that passes its messages on (remote_host.hpp).
+// Interface of a worker process: write, read, signal, wait. It is a child of this process (child.hpp), or a worker on a
+// host that passes its messages on (remote_host.hpp).
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@ namespace grainsweep::workers {
 
 class Process {
 public:
-    /// `read` gets what comes through standard output, piece by piece; `ended` is called once, at its end of file.
-    /// Neither is called after close().
+    /// Listener to a process. `read` receives the standard output in pieces; `ended` is called once, at its end of
+    /// file. Neither is called after close().
     struct Listener {
         std::function<void(std::string_view piece)> read;
         std::function<void()> ended;
@@ -25,29 +25,29 @@ public:
     virtual ~Process() = default;
 
     virtual void listen(Listener listener) = 0;
-    /// Written as soon as the pipe takes it.
+    /// Writes a line as soon as the pipe accepts it.
     virtual void write(std::string line) = 0;
     [[nodiscard]] virtual bool everything_is_written() const = 0;
-    /// Its end is no longer waited for, nor anything it writes.
+    /// Stops waiting for the process and its output.
     virtual void close() = 0;
 
-    virtual void signal(int number) = 0;  ///< to all of its process group
+    virtual void signal(int number) = 0;  ///< sends a signal to its process group
     [[nodiscard]] virtual bool runs() = 0;
-    /// Waits until it has ended, or for so long.
+    /// Waits until the process has ended, for at most this time.
     virtual void wait(std::chrono::milliseconds at_most) = 0;
-    /// As of waitpid(2), once it has ended.
+    /// Returns its status as of waitpid(2), once it has ended.
     [[nodiscard]] virtual int status() const = 0;
-    /// How it ended, in words, once it has.
+    /// Returns how it ended, as a text, once it has.
     [[nodiscard]] virtual std::string end() const = 0;
-    /// Whether the host that ran it is gone, and it with it: no matter of what it computed.
+    /// Returns whether the process ended because its host was lost; its case is not the cause.
     [[nodiscard]] virtual bool lost_with_host() const { return false; }
-    /// It began a case: what started it works.
+    /// Reports that the process began a case, so its launcher works.
     virtual void was_fruitful() {}
-    /// Processes of one node have cores in common; 0: the node of this one.
+    /// Returns the number of its node. Processes of one node share cores. 0: the node of this process.
     [[nodiscard]] virtual std::size_t node() const { return 0; }
-    /// Tells it from others.
+    /// Returns its identifier.
     [[nodiscard]] virtual std::string id() const = 0;
-    /// The last it wrote to standard error, as far as known.
+    /// Returns the end of its standard error, as far as received.
     [[nodiscard]] virtual const std::string& log() = 0;
 };
 

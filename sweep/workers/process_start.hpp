@@ -1,5 +1,5 @@
-// How this program starts others, without a shell, each the head of a process group of its own; and what their ends
-// say.
+// Start of other programs without a shell, each in a process group of its own, and the interpretation of their exit
+// status.
 #pragma once
 
 #include <sys/types.h>
@@ -16,32 +16,34 @@ namespace grainsweep::workers {
 
 struct ProcessStart {
     std::vector<std::string> argv;              ///< argv[0]: a path, as found by find_program
-    std::vector<std::string> environment = {};  ///< "NAME=value", over those of this process
+    std::vector<std::string> environment = {};  ///< "NAME=value"; these override the variables of this process
     std::array<int, 3> streams = {-1, -1, -1};  ///< descriptors of its standard streams; -1: /dev/null
     int folder = -1;                            ///< descriptor of its working folder; -1: that of this process
-    std::optional<std::int64_t> memory = {};    ///< RLIMIT_AS, bytes; otherwise as here
-    std::optional<std::int64_t> file = {};      ///< RLIMIT_FSIZE, bytes; otherwise as here
-    /// Somebody else's: it gets no other descriptor of this process and no blocked or ignored signal, writes no core
-    /// and is killed when this process ends. This thread waits until the program runs or has failed to. Another process
-    /// is not waited for, because a dead file server may keep it for ever: one that cannot be executed says so in its
-    /// standard error and ends.
+    std::optional<std::int64_t> memory = {};    ///< RLIMIT_AS, bytes; empty: as this process
+    std::optional<std::int64_t> file = {};      ///< RLIMIT_FSIZE, bytes; empty: as this process
+    /// The program is not grainsweep. It inherits no other descriptor and no blocked or ignored signal, writes no core
+    /// file, and is killed when this process ends. The calling thread waits until the program runs or has failed to
+    /// start. It does not wait for grainsweep's own processes, because a dead file server could block it for ever: one
+    /// that cannot be executed writes the reason to its standard error and ends.
     bool stranger = false;
 };
 
-/// -1, and why in `error`, where there is no process to be had or a stranger's program cannot be executed.
+/// Starts a process and returns its id. Returns -1 and sets `error` if the system has no process left, or if a
+/// stranger's program cannot be executed.
 [[nodiscard]] pid_t start_process(const ProcessStart& start, std::error_code& error);
 
-/// The path of a program: as it is where the word has a slash, else by the search path. Empty: there is none that may
-/// be executed.
+/// Returns the path of a program: the word itself if it has a slash, else the result of the search path. Empty: no
+/// executable file is found.
 [[nodiscard]] std::string find_program(const std::string& word);
 
-// What the status of a process that ended, as of waitpid(2), says.
-/// The signal that ended it, also where a launcher or a shell reports it by an exit code; 0: none.
+// Interpretation of a status of waitpid(2).
+/// Returns the signal that ended the process, also if a launcher or a shell reports the signal as an exit code; 0:
+/// none.
 [[nodiscard]] int ending_signal(int status);
-/// Whether it was ended by something else than what it computed: by a signal that asks, or by Slurm, which says in the
-/// log where it ends a step for its time limit, a pre-emption or a failed node.
+/// Returns whether the process was ended from outside: by a signal that requests an end, or by Slurm. Slurm writes to
+/// the log that it ends a step because of a time limit, a pre-emption or a failed node.
 [[nodiscard]] bool ended_from_outside(int status, std::string_view log);
-/// "worker ended by signal 9 (Killed)".
+/// Returns a text such as "worker ended by signal 9 (Killed)".
 [[nodiscard]] std::string describe_end(std::string_view what, int status);
 
 }  // namespace grainsweep::workers

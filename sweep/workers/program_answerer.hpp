@@ -1,4 +1,4 @@
-// A case answered by a program: its folder, its process, what it left. See campaign/program.hpp for what a program is.
+// Answers a case by running a program (campaign/program.hpp): its folder, its process, its results.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -14,13 +14,13 @@
 
 namespace grainsweep::workers {
 
-/// Called about ten times a second; returns false to give the case up unfinished.
+/// Function called about ten times a second; returns false to interrupt the case.
 using Pulse = std::function<bool()>;
 
 struct ProgramOptions {
-    std::filesystem::path folder;         ///< holds the folders of cases
-    std::optional<double> limit_seconds;  ///< of a case
-    /// Where given, the case's folder is this one, and stays.
+    std::filesystem::path folder;         ///< parent of the folders of cases
+    std::optional<double> limit_seconds;  ///< time limit of a case
+    /// Folder of the case, which is kept; empty: a temporary one.
     std::filesystem::path keep = {};
 };
 
@@ -33,8 +33,8 @@ public:
     ProgramAnswerer& operator=(const ProgramAnswerer&) = delete;
     ~ProgramAnswerer();
 
-    /// Nothing where `pulse` gave it up. Throws BrokenWorld where the program cannot be started here, is of another
-    /// version than the campaign was read with, or a file cannot be written.
+    /// Returns the answer; empty if `pulse` interrupted the case. Throws BrokenWorld if the program cannot be started
+    /// here, has another version than when the campaign was read, or a file cannot be written.
     [[nodiscard]] std::optional<campaign::CaseResult> answer(const campaign::Case& question, std::int64_t attempt,
                                                              const Pulse& pulse);
 
@@ -51,27 +51,28 @@ private:
     ProgramGuard& guard_;
     std::unique_ptr<ProgramLines> lines_;
     bool version_checked_ = false;
-    std::int64_t kept_ = -1;  ///< folders of failed cases that are there; -1: not counted yet
+    std::int64_t kept_ = -1;  ///< existing folders of failed cases; -1: not counted yet
 };
 
-/// What the version command says, asked in an empty folder. Throws std::runtime_error with a sentence.
+/// Returns the output of the program's version command, run in an empty folder. Throws std::runtime_error with a
+/// sentence.
 [[nodiscard]] std::string ask_version(const campaign::Program& program, ProgramGuard& guard);
-/// Why the program's command cannot be started here; empty: it can.
+/// Returns why the program's command cannot be started here; empty: it can.
 [[nodiscard]] std::string why_not_here(const campaign::Program& program);
 
-/// Puts a program and its files where workers find them by the name of its scene; and finds it there. Files larger
-/// than a megabyte stay on disk. Both throw BrokenWorld.
+/// Stores a program and its files under the name of its scene; staged_program() returns the stored program. Files
+/// larger than a megabyte stay in their place on disk. Both throw BrokenWorld.
 void stage_program(const campaign::Program& program, const std::filesystem::path& cases);
 [[nodiscard]] std::shared_ptr<const campaign::Program> staged_program(std::string_view scene,
                                                                       const std::filesystem::path& cases);
-/// Removes it again, and the folder where nothing else is in it.
+/// Removes a stored program, and the folder if it is then empty.
 void unstage_program(std::string_view scene, const std::filesystem::path& cases);
 
-/// The program's argv and environment for a case; for a program that stays alive `question` is nullptr.
+/// Returns the program's arguments for a case. `question` is nullptr for a program that stays alive.
 [[nodiscard]] std::vector<std::string> program_argv(const campaign::Program& program, const campaign::Case* question);
 [[nodiscard]] std::vector<std::string> program_environment(const campaign::Program& program,
                                                            const campaign::Case* question);
-/// Files and, with a question, templates and inputs.json.
+/// Writes the program's files into the folder and, for a case, its templates and inputs.json.
 void fill_folder(const ProgramFolder& folder, const campaign::Program& program, const campaign::Case* question);
 
 }  // namespace grainsweep::workers

@@ -1,6 +1,6 @@
-// A process of its own that outlives the one that starts programs: when that one ends, however it ends, what it started
-// is asked to end (TERM) and killed after a grace. It finds the present process group by number, and what left the
-// group by a variable of its environment, so that nothing survives a worker that was killed.
+// Guard: a process that outlives the process that starts programs. When that process ends in any way, the guard sends
+// TERM to its programs, and KILL after a grace. It finds the running process group by its number, and processes that
+// left the group by a variable in their environment. So no program survives a worker that was killed.
 #pragma once
 
 #include <sys/types.h>
@@ -14,21 +14,22 @@ inline constexpr double program_grace = 2;
 
 class ProgramGuard {
 public:
-    /// Forks the guard: make it before any thread. From then on orphans of programs become children of this process.
+    /// Forks the guard; call it before any other thread starts. From then on orphans of programs become children of
+    /// this process.
     ProgramGuard();
     ProgramGuard(const ProgramGuard&) = delete;
     ProgramGuard& operator=(const ProgramGuard&) = delete;
     ~ProgramGuard();
 
-    /// The process group that now runs; 0: none.
+    /// Sets the process group that runs now; 0: none.
     void watch(pid_t group);
-    /// "NAME=value", to stand in the environment of every program.
+    /// Returns "NAME=value", which the environment of every program must contain.
     [[nodiscard]] const std::string& mark() const { return mark_; }
 
 private:
     struct Shared;
     Shared* shared_ = nullptr;
-    int pipe_ = -1;  ///< closed by the end of this process
+    int pipe_ = -1;  ///< the end of this process closes it
     std::string mark_;
 };
 

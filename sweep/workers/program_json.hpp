@@ -1,5 +1,5 @@
-// JSON that a program wrote. What double precision cannot hold, a key twice and nesting beyond any use are refused
-// where they stand.
+// JSON that a program wrote. Numbers outside double precision, repeated keys and too deep nesting are refused, with
+// their place.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,16 +10,17 @@
 
 namespace grainsweep::workers {
 
-/// The text is no JSON at all.
+/// Error: the text is not JSON.
 class NoJson : public std::invalid_argument {
 public:
     using std::invalid_argument::invalid_argument;
 };
 
-/// `name` stands before the place in sentences. Throws NoJson; std::invalid_argument for JSON that is not to be used.
+/// Returns the parsed text. `name` stands before the place in messages. Throws NoJson, or std::invalid_argument for
+/// JSON that is refused.
 [[nodiscard]] nlohmann::json program_json(std::string_view text, const std::string& name);
 
-/// A value as a message shows it, printable and short.
+/// Returns a value as a short printable text for messages.
 [[nodiscard]] std::string shown_json(const nlohmann::json& value);
 
 }  // namespace grainsweep::workers

@@ -20,28 +20,28 @@ public:
     enum class Go { on, stop, give_up };
     enum class Heard { reply, end, ended_before, too_long, unasked, stopped, given_up };
 
-    /// Starts it in a folder of its own within `cases`. Throws BrokenWorld where it cannot be started.
+    /// Starts the program in a folder of its own within `cases`. Throws BrokenWorld if it cannot be started.
     ProgramLines(const campaign::Program& program, const std::filesystem::path& cases, ProgramGuard& guard);
     ProgramLines(const ProgramLines&) = delete;
     ProgramLines& operator=(const ProgramLines&) = delete;
 
-    /// Writes the question and waits for its line, without its end in line(). `look` is called about ten times a
-    /// second. `ended_before`: it had ended when it was asked.
+    /// Writes the question and waits for the line of the answer; line() returns it without its line end. `look` is
+    /// called about ten times a second. `ended_before`: the program had ended before the question.
     [[nodiscard]] Heard ask(const std::string& question, const std::function<Go()>& look);
     [[nodiscard]] const std::string& line() const { return line_; }
 
-    /// Ends it; then result() is known.
+    /// Ends the program. Then result() is valid.
     void end();
-    /// Whether it ends by itself, at once, with exit code 0.
+    /// Returns whether the program ends by itself, at once, with exit code 0.
     [[nodiscard]] bool ended_well();
     [[nodiscard]] const ProgramEnd& result() const { return process_->result(); }
     [[nodiscard]] double cpu_seconds() const { return process_->cpu_seconds(); }
-    /// Bytes resident at once so far; NaN where the system does not say.
+    /// Returns the largest resident memory so far in bytes; NaN if the system does not report it.
     [[nodiscard]] double peak_memory() const;
     [[nodiscard]] const ProgramFolder& folder() const { return folder_; }
 
 private:
-    /// A line of what has come; nothing: it is not whole yet.
+    /// Takes a line from the received bytes. Returns false if no line is complete yet.
     [[nodiscard]] bool take_line();
     [[nodiscard]] std::optional<Heard> exchange(std::string_view& rest, int milliseconds);
     void shorten_log() const;

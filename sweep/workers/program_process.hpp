@@ -1,4 +1,4 @@
-// A program's process: ended with all of its children.
+// Process of a program, which is ended together with all its children.
 #pragma once
 
 #include "sweep/files/descriptor.hpp"
@@ -11,33 +11,34 @@
 
 namespace grainsweep::workers {
 
-/// How a program ended and what it took, its children that it waited for included.
+/// End of a program and the resources it used, including the children that it waited for.
 struct ProgramEnd {
     int status = 0;  ///< as of waitpid(2)
     double cpu_seconds = 0;
-    /// Bytes resident at once, of the program or one of its children. Not below what this process itself took: the
-    /// kernel counts from the fork.
+    /// Largest resident memory in bytes, of the program or one of its children. Never below the memory of this process,
+    /// because the kernel counts from the fork.
     double peak_memory = 0;
 };
 
 class ProgramProcess {
 public:
-    /// Throws std::runtime_error with a sentence where it cannot be started; BrokenWorld where this machine has no
-    /// process or descriptor left.
+    /// Starts the program. Throws std::runtime_error with a sentence if it cannot be started, BrokenWorld if this
+    /// machine has no process or descriptor left.
     ProgramProcess(ProcessStart start, ProgramGuard& guard);
     ProgramProcess(const ProgramProcess&) = delete;
     ProgramProcess& operator=(const ProgramProcess&) = delete;
-    /// Ends it and all of its children.
+    /// Ends the program and all its children.
     ~ProgramProcess();
 
     [[nodiscard]] pid_t id() const { return id_; }
-    /// Waits for its end so long; whether it has ended.
+    /// Waits for its end, for at most this time. Returns whether it has ended.
     [[nodiscard]] bool wait(double seconds);
-    /// TERM to its group, KILL after a grace or when `hurry` says so; whatever survived goes with it.
+    /// Sends TERM to its group, then KILL after a grace or when `hurry` returns true. Ends processes that left the
+    /// group, too.
     void end(const std::function<bool()>& hurry = {});
-    /// After its end.
+    /// Returns the result; valid after its end.
     [[nodiscard]] const ProgramEnd& result() const { return result_; }
-    /// So far, of a running one.
+    /// Returns the processor seconds so far of a running program.
     [[nodiscard]] double cpu_seconds() const;
 
 private:
@@ -46,7 +47,7 @@ private:
 
     ProgramGuard& guard_;
     pid_t id_ = -1;
-    files::Descriptor ended_;  ///< can be read from once it has ended
+    files::Descriptor ended_;  ///< becomes readable once the process has ended
     bool reaped_ = false;
     ProgramEnd result_;
 };

@@ -1,4 +1,4 @@
-// What a program measured: from the files it left or the line it replied, to observations, checked.
+// Converts the files or the line that a program wrote to checked observations.
 #pragma once
 
 #include "sweep/campaign/program.hpp"
@@ -9,17 +9,18 @@
 
 namespace grainsweep::workers {
 
-/// What a program said of its case.
+/// Results of a program for its case.
 struct ProgramReply {
     enum class Kind { measured, unstable, rejected };
     Kind kind = Kind::measured;
-    std::string message;  ///< why, in one sentence that names file and place; empty where it measured
+    std::string message;  ///< why there are no observations, in one sentence with file and place; empty: there are
     Observations observations;
 };
 
-/// From the case's folder, once the program has ended well.
+/// Returns the results in the case's folder, once the program has ended successfully.
 [[nodiscard]] ProgramReply results_in(const ProgramFolder& folder, const campaign::Program& program);
-/// From a line of the protocol "lines". Throws std::invalid_argument with a sentence where it is no such line.
+/// Returns the results in a line of the protocol "lines". Throws std::invalid_argument with a sentence for an invalid
+/// line.
 [[nodiscard]] ProgramReply results_in(std::string_view line, std::string_view case_id,
                                       const campaign::Program& program);
 

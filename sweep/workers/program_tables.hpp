@@ -1,5 +1,5 @@
-// Numbers in the tables and in the standard output that a program left. What is not there or no number throws
-// std::invalid_argument with a sentence that names file and place.
+// Numbers in the tables and the standard output of a program. A missing or invalid number throws std::invalid_argument
+// with a sentence that names file and place.
 #pragma once
 
 #include "sweep/workers/program_folder.hpp"
@@ -12,22 +12,23 @@
 namespace grainsweep::workers {
 
 inline constexpr std::size_t largest_table = std::size_t{64} << 20U;
-/// Values of a series or profile.
+/// Largest number of values of a series or profile.
 inline constexpr std::size_t most_values = 500'000;
 
-/// Columns with names: in the first line without #, or, where that has numbers only, in the last line with # before it.
-/// Empty lines and other lines that begin with # are passed over.
+/// Table whose columns have names. The names stand in the first line without #, or, if that line has only numbers, in
+/// the last line with # before it. Empty lines and other lines that begin with # are skipped.
 class ProgramTable {
 public:
     /// `separator`: comma, semicolon, tab or blank.
     ProgramTable(std::string file, std::string text, std::string separator);
 
-    /// Of a row from 0, or from the end where it is negative.
+    /// Returns a value. Rows count from 0; negative rows count from the end.
     [[nodiscard]] double value(const std::string& column, std::int64_t row) const;
     [[nodiscard]] std::vector<double> column(const std::string& name) const;
 
 private:
-    /// The names of the columns, from the first line without # or the remark before it; whether it was the line.
+    /// Takes the names of the columns from the first line without #, or from the remark before it. Returns whether the
+    /// line had the names.
     bool take_head(std::string_view line, std::string_view remark);
     [[nodiscard]] std::vector<std::string> cells_of(std::string_view line) const;
     [[nodiscard]] std::size_t place_of(const std::string& column) const;
@@ -38,7 +39,7 @@ private:
     std::vector<std::string_view> rows_;
 };
 
-/// The first group of the expression in the last line of standard output that has it.
+/// Returns the first group of the regular expression in the last matching line of standard output.
 [[nodiscard]] double last_in_output(const ProgramFolder& folder, const std::string& pattern);
 
 }  // namespace grainsweep::workers

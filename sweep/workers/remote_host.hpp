@@ -1,5 +1,5 @@
-// A host (host.hpp) as the main program sees it: one process, launched once, that runs workers on another node and
-// passes their messages on over its standard input and output. Its workers are processes like any other to the pool.
+// Host (host.hpp) as the main program sees it: one process, launched once, that runs workers on another node. It passes
+// their messages on through its standard input and output. The pool treats these workers like any other process.
 #pragma once
 
 #include "sweep/workers/child.hpp"
@@ -20,34 +20,35 @@ class HostedWorker;
 class RemoteHost final : public std::enable_shared_from_this<RemoteHost> {
 public:
     struct Listener {
-        std::function<void(std::string_view line)> greeting;  ///< lines of its launcher, before its own first message
-        /// It is gone, for this reason, and so are its workers: each has been told.
+        std::function<void(std::string_view line)> greeting;  ///< called for lines of its launcher, before the host's
+                                                              ///< first message
+        /// Called when the host and its workers are lost, after each worker has been notified.
         std::function<void(std::string reason)> gone;
     };
 
     RemoteHost(std::shared_ptr<Child> process, std::size_t number, double now);
 
     void listen(Listener listener, std::function<double()> clock);
-    /// Its workers' first lines may come later: a host that is not ready yet is written to all the same.
+    /// Starts a worker. A host that is not ready yet receives the message when it is.
     [[nodiscard]] std::shared_ptr<HostedWorker> start_worker();
-    /// Tells it that the main program lives.
+    /// Sends a heartbeat of the main program.
     void lease();
-    /// Nothing it writes counts from now on; all its workers have ended.
+    /// Ignores all further output of the host and counts all its workers as ended.
     void give_up(const std::string& reason);
 
     [[nodiscard]] const std::shared_ptr<Child>& process() const { return process_; }
     [[nodiscard]] std::size_t number() const { return number_; }
     [[nodiscard]] bool is_ready() const { return ready_; }
-    /// One of its workers began a case.
+    /// Returns whether one of its workers began a case.
     [[nodiscard]] bool was_of_use() const { return of_use_; }
-    /// It ended because a frame, in either direction, was not as it was written.
+    /// Returns whether it ended because a frame was damaged, in either direction.
     [[nodiscard]] bool was_unsound() const { return unsound_; }
-    /// Not known to have ended.
+    /// Returns the number of its workers that have not ended.
     [[nodiscard]] std::size_t workers() const { return workers_.size(); }
     [[nodiscard]] double launched() const { return launched_; }
-    /// Seconds since it last wrote.
+    /// Returns the seconds since its last output.
     [[nodiscard]] double silence(double now) const { return now - heard_; }
-    /// Seconds for which it has not ended a worker that it was told to kill; 0: there is none.
+    /// Returns the seconds since the oldest request to kill a worker that has not ended yet; 0: there is none.
     [[nodiscard]] double owes_an_end(double now) const;
 
 private:
@@ -62,7 +63,7 @@ private:
     std::function<double()> clock_;
     frames::Reader reader_{frames::Reader::Side::main_program};
     std::map<frames::WorkerNumber, std::weak_ptr<HostedWorker>> workers_;
-    std::map<frames::WorkerNumber, double> killed_;  ///< when, of those whose end is not told yet
+    std::map<frames::WorkerNumber, double> killed_;  ///< time of the request, for workers whose end is not reported yet
     frames::WorkerNumber last_ = 0;
     bool ready_ = false, of_use_ = false, unsound_ = false, gone_ = false;
     double launched_, heard_;
@@ -78,7 +79,7 @@ public:
     void close() override;
     void signal(int number) override;
     [[nodiscard]] bool runs() override { return runs_; }
-    void wait(std::chrono::milliseconds) override {}  // its end is told, and only then is it waited for
+    void wait(std::chrono::milliseconds) override {}  // the host reports its end
     [[nodiscard]] int status() const override { return status_; }
     [[nodiscard]] std::string end() const override;
     [[nodiscard]] bool lost_with_host() const override { return !host_end_.empty(); }
@@ -97,7 +98,7 @@ private:
     bool runs_ = true, closed_ = false;
     int status_ = 0;
     std::string log_;
-    std::string host_end_;  ///< why its host is gone
+    std::string host_end_;  ///< why its host was lost
 };
 
 }  // namespace grainsweep::workers

@@ -1,7 +1,7 @@
-// The child's side: reads questions from standard input, computes them one by one, writes answers to standard output.
-// Ends when asked to stop, when its main program is gone or wrote nonsense, when it gets no message for too long, and
-// on the signals by which systems ask a process to end (TERM, INT, HUP, USR1, USR2): then it saves a checkpoint and
-// gives back what it has.
+// Main function of a worker process: reads cases from standard input, computes them one by one, and writes answers to
+// standard output. It ends on a request to stop, when its main program is gone or sends an invalid message, when it
+// receives no message for too long, and on the signals TERM, INT, HUP, USR1 and USR2. Before it ends, it saves a
+// checkpoint and gives back its cases.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -14,25 +14,26 @@
 namespace grainsweep::workers {
 
 struct WorkerOptions {
-    std::filesystem::path artefacts;  ///< folder of shared starting states and checkpoints; empty: keep none
+    std::filesystem::path artefacts;  ///< folder of shared starting states and checkpoints; empty: none are stored
     double checkpoint_seconds = 60;   ///< a running case is saved this often
-    /// Silence after which the main program is taken for dead, in this process's running time. Longer than a main
-    /// program is stopped in earnest (Ctrl-Z); one whose end can be seen is not waited for.
+    /// Silence after which the main program counts as dead, in running time of this process. Longer than users usually
+    /// stop a main program (Ctrl-Z). If the end of the main program is visible, the worker ends at once.
     double lease_seconds = 600;
-    double finish_seconds = 3;  ///< after the main program's stop, a case that can finish within this does
-    /// After a stop or a signal, a case that has not come to a point where it can be saved is given back as it is.
+    double finish_seconds = 3;  ///< after a request to stop, a case that can finish within this time is finished
+    /// Time after a stop or a signal at which a case is given back without a checkpoint, if none could be saved until
+    /// then.
     double give_back_seconds = 20;
-    std::filesystem::path cases;  ///< its cases are answered by programs, and this holds their folders; empty: none is
-    std::optional<double> limit_seconds;  ///< of a case that a program answers
+    std::filesystem::path cases;          ///< folder of the cases that programs answer; empty: no program
+    std::optional<double> limit_seconds;  ///< time limit of a case that a program answers
     campaign::Computer computer;          ///< reported to the main program; checkpoints of another build are not used
 };
 
-/// The name under which an unfinished case's state is kept beside the database.
+/// Returns the key of an unfinished case's checkpoint, which is stored beside the database.
 [[nodiscard]] std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program);
-/// The case of a checkpoint of any build and instruction path; nothing where the key is of something else.
+/// Returns the case of a checkpoint of any build and instruction path; empty if the key is of something else.
 [[nodiscard]] std::optional<campaign::CaseId> checkpointed_case(std::string_view key);
 
-/// Returns the exit code of the process.
+/// Runs a worker. Returns the exit code of the process.
 int work(const WorkerOptions& options);
 
 }  // namespace grainsweep::workers

@@ -1,5 +1,5 @@
-// The main program's side of the protocol: what a worker may write when, and what it has in hands. The state diagram is
-// in message.hpp. Pure: sees no process, pipe or clock; `now` is seconds on any clock that only grows.
+// The main program's side of the protocol: the messages that a worker may send, and the cases that it has. The state
+// diagram is in message.hpp. Pure: uses no process, pipe or clock; `now` is seconds of any clock that never goes back.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -18,28 +18,28 @@
 
 namespace grainsweep::workers {
 
-/// What a worker must be, and may measure.
+/// Expected program of a worker, and its observables.
 struct Expected {
-    campaign::Computer program;            ///< version, commit and build count, where it runs does not
+    campaign::Computer program;            ///< version, commit and build are compared, the machine is not
     std::vector<ObservableSpec> measured;  ///< observables of the scene
 };
 
-/// Seconds.
+/// Time limits, in seconds.
 struct TimeLimits {
-    std::optional<double> wall;          ///< of one case, from when it is begun
+    std::optional<double> wall;          ///< of one case, from its beginning
     std::optional<double> start = 300;   ///< until a worker is ready
-    std::optional<double> silence = 60;  ///< of a worker that owes something
+    std::optional<double> silence = 60;  ///< without a message, while one is expected
 };
 
 class WorkerState {
 public:
     enum class Phase { starting, serving, leaving, dismissed };
 
-    /// A line before `ready` that is no message: the launcher's, which may greet.
+    /// Line before `ready` that is no message; it comes from the launcher.
     struct Banner {
         std::string line;
     };
-    /// What is against the protocol; the worker must be dismissed.
+    /// Violation of the protocol; the worker must be dismissed.
     struct Complaint {
         std::string why;
     };
@@ -48,33 +48,33 @@ public:
 
     WorkerState(const Expected& expected, double now) : expected_(&expected), launched_(now), received_at_(now) {}
 
-    /// A line of its standard output.
+    /// Interprets a line of the worker's standard output.
     [[nodiscard]] Meaning receive(std::string_view line, double now);
-    /// A case is written to it. Only while it serves.
+    /// Records that a case is sent to the worker. Only in the state `serving`.
     void give(const campaign::Attempt& attempt, double now);
-    /// `stop` is written to it.
+    /// Records that `stop` is sent to the worker.
     void stop();
-    /// It is being ended; nothing it writes counts from now on.
+    /// Records that the worker is being ended; its further output is ignored.
     void dismiss() { phase_ = Phase::dismissed; }
 
     enum class Overdue { nothing, start, silence, answer };
     [[nodiscard]] Overdue overdue(const TimeLimits& limits, double now) const;
-    /// Seconds since it last wrote while something was expected of it.
+    /// Returns the seconds since its last message, counted while a message is expected.
     [[nodiscard]] double silence(double now) const;
 
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] bool was_ready() const { return computer_ != nullptr; }
     [[nodiscard]] bool has_begun_any() const { return has_begun_any_; }
-    /// What it was given and has not answered or given back.
+    /// Returns the number of its cases that are neither answered nor given back.
     [[nodiscard]] std::size_t cases() const { return waiting_.size() + (running_ ? 1 : 0); }
-    /// Of those the one it has begun.
+    /// Returns the case that it has begun, if any.
     [[nodiscard]] std::optional<campaign::Attempt> running() const;
     [[nodiscard]] bool resumed() const { return running_ && running_->resumed; }
     [[nodiscard]] double running_seconds(double now) const { return running_ ? now - running_->began : 0; }
-    /// And the others.
+    /// Returns its cases that are not begun.
     [[nodiscard]] std::vector<campaign::Attempt> waiting() const { return {waiting_.begin(), waiting_.end()}; }
     [[nodiscard]] const std::shared_ptr<const campaign::Computer>& computer() const { return computer_; }
-    /// What it wrote before it was ready, shortened.
+    /// Returns its output before it was ready, shortened.
     [[nodiscard]] const std::string& banner() const { return banner_; }
     [[nodiscard]] double launched() const { return launched_; }
 
@@ -98,13 +98,13 @@ private:
     std::deque<campaign::Attempt> waiting_;  ///< in the order in which it will begin them
     bool has_begun_any_ = false;
     double launched_ = 0, received_at_ = 0;
-    double second_ = 0;  ///< heartbeats are counted from here
+    double second_ = 0;  ///< start of the second in which heartbeats are counted
     int heartbeats_ = 0;
     std::string banner_;
     std::size_t banner_bytes_ = 0;
 };
 
-/// Not longer than `bytes`, cut between characters.
+/// Returns the text cut to at most `bytes`, between characters.
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t bytes);
 
 }  // namespace grainsweep::workers

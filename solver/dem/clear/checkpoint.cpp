@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0009ULL;  // "grnscl", version 9
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000aULL;  // "grnscl", version 10
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(ids(), particles::gone);
@@ -74,7 +74,7 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
         write_wall(contacts.wall.wall(), [&out](const auto& value) { out.put(value); });
         out.put(contacts.near);
         out.put(contacts.built);
-        if (contacts.wall.free()) out.put(contacts.pose_when_built);
+        if (contacts.wall.free()) out.put(contacts.pose_when_built), out.put(contacts.wall.energy());
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;
@@ -142,7 +142,11 @@ void ClearEngine::restore_walls(ByteReader& in) {
         in.get(contacts.built);
         in.require(std::isfinite(contacts.built));
         contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
-        if (contacts.wall.free()) in.get(contacts.pose_when_built);
+        if (contacts.wall.free()) {
+            geometry::BodyEnergy energy;
+            in.get(contacts.pose_when_built), in.get(energy);
+            contacts.wall.take_energy(energy);
+        }
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;

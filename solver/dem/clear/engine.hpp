@@ -1,12 +1,12 @@
-// The clear engine: double precision, one loop per idea.
+// The clear engine: double precision, one loop for each step of the method.
 //
 //     v += dt/2 (f/m + g);  x += dt v;  w += dt/2 T/I;   f, T from (x, v, w);   v, w: second half     I = 2/5 m R^2
 //
-// Velocity Verlet; the contact laws see half-step velocities, as in LIGGGHTS 3.8. At the start, and when walls are
-// set, forces are evaluated once at full-step velocities without moving the contacts' memories.
+// Velocity Verlet. The contact laws use half-step velocities, as in LIGGGHTS 3.8. At the start, and when walls are set,
+// forces are evaluated once at full-step velocities without advancing the memories of contacts.
 //
-// Particles are sorted in cells whenever the neighbour list is rebuilt, and it is rebuilt when any particle or wall
-// has moved half the skin since: no contact is ever missed. Sums run in a fixed order: same input, same bits.
+// The neighbour list is rebuilt when any particle or wall has moved by half the skin, so no contact is missed. A
+// rebuild sorts the particles by cell. Sums have a fixed order: the same input gives the same bits.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -21,24 +21,26 @@
 
 namespace grainsweep::dem::clear {
 
-/// One wall, the particles that may touch it before the next rebuild, ascending, and its contacts.
+/// Wall, with the particles that may touch it before the next rebuild, ascending, and its contacts.
 struct WallContacts {
     MovingWall wall;
-    std::vector<std::unique_ptr<const AnyContact>> laws;  // of its contacts with each kind of spheres
-    std::vector<double> stiffness;                        // likewise, over that of the first pair of kinds
+    std::vector<std::unique_ptr<const AnyContact>> laws;  // one for its contacts with each kind of spheres
+    std::vector<double> stiffness;                        // likewise, divided by the stiffness of the first pair of
+                                                          // kinds
     std::vector<std::uint32_t> near;
-    double built = 0;  // wall time when they were listed, s
+    double built = 0;  // wall time of the last listing, s
     geometry::Pose pose_when_built;
-    // Of the last evaluation, in the order of `near`; several of one particle are told apart by their normals.
+    // Of the last evaluation, in the order of `near`; several touches of one particle are distinguished by their
+    // normals.
     std::vector<WallTouch> touches;
-    std::vector<double> memory;  // all components of a touch, then those of the next
+    std::vector<double> memory;  // all components of one touch, then of the next
     WallLoad load;               // about load_about
     Vec3 load_about{};
 };
 
 class ClearEngine final : public Engine {
 public:
-    /// `equal`: all radii are the same, which shortens reduced masses and radii (to other last digits).
+    /// `equal`: all radii are the same; reduced masses and radii then have simpler formulas (with other last digits).
     ClearEngine(const Setup& setup, const Method& method, const AnyContact& laws, bool equal);
 
     void run(std::int64_t steps) override;
@@ -57,6 +59,9 @@ public:
     void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(true, into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_.at(wall).wall.wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
+    [[nodiscard]] const geometry::BodyEnergy& wall_energy(std::size_t wall) const override {
+        return walls_.at(wall).wall.energy();
+    }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -67,9 +72,9 @@ private:
 
     [[nodiscard]] double radius(std::size_t i) const { return p_.radius[i]; }
     [[nodiscard]] bool mobile(std::size_t i) const { return p_.inverse_mass[i] > 0; }
-    /// 1/m of a mobile particle.
+    /// Returns 1/m of a mobile particle.
     [[nodiscard]] double inverse_mass(std::size_t i) const { return p_.inverse_mass[i]; }
-    /// m*; a frozen partner has infinite mass.
+    /// Returns m*; a frozen partner has infinite mass.
     [[nodiscard]] double reduced_mass(std::size_t i, std::size_t j) const {
         if (!equal_) return 1 / (p_.inverse_mass[i] + p_.inverse_mass[j]);
         return mobile(i) && mobile(j) ? mass_ / 2 : mass_;
@@ -77,7 +82,7 @@ private:
     [[nodiscard]] double effective_radius(std::size_t i, std::size_t j) const {
         return equal_ ? radius(i) / 2 : radius(i) * radius(j) / (radius(i) + radius(j));
     }
-    /// 1/(1/I_i + 1/I_j) about the contact; a frozen partner does not turn.
+    /// Returns 1/(1/I_i + 1/I_j) about the contact; a frozen partner does not rotate.
     [[nodiscard]] double rolling_inertia(std::size_t i, std::size_t j) const {
         const double ri = radius(i), rj = radius(j);
         return inertia_about_contact / (inverse_mass(i) / (ri * ri) + inverse_mass(j) / (rj * rj));
@@ -85,14 +90,14 @@ private:
     [[nodiscard]] std::size_t pair(std::size_t i, std::size_t j) const { return place_of_pair(p_.kind[i], p_.kind[j]); }
     [[nodiscard]] const AnyContact& laws_of(std::size_t i, std::size_t j) const { return *laws_[pair(i, j)]; }
     [[nodiscard]] particles::Radii radii() const { return {0, p_.radius}; }
-    /// Ids given so far.
+    /// Returns the number of ids given so far.
     [[nodiscard]] std::size_t ids() const { return spheres_at_start_ + added_.size(); }
-    /// dF_n/dd over normal_slope(), by the radius of the contact.
+    /// Returns dF_n/dd divided by normal_slope(), from the radius of the contact.
     [[nodiscard]] double slope_over(double contact_radius) const { return linear_ ? 1 : contact_radius; }
-    /// Components of a contact's memory.
+    /// Returns the number of components of a contact's memory.
     [[nodiscard]] std::size_t memories() const { return pairs_.components(); }
 
-    // forces.cpp; `advance`: memories of contacts move on by a time step
+    // forces.cpp; `advance`: memories of contacts advance by a time step
     void evaluate(bool advance);
     [[nodiscard]] std::size_t find_touching(std::size_t first, std::size_t last);
     void pair_contacts(bool advance);
@@ -146,7 +151,7 @@ private:
 
     ContactTable table_;
     std::vector<std::unique_ptr<const AnyContact>> laws_;  // of pairs of kinds
-    std::vector<double> stiffness_;                        // normal_slope() of these over that of the first
+    std::vector<double> stiffness_;                        // normal_slope() of these divided by that of the first pair
     bool spins_, rolls_, reaches_, remembers_separation_;  // traits of the laws
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
@@ -156,15 +161,15 @@ private:
     Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
     bool equal_;
-    double mass_ = 0;                           // of all particles, if equal_
-    Radii radii_;                               // of all spheres, those to come too
+    double mass_ = 0;                           // mass of every particle, if equal_
+    Radii radii_;                               // of all spheres, including those that may be added
     std::pair<double, double> inverse_masses_;  // least and largest of them
     bool linear_;                               // the normal law
     double deepest_in_walls_;
-    double swing_factor_;  // dt^2 normal_slope() of the first pair: times stiffest_ the square of a contact's phase per
-                           // step
+    double swing_factor_;  // dt^2 normal_slope() of the first pair; times stiffest_ it is the square of a contact's
+                           // phase per step
     double skin_;
-    double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m
+    double beyond_pair_ = 0, beyond_wall_ = 0;  // largest gap of a lasting contact, m
     std::vector<double> densities_;             // of kinds of contact, kg/m3
     std::vector<ToCome> to_come_;
     std::size_t spheres_at_start_;
@@ -187,21 +192,21 @@ private:
     std::vector<double> memory_before_;      // likewise
 
     std::int64_t wall_steps_ = 0;
-    bool displaced_ = false;  // a particle has moved half the skin, or is not a number
+    bool displaced_ = false;  // a particle has moved by half the skin, or its position is NaN
     double largest_overlap_ = 0;
     double peak_overlap_ = 0;          // largest of it so far
-    double largest_wall_overlap_ = 0;  // over the diameter
-    double stiffest_ = 0;              // largest slope_over() a mass of a contact times its stiffness
+    double largest_wall_overlap_ = 0;  // divided by the diameter
+    double stiffest_ = 0;              // largest slope_over() of a contact divided by its mass, times its stiffness
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set
     double work_of_shaking_ = 0;   // J, since the start
-    double work_of_wrapping_ = 0;  // J, potential energy lost by stepping back through periodic faces
+    double work_of_wrapping_ = 0;  // J, potential energy lost when particles wrap at periodic faces
     EnergyBalance balance_;
     std::string fault_;
     Work work_;
 };
 
-/// A valid setup (make_engine has checked it) -> an engine at step 0.
+/// Returns an engine at step 0 for a valid setup, which make_engine has checked.
 [[nodiscard]] std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& method);
 
 }  // namespace grainsweep::dem::clear

@@ -1,4 +1,4 @@
-// Bytes of an engine's state, written and read by the same list of what there is.
+// Bytes of an engine's state, written and read by the same list of members.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ private:
     ByteReader in_;
 };
 
-/// What must agree between the engine that wrote and the one that reads; compared by its bytes, padding too.
+/// Data that must agree between the writing and the reading engine; compared by its bytes, including padding.
 struct Seal {
     std::uint64_t format;
     std::int32_t width;
@@ -58,6 +58,7 @@ struct Seal {
     Shaking shaking;
     double rest_speed;
 };
-inline constexpr std::uint64_t checkpoint_format = 0x6773776565703135;  // changes with the layout of what follows
+inline constexpr std::uint64_t checkpoint_format = 0x6773776565703136;  // changes with the layout of the bytes that
+                                                                        // follow
 
 }  // namespace grainsweep::dem::fast

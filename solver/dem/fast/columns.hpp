@@ -1,4 +1,4 @@
-// The memory behind a Field: aligned columns, grown at list rebuilds only, all named once for checkpoints.
+// Memory of a Field: aligned columns that grow at list rebuilds only, named once for checkpoints.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@
 
 namespace grainsweep::dem::fast {
 
-/// Memory on a page boundary, of large pages where it is large and the system grants them: a sweep touches so many
-/// columns that small pages would miss the translation buffers.
+/// Allocates memory on a page boundary, with large pages for large sizes if the system grants them. A sweep uses so
+/// many columns that small pages would miss the translation buffers.
 [[nodiscard]] void* allocate(std::size_t bytes);
 void give_back(void* memory) noexcept;
 
-/// Array of trivial values on a cache-line boundary, new entries zero. Growing keeps what is there.
+/// Array of trivial values on a cache-line boundary. Growing keeps the entries; new ones are zero.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class Column {
@@ -52,7 +52,7 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// The two lists and the contacts of one range of particles.
+/// Inner list, outer list and contacts of one range of particles.
 struct PairColumns {
     std::int32_t histories = 0;  ///< history columns in use; the others stay empty
     Column<Place> inner_first, inner_second;
@@ -65,21 +65,22 @@ struct PairColumns {
     Column<float> outer_reach;
     Column<std::uint16_t> outer_touching;
 
-    /// Points the lists of the field at these.
+    /// Points the lists of the field at these columns.
     void bind_pairs(Field& f) const;
     /// Makes room for `pairs` in both lists.
     void hold_pairs(std::size_t pairs);
     /// Makes room for `pairs` in the outer list alone.
     void hold_outer(std::size_t pairs);
-    /// What a sweep wrote becomes what the next one reads.
+    /// Makes the histories that a sweep wrote the input of the next sweep.
     void swap_histories(Field& f);
 };
 
-/// Everything a Field points to, and what only rebuilding needs.
+/// All columns of a Field, and those used only by a rebuild.
 struct Columns : PairColumns {
-    float exchanged[histories_at_most] = {};  ///< factors of histories when the particles of a contact change places
+    float exchanged[histories_at_most] = {};  ///< factors of histories when the two particles of a contact are
+                                              ///< exchanged
     Column<Record> records, records_next;
-    bool residuals_apart = true;  ///< where radii differ; otherwise forces move with the records when these are sorted
+    bool residuals_apart = true;  ///< true if radii differ; otherwise forces are sorted together with the records
     Column<Residual> residuals, residuals_next;
     Column<Force> forces, forces_next;
     Column<std::int32_t> id, id_next;
@@ -89,9 +90,9 @@ struct Columns : PairColumns {
     Column<std::int32_t> column[3];
     Column<float> column_radius, column_mobile;
     Column<std::int32_t> cell_start, cell_of, place;  ///< place: where a particle went, -1: removed
-    Column<std::int32_t> cell_counts;                 ///< of each part in turn
-    Column<std::int32_t> advanced, advanced_before;   ///< where some are held, see Field
-    Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second changed places
+    Column<std::int32_t> cell_counts;                 ///< of one part after the other
+    Column<std::int32_t> advanced, advanced_before;   ///< used if some particles are held, see Field
+    Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second were exchanged
 
     Column<WallSums> wall_sums;
     Column<WallSegment> segments;
@@ -106,11 +107,11 @@ struct Columns : PairColumns {
     void bind(Field& f) const;
     /// Makes room for `particles` and `walls`.
     void hold_particles(std::size_t particles, std::size_t walls);
-    /// The same, and for what rebuilding needs beside them.
+    /// Makes room for `pairs`, including the columns used only by a rebuild.
     void hold_lists(std::size_t pairs);
     void hold_wall_contacts(std::size_t contacts);
     void hold_touches(std::size_t touches);
-    /// Lists the particles that are advanced: all but those with is_held(index).
+    /// Lists the particles that are advanced: all except those with is_held(index).
     template <class IsHeld>
     void list_advanced(Field& f, IsHeld is_held) {
         const auto n = static_cast<std::size_t>(f.count);

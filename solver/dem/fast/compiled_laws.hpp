@@ -1,5 +1,5 @@
-// The kernels of every compiled combination of laws, and the choice among them.
-// Included by the files of the instruction paths; internal linkage on purpose.
+// Kernels of every compiled combination of laws, and the choice among them.
+// The files of the instruction paths include this file; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/search.hpp"

@@ -1,22 +1,23 @@
-// Contacts over the lanes of a vector, branch-free: their kinematics, and the laws (solver/dem/laws) applied to them.
-// All numbers in the engine's units, where dt = 1. A law that is absent is absent from the code.
-// Included by the files of the instruction paths, after their lanes; internal linkage on purpose.
+// Contacts in the lanes of a vector, without branches: their kinematics, and the laws (solver/dem/laws). All numbers
+// are in the engine's units, where dt = 1. Absent laws generate no code. The files of the instruction paths include
+// this file after their lanes; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/lane_arithmetic.hpp"
 
-// Each phase is a function of its own: the compiler sees loops it can schedule, a sampling profiler sees the phases.
+// Makes each phase a function of its own, so that the compiler can schedule its loops and a sampling profiler shows the
+// phases.
 #define GRAINSWEEP_PHASE __attribute__((noinline))
 
 namespace grainsweep::dem::fast {
 namespace {
 
-/// What a compiled kernel is for.
+/// Traits of a compiled kernel.
 template <class Combination, bool Unequal, bool Holds>
 struct Kernel {
     using Laws = typename Combination::template Contact<F>;
     static constexpr bool unequal = Unequal;
-    /// Some particles may be held, frozen or at rest.
+    /// Whether some particles may be held (frozen or at rest).
     static constexpr bool holds = Holds;
     static constexpr bool spin = Laws::spin;
     static constexpr bool rolls = Laws::rolls;
@@ -25,13 +26,13 @@ struct Kernel {
     static constexpr bool acts_apart = Laws::acts_apart;
 };
 
-/// Lanes that may be contacts, before laws that reach beyond touch decide.
+/// Returns the lanes that may be contacts, before laws that reach beyond touch decide.
 template <class Kernel>
 GRAINSWEEP_LANES M may_touch(F depth) {
     return broadcast(Kernel::reaches ? -1e30f : 0.0f) < depth;
 }
 
-/// Kinematics of one contact per lane, with the words of dem::Touch.
+/// Kinematics of one contact per lane, with the names of dem::Touch.
 template <class Kernel, Partner of>
 struct Meeting {
     static constexpr Partner partner = of;
@@ -45,20 +46,20 @@ struct Meeting {
     F radius;                        ///< wall: R
     F closeness;                     ///< pair: (R_i + R_j)^2 - r^2
     F inverse_distance, difference;  ///< pair: 1/r, R_i - R_j
-    V3 turning;                      ///< w_i - w_j; where rolling is resisted
+    V3 turning;                      ///< w_i - w_j; only with rolling resistance
     F rolling_inertia;               ///< 1/(sum of 1/(m R^2)); likewise
-    F time_step;                     ///< 1: memories advance, 0: forces only
+    F time_step;                     ///< 1: memories advance; 0: only forces are computed
 
     F effective_radius, normal_velocity, root, root_of_root;
     V3 slip;
 
-    /// Completes what follows from the rest.
+    /// Computes the derived members.
     GRAINSWEEP_LANES void derive() {
         effective_radius = root_radius * root_radius;
         normal_velocity = dot(velocity, normal);
         const F squeezed = max(overlap, broadcast(1e-30f));
         if constexpr (!Kernel::reaches) overlap = squeezed;
-        // sqrt(R* d) and its root: one by the divider, one by multiplications, so that both units work
+        // sqrt(R* d) and its root: one uses the divider, the other multiplications, so that both units work in parallel
         root = root_radius * sqrt(squeezed);
         root_of_root = root * inverse_root(root);
         // tangential velocity at the contact: v - v_n n - surface x n
@@ -76,7 +77,7 @@ struct Meeting {
             return d.general * inverse_root(max(inverse_masses, broadcast(1e-12f)));
         else if constexpr (Kernel::unequal)
             return d.general * inverse_root(inverse_masses);
-        else if constexpr (Kernel::holds)  // of mass 1, or one of them frozen
+        else if constexpr (Kernel::holds)  // masses are 1, or one particle is frozen
             return select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
         else
             return d.of_pair;
@@ -111,12 +112,13 @@ GRAINSWEEP_LANES void store_memory(float* const* column, std::int64_t at, const 
     for (int a = 0; a < Kernel::histories; ++a) store(column[a] + at, memory[a]);
 }
 
-/// Force on i, direction of the torques n x (-F_t), minus the rolling moment on i; zero in lanes that do not touch.
+/// Result of the laws: force on i, direction of the torques n x (-F_t), minus the rolling moment on i; zero in lanes
+/// without contact.
 struct Outcome {
     V3 force, turn, rolling;
 };
 
-/// Updates the memory.
+/// Applies the laws and updates the memory.
 template <class Kernel, Partner partner>
 GRAINSWEEP_LANES Outcome respond(const typename Kernel::Laws& laws, Meeting<Kernel, partner>& m, F* memory) {
     m.derive();

@@ -1,7 +1,7 @@
-// Contacts of the mixed engine's present state, in SI and double precision, by the same laws.
+// Reader of the contacts of the mixed engine's present state, in SI and double precision, by the same laws.
 //
-// Positions are the exact integers that forces are computed from, springs those the last step left. Not part of a
-// step: evaluated on request only.
+// It uses the exact integer positions from which forces are computed, and the springs after the last step. It is no
+// part of a step.
 #pragma once
 
 #include <array>
@@ -19,30 +19,30 @@
 
 namespace grainsweep::dem::fast {
 
-/// Energy in contacts, J: the sum, and the sum of absolute values (cohesion stores less than nothing).
+/// Energy in contacts, J: the sum, and the sum of absolute values (the energy of cohesion is negative).
 struct StoredEnergy {
     double sum = 0;
     double squeezed = 0;
 };
 
-/// Laws of contacts between particles, of each pair of kinds at place_of_pair().
+/// Laws of the contacts of each pair of kinds, at place_of_pair().
 using PairContacts = std::vector<std::unique_ptr<const AnyContact>>;
 
 class ContactReader {
 public:
-    /// All views must outlive the reader. `motions` are at the full step in the order of the records, empty where only
-    /// energy is wanted; `before` are at the half step before. So the forces are the last step's.
+    /// All views must outlive the reader. `motions`: at the full step, in the order of the records; empty if only
+    /// energy is needed. `before`: at the half step before; if given, the forces are the forces of the last step.
     ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Velocities> motions, std::int32_t width, std::span<const ParkedContact> parked = {},
                   std::span<const Velocities> before = {});
 
-    /// Gives a contact of two particles at rest its overlap, force and torques.
+    /// Computes overlap, force and torques of a contact of two particles at rest.
     void stand_still(ParkedContact& contact) const;
     /// Appends the touching pairs, in list order, then the parked ones.
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w.
     void wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const;
-    /// The energy of all contacts.
+    /// Returns the energy of all contacts.
     [[nodiscard]] StoredEnergy stored(const Walls& walls) const;
 
 private:
@@ -50,10 +50,10 @@ private:
 
     [[nodiscard]] const AnyContact& laws_of(std::int32_t i, std::int32_t j) const;
     [[nodiscard]] double radius(std::int32_t i) const;
-    [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite where frozen
+    [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite if frozen
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
     [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const;
-    /// Calls visit(i, j, touch, memory) for the pairs that touch, with the geometry of the touch only.
+    /// Calls visit(i, j, touch, memory) for touching pairs; only the geometry of the touch is set.
     template <class Visit>
     void for_each_pair(Visit&& visit) const;
     /// Calls visit(i, touch, memory) for the particles that touch the wall.

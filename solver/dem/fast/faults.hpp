@@ -1,4 +1,4 @@
-// Why a state is not sound any more, in one sentence: what, where and when. Called once, when it happened.
+// Description of an unsound state in one sentence with place and time. Used once, when the fault occurs.
 #pragma once
 
 #include <string>
@@ -11,22 +11,22 @@
 
 namespace grainsweep::dem::fast {
 
-/// Overlaps over the smaller diameter; of walls over the diameter.
+/// Overlaps divided by the smaller diameter; for walls, by the diameter.
 struct SoundOverlaps {
     float pair = static_cast<float>(overlap_limit);
     float wall = static_cast<float>(overlap_limit);
 };
 
-/// Up to which a contact is both meant by the law and resolved by the time step.
+/// Returns the largest overlaps at which the law is valid and the time step resolves the contact.
 ///
-/// One of effective radius R* and reduced mass m* swings dt sqrt(S_n/m*), S_n = 2 E* sqrt(R* d), in one step; at
-/// largest_sound_swing d = (swing^2 m*/(2 E* dt^2))^2/R*. Of all contacts those of the smallest and lightest sphere in
-/// the stiffest contact come first.
+/// A contact of effective radius R* and reduced mass m* has the phase dt sqrt(S_n/m*) per step, S_n = 2 E* sqrt(R* d).
+/// It reaches largest_sound_swing at d = (swing^2 m*/(2 E* dt^2))^2/R*, first for the smallest and lightest sphere in
+/// the stiffest contact.
 [[nodiscard]] SoundOverlaps resolved_overlaps(const Setup& setup);
-/// Up to which a contact is meant by the law, or by the setup.
+/// Returns the largest overlaps at which the law is valid, or that the setup permits.
 [[nodiscard]] SoundOverlaps deepest_overlaps(const Setup& setup);
-/// Whether contacts beyond resolved_overlaps() may be sound: a small hard sphere sinks into a large soft one farther
-/// than it may into its like. Such contacts are judged one by one (unsound_contact).
+/// Returns whether contacts beyond resolved_overlaps() may be sound: a small hard sphere may sink deeper into a large
+/// soft sphere than into an equal one. Such contacts are judged individually (unsound_contact).
 [[nodiscard]] bool contacts_differ(const Setup& setup);
 
 /// Input of a description.
@@ -42,12 +42,12 @@ struct FaultView {
 };
 
 [[nodiscard]] std::string describe_fast_particle(const FaultView& view);
-/// Empty where no particle moves faster than `limit` (m/s).
+/// Returns a description of a particle faster than `limit` (m/s); empty: there is none.
 [[nodiscard]] std::string describe_faster_than(const FaultView& view, double limit);
-/// `what` is wrong, with particle number `i` of the records.
+/// Returns the description of the fault `what` of particle `i` of the records.
 [[nodiscard]] std::string describe(const FaultView& view, const std::string& what, std::int32_t i);
-/// The first contact, as forces were computed last, that is too deep or not resolved by the time step; empty: none.
-/// `advanced`: the particles have moved on by a step since.
+/// Returns a description of the first contact of the last force evaluation that is too deep or not resolved by the time
+/// step; empty: none. `advanced`: the particles have advanced by a step since then.
 [[nodiscard]] std::string unsound_contact(const FaultView& view, bool advanced);
 [[nodiscard]] std::string describe_overlap(const FaultView& view, const Tally& tally);
 

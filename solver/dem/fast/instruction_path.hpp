@@ -1,4 +1,4 @@
-// Which vector instructions a process uses: the kernels are compiled once for each path, chosen once per engine.
+// Choice of vector instructions: the kernels are compiled once for each path, and each engine uses one path.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -6,15 +6,16 @@
 
 namespace grainsweep::dem::fast {
 
-/// Whether this processor can run a path; `best` always.
+/// Returns whether this processor can run a path; always true for `best`.
 [[nodiscard]] bool supports(Method::Path path);
-/// What `best` means in this process: the widest path the processor has, unless prefer said otherwise.
+/// Returns the path that `best` means in this process: the widest one of the processor, unless prefer() has set
+/// another.
 [[nodiscard]] Method::Path best_path();
-/// From now on `best` means this path, which must be supported. For tests and benchmarks of the narrower ones; engines
-/// that exist keep theirs.
+/// Sets the path that `best` means; it must be supported. For tests and benchmarks of narrower paths. Existing engines
+/// keep their path.
 void prefer(Method::Path path);
 
-/// The kernels of a path (not `best`) for what a case needs.
+/// Returns the kernels of a path (not `best`) for the needs of a case.
 [[nodiscard]] const Kernels& kernels_of(Method::Path path, const Needs& needs);
 
 }  // namespace grainsweep::dem::fast

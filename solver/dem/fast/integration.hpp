@@ -1,7 +1,7 @@
-// Integration of particles whose forces are complete: leapfrog v(t+dt/2) = v(t-dt/2) + dt f/m, x(t+dt) = x(t) +
-// dt v(t+dt/2), the velocity Verlet whose contact law sees half-step velocities. What rounding drops is carried to the
-// next step: of position and velocity as left_over.hpp says, of the spin in the torque that is being gathered. Included
-// by the files of the instruction paths, after their lanes; internal linkage on purpose.
+// Integration of particles whose forces are complete: leapfrog v(t+dt/2) = v(t-dt/2) + dt f/m, x(t+dt) = x(t) + dt
+// v(t+dt/2), which is velocity Verlet with half-step velocities in the contact law. Rounding errors are carried to the
+// next step: of position and velocity as in left_over.hpp, of the spin in the sum of the torques. The files of the
+// instruction paths include this file after their lanes; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/contact.hpp"
@@ -9,11 +9,11 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-/// What integrating needs at hand.
+/// Constants and extremes of the integration.
 struct Stepper {
-    F8 turning;  ///< factor of force and torque besides 1/m
+    F8 turning;  ///< factor of force and torque in addition to 1/m
     F8 gravity;
-    F8 high, low;  ///< extremes of velocity and spin met
+    F8 high, low;  ///< extremes of velocity and spin
     F4 inverse_unit;
 };
 
@@ -23,7 +23,7 @@ GRAINSWEEP_LANES Stepper stepper(const Constants& c, const Tally& t) {
     return {load8(turning), load8(c.gravity), load8(t.velocity_high), load8(t.velocity_low), load4(c.inverse_unit)};
 }
 
-/// `may_be_held`: particles without inverse mass get no gravity.
+/// Advances one particle. `may_be_held`: particles with inverse mass 0 get no gravity.
 template <class Kernel, bool may_be_held>
 GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* left_over, Stepper& s) {
     const F8 inverse_mass = broadcast8(r.inverse_mass);
@@ -42,14 +42,14 @@ GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* left_over, 
         of_position = low(residue);
         of_velocity = join(high(residue), broadcast4(0.0f));
     } else {
-        of_position = load4(r.rest);  // its fourth lane, far below a unit, moves nothing
+        of_position = load4(r.rest);  // the fourth lane is far below a unit and has no effect
         of_velocity = fourths(of_position, sum);
     }
     change = fma(change, inverse_mass, gravity) + of_velocity;
     const F8 old = load8(r.velocity);
     const F8 now = old + change;
     const F8 lost = change - (now - old);
-    // What rounding drops of the spin is kept as a torque for the next step; a rebuild drops it.
+    // The rounding error of the spin is stored as a torque for the next step; a rebuild removes it.
     F4 waiting = broadcast4(0.0f);
     if constexpr (Kernel::spin) {
         float inertia = 0.1f;  // 0.4 m R^2, diameter and mass 1
@@ -85,7 +85,7 @@ GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* left_over, 
 template <class Kernel>
 GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
     Stepper s = stepper(f.constants, t);
-    // in variables: behind a store of lanes the compiler would read them from the field again
+    // local copies: after a store of lanes the compiler would read them from the field again
     Record* const records = f.records;
     Force* const forces = f.forces;
     const auto residual_of = [residuals = f.residuals, ahead = f.read_ahead != 0](std::int32_t i) {
@@ -96,8 +96,8 @@ GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int3
             return nullptr;
         }
     };
-    // What pairs will come upon, fetched once per particle: once per pair, as sift() does it for many particles, costs
-    // more than it gains for few (docs/tried_and_dropped.md).
+    // Prefetches the partners of later pairs once per particle. Once per pair, as sift() does for many particles, is
+    // slower for few particles (docs/tried_and_dropped.md).
     const auto fetch = [records, forces, ahead = f.fetch_ahead, last = f.end - 1](std::int32_t i) {
         if (ahead == 0) return;
         const std::int32_t k = i + ahead < last ? i + ahead : last;

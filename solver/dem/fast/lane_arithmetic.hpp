@@ -1,5 +1,5 @@
-// The arithmetic of laws (laws/arithmetic.hpp) over the lanes of a vector, one contact each, in the engine's units.
-// Included by the files of the instruction paths, after their lanes; internal linkage on purpose.
+// Arithmetic of the laws (laws/arithmetic.hpp) for the lanes of a vector, one contact each, in the engine's units. The
+// files of the instruction paths include this file after their lanes; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/layout.hpp"
@@ -7,7 +7,7 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-// One Newton step brings the processor's estimate to the end of single precision.
+// One Newton step gives the processor's estimate full single precision.
 GRAINSWEEP_LANES F inverse_root(F a) {
     const F y = approximate_rsqrt(a);
     const F residue = fnma(a * y, y, broadcast(1.0f));
@@ -65,13 +65,13 @@ struct Arithmetic<fast::F> {
     using V3 = fast::V3;
     using Vector = V3;
     using Mask = fast::M;
-    /// A coefficient, and its product with sqrt(m*) of two mobile particles where all have mass 1.
+    /// Coefficient, and its product with sqrt(m*) of two mobile particles of mass 1.
     struct Damping {
         F general, of_pair, over_normal;
     };
-    /// Strength times an area, as a polynomial of the overlap.
+    /// Strength times contact area as a polynomial of the overlap.
     struct AreaForce {
-        F disc;                      ///< per disc over pi/4
+        F disc;                      ///< per disc divided by pi/4
         F linear, square;            ///< per R* d, d^2
         F wall_linear, wall_square;  ///< per R d, d^2
     };
@@ -91,7 +91,7 @@ struct Arithmetic<fast::F> {
     GRAINSWEEP_LANES static F divided(F a, F b) { return a * fast::inverse(b); }
     GRAINSWEEP_LANES static F larger(F a, F b) { return fast::max(a, b); }
     GRAINSWEEP_LANES static F smaller(F a, F b) { return fast::min(a, b); }
-    /// a^(21/64), and Newton's method for a^(1/3): the guess is within 5 % for a > 1e-4, 13 % for a > 1e-11.
+    /// Returns a^(1/3) by Newton's method from a^(21/64): this start is within 5 % for a > 1e-4, 13 % for a > 1e-11.
     GRAINSWEEP_LANES static F cbrt(F a) {
         const F fourth = sqrt(sqrt(a)), sixteenth = sqrt(sqrt(fourth));
         F y = fourth * sixteenth * sqrt(sqrt(sixteenth));

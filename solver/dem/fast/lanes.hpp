@@ -1,6 +1,6 @@
 // Vectors of as many single-precision numbers as the instructions of a path hold: sixteen with AVX-512, eight with
-// AVX2, four with SSE4 and NEON. By Highway, for the one target the file is compiled for: its functions are internal to
-// each file, so paths share no code. Included by one file per path only; internal linkage on purpose.
+// AVX2, four with SSE4 and NEON. They use Highway for the target of the file. Highway's functions are internal to each
+// file, so paths share no code. One file per path includes this file; it has internal linkage on purpose.
 #pragma once
 
 #define HWY_DISABLE_PCLMUL_AES  // x86-64-v2 to v4 do not promise them
@@ -48,7 +48,7 @@ constexpr Tag<double, width / 2> doubles;
 constexpr Tag<float, width / 2> half_singles;
 constexpr Tag<std::int32_t, width / 2> half_integers;
 
-// Two halves as one vector. Highway's Combine clears the upper half before it overwrites it.
+// Joins two halves. Highway's Combine would clear the upper half first.
 #if HWY_CAP_GE256
 GRAINSWEEP_LANES Vector<float, 8> joined(Vector<float, 4> low, Vector<float, 4> high) {
     return Vector<float, 8>{_mm256_insertf128_ps(_mm256_castps128_ps256(low.raw), high.raw, 1)};
@@ -116,7 +116,7 @@ GRAINSWEEP_LANES Singles<N> operator*(Singles<N> a, Singles<N> b) {
 }
 template <int N>
 GRAINSWEEP_LANES Singles<N> fma(Singles<N> a, Singles<N> b,
-                                Singles<N> c) {  // without such an instruction rounded twice
+                                Singles<N> c) {  // rounded twice if there is no such instruction
     return {hn::MulAdd(a.v, b.v, c.v)};
 }
 GRAINSWEEP_LANES F fms(F a, F b, F c) {
@@ -246,19 +246,20 @@ GRAINSWEEP_LANES float largest(F a) {
     return hn::GetLane(hn::MaxOfLanes(singles, a.v));
 }
 
-/// The lanes whose bit is set.
+/// Returns the lanes whose bit is set.
 GRAINSWEEP_LANES M lanes_in(unsigned m) {
     const std::uint64_t b = m;
     return {hn::LoadMaskBits(singles, reinterpret_cast<const std::uint8_t*>(&b))};
 }
-/// Some of the lanes, as the instructions that move them want them: by AVX-512 a mask, by others bits.
+/// Selected lanes in the form that the move instructions need: a mask for AVX-512, bits for others.
 struct Chosen {
     M mask;
     unsigned bits;
     GRAINSWEEP_LANES explicit Chosen(M m) : mask(m), bits(fast::bits(m)) {}
 };
-// Moving lanes to the front, those whose bit is set, with rubbish behind them; and the inverse, with zero elsewhere.
-// The tables are ours: those of Highway 1.0 are local to its functions, and GCC copies them at every use.
+// compress: moves the lanes whose bit is set to the front; the lanes behind them are arbitrary. The inverse fills other
+// lanes with zero. The tables are defined here because those of Highway 1.0 are local to its functions and GCC copies
+// them at every use.
 #if HWY_CAP_GE512
 template <class Lanes>
 GRAINSWEEP_LANES Lanes compress(Lanes a, M m) {
@@ -276,7 +277,7 @@ GRAINSWEEP_LANES F expand(F a, unsigned m) {
     return {Vector<float, width>{_mm512_maskz_expand_ps(static_cast<__mmask16>(m), a.v.raw)}};
 }
 #else
-/// For each mask where every lane comes from: lane numbers of 4 bits, or of a byte each their bytes' (0x80: zero).
+/// Source of every lane for each mask: lane numbers of 4 bits, or byte numbers (0x80: zero).
 struct LaneTables {
 #if HWY_CAP_GE256
     std::uint32_t front[1 << width], spread[1 << width];
@@ -311,7 +312,7 @@ constexpr LaneTables lane_tables = make_lane_tables();
 template <class Lanes>
 GRAINSWEEP_LANES Lanes moved(Lanes a, std::uint32_t order) {
     alignas(32) static constexpr std::uint32_t shifts[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-    const Tag<std::uint32_t, width> words;  // permutes read the low three bits
+    const Tag<std::uint32_t, width> words;  // permute instructions read the low three bits
     return {hn::TableLookupLanes(
         a.v, hn::IndicesFromVec(hn::DFromV<decltype(a.v)>{}, hn::Shr(hn::Set(words, order), hn::Load(words, shifts))))};
 }
@@ -357,15 +358,15 @@ GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
 GRAINSWEEP_LANES void prefetch(const void* p) {
     __builtin_prefetch(p);
 }
-/// Takes the line away from other cores.
+/// Prefetches a cache line for writing, which removes it from other cores.
 GRAINSWEEP_LANES void prefetch_to_write(const void* p) {
     __builtin_prefetch(p, 1);
 }
-/// Past the caches; p at a multiple of the vector's size.
+/// Writes past the caches; p must be a multiple of the vector's size.
 GRAINSWEEP_LANES void stream(float* p, F a) {
     hn::Stream(a.v, singles, p);
 }
-/// What was streamed is seen by other threads from here on.
+/// Makes streamed values visible to other threads.
 GRAINSWEEP_LANES void flush_streams() {
 #if HWY_ARCH_X86
     _mm_sfence();
@@ -374,7 +375,7 @@ GRAINSWEEP_LANES void flush_streams() {
 #endif
 }
 
-/// Number `at` of a table, in every lane; of one that fits a vector.
+/// Returns in every lane the entry `at` of a table that fits a vector.
 GRAINSWEEP_LANES F looked_up(F table, I at) {
     return {hn::TableLookupLanes(table.v, hn::IndicesFromVec(singles, at.v))};
 }

@@ -1,5 +1,5 @@
-// Laws whose constants differ from lane to lane. Included by the files of the instruction paths, after their lanes;
-// internal linkage on purpose.
+// Laws whose constants differ from lane to lane. The files of the instruction paths include this file after their
+// lanes; it has internal linkage on purpose.
 #pragma once
 
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-/// Laws by row of a table. Laws are constants of lanes and nothing else.
+/// Table of laws, one row each. A law consists of constants in lanes.
 template <class Laws>
 class LawTable {
     static_assert(std::is_trivially_copyable_v<Laws> && sizeof(Laws) % sizeof(F) == 0);
@@ -18,7 +18,7 @@ class LawTable {
     static constexpr std::size_t rows_at_most = kinds_at_most * kinds_at_most;
 
 public:
-    /// `rows` of constants_at_most constants each.
+    /// Takes `rows` of constants_at_most constants each.
     GRAINSWEEP_LANES LawTable(const double* constants, std::int32_t rows) : first_(constants), fits_(rows <= width) {
         for (std::int32_t r = 0; r < rows; ++r) {
             const Laws laws(constants + r * constants_at_most);
@@ -31,7 +31,7 @@ public:
             }
         }
     }
-    /// The laws of these rows.
+    /// Returns the laws of these rows.
     GRAINSWEEP_LANES Laws at(I row) const {
         F of_lanes[count];
         if (fits_)
@@ -45,7 +45,7 @@ public:
 
 private:
     Laws first_;
-    bool fits_;  // the rows are no more than lanes
+    bool fits_;  // there are not more rows than lanes
     float number_[count][rows_at_most] = {};
 };
 

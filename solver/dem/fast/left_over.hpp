@@ -1,6 +1,6 @@
-// What roundings left over of a particle's position and velocity, for all that is no kernel. Where radii differ it has
-// a column of its own (Field::residuals); where they are equal it fills what record and force do not need: a sweep then
-// moves a sixth fewer bytes.
+// Access to the rounding errors of a particle's position and velocity, for code outside the kernels. If radii differ
+// they have a column of their own (Field::residuals). If radii are equal they use free members of Record and Force, so
+// that a sweep moves a sixth fewer bytes.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ inline void leave_over(Field& f, std::int32_t i, const Residual& r) {
     f.forces[i].torque[3] = r.velocity[2];
 }
 
-/// No force and no torque, and what a force keeps besides.
+/// Returns a force with zero force and torque, and its other members.
 inline Force cleared(const Force& f) {
     Force none{};
     none.force[3] = f.force[3];
@@ -36,7 +36,7 @@ inline Force cleared(const Force& f) {
     return none;
 }
 
-/// Sets a spin, and what follows from it where radii differ.
+/// Sets a spin, and the derived members if radii differ.
 inline void set_spin(const Field& f, std::int32_t i, int a, float spin) {
     Record& r = f.records[i];
     r.spin[a] = spin;

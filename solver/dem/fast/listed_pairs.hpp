@@ -1,4 +1,4 @@
-// What a list of pairs holds besides pairs: bits of those that touch, and what fills its last vector up.
+// Bits of touching pairs and padding of a list of pairs.
 #pragma once
 
 #include <algorithm>
@@ -23,23 +23,22 @@ inline void set_bit(std::uint16_t* bits, std::int32_t k, std::int32_t width) {
     bits[k / width] = static_cast<std::uint16_t>(bits[k / width] | 1U << static_cast<unsigned>(k % width));
 }
 
-/// Pairs of a sorted list whose first particle comes before this one.
+/// Returns the number of pairs of a sorted list whose first particle comes before this one.
 inline std::int32_t pairs_before(const Place* first, std::int32_t count, std::int32_t particle) {
     return static_cast<std::int32_t>(std::lower_bound(first, first + count, place_at(particle)) - first);
 }
 
-/// Inner pairs without those that fill the last vector up.
+/// Returns the number of inner pairs without padding.
 inline std::int32_t true_pairs(const Field& f) {
     std::int32_t k = f.inner_count;
     while (k > 0 && f.inner_first[k - 1] == place_at(f.filler)) --k;
     return k;
 }
 
-/// Field::fetch_ahead for an inner list: the median, over groups of neighbouring pairs, of how many places their
-/// farthest partner lies behind, and some more, since pairs are sifted before particles are integrated. The few
-/// pairs across periodic faces, often nearly all places apart, and copies of other subdomains' particles do not
-/// count. 0 where particles have fewer than one pair each: integration visits memory in order, and few pairs are not
-/// worth it.
+/// Returns Field::fetch_ahead for an inner list. For each group of adjacent pairs take the distance in places to the
+/// farthest partner; the result is the median of these, enlarged because pairs are sifted before particles are
+/// integrated. Pairs across periodic faces and copies of other subdomains' particles do not count. 0 if particles have
+/// fewer than one pair each: prefetching then costs more than it saves.
 inline std::int32_t distance_to_fetch(const Field& f) {
     constexpr std::int32_t group = 16, groups_at_most = 64;
     if (f.inner_count < f.end - f.begin) return 0;
@@ -59,7 +58,7 @@ inline std::int32_t distance_to_fetch(const Field& f) {
     return *median + *median / 8 + tile / 2;
 }
 
-/// Ends an inner list as the refresh kernel does.
+/// Pads an inner list as the refresh kernel does. Returns the padded count.
 inline std::int32_t fill_up(const Field& f, std::int32_t count, std::int32_t width) {
     const std::int32_t padded = (count + width - 1) / width * width;
     for (std::int32_t k = count; k < padded + 2 * tile; ++k) {

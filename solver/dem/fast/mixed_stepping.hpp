@@ -1,11 +1,11 @@
-// The mixed-precision engine's parts, and what each of its files does with them:
+// Class of the mixed-precision engine. Its files:
 //
-//   mixed_engine.cpp      the start: spheres and walls in the engine's units
-//   mixed_stepping.cpp    time steps, and when the lists are made anew
+//   mixed_engine.cpp      construction: spheres and walls in the engine's units
+//   mixed_stepping.cpp    time steps and rebuilds of the lists
 //   mixed_reading.cpp     a state in SI: particles, contacts, energy
 //   mixed_checkpoint.cpp  a state to bytes and back
 //
-// Elsewhere it is used as an Engine only (mixed_engine.hpp).
+// Other code uses it only as an Engine (mixed_engine.hpp).
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@
 
 namespace grainsweep::dem::fast {
 
-/// Relative displacements since the lists were made, and how often; in largest diameters.
+/// Relative displacements since the lists were made, in largest diameters.
 struct Drift {
     double outer = std::numeric_limits<double>::infinity();
     double inner = std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ struct Drift {
     std::int64_t steps = 0;  ///< since the outer list was made
 };
 
-/// One case with its laws, its instruction path and all that changes.
+/// Engine of one case, with its laws, its instruction path and its state.
 class MixedEngine final : public Engine {
 public:
     MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed, Threads threads);
@@ -64,6 +64,9 @@ public:
     void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(motions(0), into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_[wall].wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
+    [[nodiscard]] const geometry::BodyEnergy& wall_energy(std::size_t wall) const override {
+        return walls_[wall].energy();
+    }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -101,9 +104,9 @@ private:
         join_lists();
         return {field_, columns_.id.data(), space_.scale, walls_, table_, smallest_diameter_, sound_, work_.steps};
     }
-    /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
+    /// Returns the largest overlap of all pairs divided by the smaller diameter, including parked contacts.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
-    /// Ids given so far.
+    /// Returns the number of ids given so far.
     [[nodiscard]] std::int32_t ids() const { return spheres_at_start_ + static_cast<std::int32_t>(added_.size()); }
     [[nodiscard]] bool is_frozen(std::int32_t particle) const { return !(field_.records[particle].inverse_mass > 0); }
     [[nodiscard]] bool is_resting(std::int32_t particle) const {
@@ -112,7 +115,7 @@ private:
     [[nodiscard]] bool beyond(const SoundOverlaps& limits) const {
         return tally_.overlap > limits.pair || tally_.wall_overlap > limits.wall;
     }
-    /// Whether contacts are to be judged one by one.
+    /// Returns whether contacts must be judged individually.
     [[nodiscard]] bool suspicious() const { return contacts_differ_ && beyond(resolved_); }
     template <class Self, class Archive>
     static void pass(Self& self, Archive& archive);
@@ -132,26 +135,26 @@ private:
     std::vector<double> densities_;  ///< of Setup::kinds, kg/m3
     std::vector<ToCome> to_come_;
     ContactTable table_;
-    PairContacts laws_;                ///< in SI, for what is no part of a step
+    PairContacts laws_;                ///< in SI, for calculations outside a step
     std::vector<std::uint8_t> kinds_;  ///< of spheres of the start by id
     std::vector<std::uint8_t> added_;  ///< of those added since
-    std::vector<double> constants_;    ///< of laws, see Field::laws_of_pairs
+    std::vector<double> constants_;    ///< constants of the laws, see Field::laws_of_pairs
     std::vector<Material> materials_;  ///< of particles and walls at the start
     Walls walls_;
     WallTouches touches_;
     float smallest_diameter_ = 1;
-    float lightest_ = 1;  ///< reference density over the smallest
+    float lightest_ = 1;  ///< reference density divided by the smallest
     bool contacts_differ_;
     SoundOverlaps resolved_;
-    SoundOverlaps sound_;            ///< beyond it the state is not: the same, unless contacts differ
-    bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
+    SoundOverlaps sound_;            ///< limits of a sound state: equal to resolved_, unless contacts differ
+    bool box_includes_rest_ = true;  ///< displacements are also relative to a body at rest or a face
 
     Watch watch_;
     Columns columns_;
     Resting resting_;
     Subdomains subdomains_;
     SharedWalls shared_walls_;
-    std::optional<Refresh> refresh_;  ///< of the subdomains' inner lists, by the sweep that follows
+    std::optional<Refresh> refresh_;  ///< request to refresh the subdomains' inner lists in the next sweep
     Threads threads_;
     Field field_{};
     Tally tally_{};

@@ -1,6 +1,6 @@
-// Between records of particles and lanes of pairs: four components of four pairs at a time are transposed inside
-// blocks of 128 bits; block b of a vector belongs to the pairs 4b to 4b+3. Included by one file per path only, after
-// its lanes; internal linkage on purpose.
+// Transposition between records of particles and lanes of pairs. Four components of four pairs are transposed within
+// blocks of 128 bits; block b of a vector belongs to the pairs 4b to 4b+3. One file per path includes this file after
+// its lanes; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/particle_lanes.hpp"
@@ -8,7 +8,7 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-/// Block b is what `of` says of pair 4b + e.
+/// Returns a vector whose block b is of(4b + e).
 template <class Of>
 GRAINSWEEP_LANES auto blocks(const Of& of, int e) {
 #if HWY_CAP_GE512
@@ -34,7 +34,8 @@ GRAINSWEEP_LANES Lanes high_pairs(Lanes a, Lanes b) {
     const Tag<hwy::MakeWide<hn::TFromV<Lanes>>, width / 2> pairs;
     return hn::BitCast(hn::DFromV<Lanes>{}, hn::InterleaveUpper(pairs, hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
 }
-/// Integers stay in instructions on integers: some processors take a cycle longer between the two kinds.
+/// Transposes blocks. Integers use integer instructions, because some processors need an extra cycle between the two
+/// kinds.
 template <class Lanes, class Row>
 GRAINSWEEP_LANES void transpose_blocks(const Lanes* z, Row* out) {
     const hn::DFromV<Lanes> d;
@@ -46,7 +47,7 @@ GRAINSWEEP_LANES void transpose_blocks(const Lanes* z, Row* out) {
     out[3].v = high_pairs(t2, t3);
 }
 #if HWY_CAP_GE256
-/// Blocks 0 and 2 of both, those of a before those of b; blocks 1 and 3.
+/// Return blocks 0 and 2, or 1 and 3, of a and then of b.
 GRAINSWEEP_LANES V even_blocks(V a, V b) {
 #if HWY_CAP_GE512
     return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b), a);
@@ -63,7 +64,7 @@ GRAINSWEEP_LANES V odd_blocks(V a, V b) {
 }
 #endif
 
-/// Rows 0-2 of four integers each: what `of` says of lane q.
+/// Loads rows 0-2 of four integers each; of(q) is the source of lane q.
 template <class Of>
 GRAINSWEEP_LANES void load_integers(const Of& of, I& x, I& y, I& z) {
     Vector<std::int32_t, width> a[4];
@@ -80,12 +81,12 @@ GRAINSWEEP_LANES Vector<std::int32_t, 4> position_at(const Record* r, Place k) {
 GRAINSWEEP_LANES void load_positions(const Record* r, const Place* particle, I& x, I& y, I& z) {
     load_integers([&](int q) { return position_at(r, particle[q]); }, x, y, z);
 }
-/// Position of first minus position of second.
+/// Loads position of first minus position of second.
 GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y, I& z) {
     load_integers([&](int q) { return hn::Sub(position_at(r, first[q]), position_at(r, second[q])); }, x, y, z);
 }
 
-/// Rows 0-7 of eight numbers each: what `of` says of lane q.
+/// Loads rows 0-7 of eight numbers each; of(q) is the source of lane q.
 template <class Of>
 GRAINSWEEP_LANES void load_eights(const Of& of, F* rows) {
 #if HWY_CAP_GE256
@@ -115,11 +116,11 @@ GRAINSWEEP_LANES void load_eights(const Of& of, F* rows) {
     transpose_blocks(high, rows + 4);
 #endif
 }
-/// Rows 0-3: velocities and inverse masses; rows 4-7: spins and radii.
+/// Loads rows 0-3: velocities and inverse masses; rows 4-7: spins and radii.
 GRAINSWEEP_LANES void load_motion(const Record* r, const Place* particle, F* rows) {
     load_eights([&](int q) { return load8(record_at(r, particle[q])->velocity); }, rows);
 }
-/// Rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
+/// Loads rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
 GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
     alignas(32) static constexpr float signs[8] = {-1, -1, -1, 1, 1, 1, 1, 1};
     const auto pair = [&](int q) {
@@ -140,7 +141,7 @@ GRAINSWEEP_LANES F load_radii(const Record* r, const Place* particle) {
     return rows[3];
 }
 
-/// Rows 0-2: sums of radius times spin; row 3: difference of radii.
+/// Loads rows 0-2: sums of radius times spin; row 3: difference of radii.
 GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Place* second, F* rows) {
     alignas(16) static constexpr float signs[4] = {1, 1, 1, -1};
     const auto sign = load4(signs).v;
@@ -150,7 +151,7 @@ GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Pl
     transpose_blocks(a, rows);
 }
 
-/// Rows 0-2: differences of spins; row 3: difference of radii.
+/// Loads rows 0-2: differences of spins; row 3: difference of radii.
 GRAINSWEEP_LANES void load_spin_difference(const Record* r, const Place* first, const Place* second, F* rows) {
     V a[4];
     for (int e = 0; e < 4; ++e) {
@@ -170,7 +171,7 @@ GRAINSWEEP_LANES void load_spin_difference(const Record* r, const Place* first, 
     transpose_blocks(a, rows);
 }
 
-/// Four-component vectors, block b of out[k] belonging to pair 4b+k.
+/// Writes four-component vectors; block b of out[k] belongs to pair 4b+k.
 GRAINSWEEP_LANES void to_blocks(const F* xyz, F* out) {
     const V rows[4] = {xyz[0].v, xyz[1].v, xyz[2].v, hn::Zero(singles)};
     const V a = hn::InterleaveLower(singles, rows[0], rows[1]), b = hn::InterleaveUpper(singles, rows[0], rows[1]);
@@ -181,7 +182,7 @@ GRAINSWEEP_LANES void to_blocks(const F* xyz, F* out) {
     out[3].v = high_pairs(b, d);
 }
 
-/// Force and torque of each pair.
+/// Writes force and torque of each pair.
 GRAINSWEEP_LANES void to_forces(const F* force, const F* torque, F8* out) {
     F f[4], t[4];
     to_blocks(force, f);
@@ -205,7 +206,7 @@ GRAINSWEEP_LANES void to_forces(const F* force, const F* torque, F8* out) {
 GRAINSWEEP_LANES void add_to(Force* f, F8 a) {
     store8(f->force, load8(f->force) + a);
 }
-/// Minus the force, plus the torque.
+/// Subtracts the force and adds the torque.
 GRAINSWEEP_LANES void react_on(Force* f, F8 a) {
 #if HWY_CAP_GE256
     alignas(32) static constexpr float signs[8] = {-1, -1, -1, 0, 1, 1, 1, 0};
@@ -216,8 +217,8 @@ GRAINSWEEP_LANES void react_on(Force* f, F8 a) {
 #endif
 }
 
-/// Adds force and torque to the first, minus force and torque to the second particle of each pair, in order; torques
-/// differ.
+/// Adds force and torque to the first particle of each pair, and minus the force and the other torque to the second, in
+/// order.
 GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second, const F* force,
                                       const F* torque_first, const F* torque_second) {
     F8 w[width], u[width];
@@ -228,7 +229,7 @@ GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const P
         react_on(force_at(forces, second[q]), u[q]);
     }
 }
-/// The same where the torques are equal.
+/// Does the same for equal torques.
 GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second, const F* force,
                                     const F* torque) {
     F8 w[width];
@@ -259,7 +260,7 @@ GRAINSWEEP_LANES void scatter(Force* forces, const Place* particle, const F* for
     for (int q = 0; q < width; ++q) add_to(force_at(forces, particle[q]), w[q]);
 }
 
-/// Denormal numbers count as zero from here on; returns what restores the old rule.
+/// Makes denormal numbers count as zero. Returns the previous mode.
 GRAINSWEEP_LANES std::uint64_t flush_denormals() {
 #if HWY_ARCH_X86
     const unsigned old = _mm_getcsr();

@@ -1,5 +1,5 @@
-// The motion of one particle, velocity and spin, as eight lanes, and four numbers of it as four. Included by one file
-// per path only, after its lanes; internal linkage on purpose.
+// Motion of one particle, velocity and spin, in eight lanes, and four of its numbers in four lanes. One file per path
+// includes this file after its lanes; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/lanes.hpp"
@@ -34,7 +34,7 @@ GRAINSWEEP_LANES I4 rounded(F4 a) {
 #endif
 }
 
-/// a with its fourth lane from a lane of b.
+/// Returns a with its fourth lane replaced by a lane of b.
 template <int lane>
 GRAINSWEEP_LANES F4 with_fourth(F4 a, F4 b) {
 #if HWY_ARCH_X86
@@ -43,7 +43,7 @@ GRAINSWEEP_LANES F4 with_fourth(F4 a, F4 b) {
     return {hn::InsertLane(a.v, 3, hn::ExtractLane(b.v, lane))};
 #endif
 }
-/// The fourth lanes of all three, and 0.
+/// Returns the fourth lanes of a, b and c, and 0.
 GRAINSWEEP_LANES F4 fourths(F4 a, F4 b, F4 c) {
     const auto last = hn::ShiftRightLanes<2>(four, hn::InterleaveUpper(four, b.v, c.v));
     return {hn::CombineShiftRightBytes<12>(four, last, a.v)};
@@ -75,7 +75,7 @@ GRAINSWEEP_LANES void store8(float* p, F8 a) {
 GRAINSWEEP_LANES F8 where_positive(F8 a, F8 b) {
     return {hn::IfThenElseZero(hn::Gt(a.v, hn::Zero(eight)), b.v)};
 }
-/// The fourth lane of a, the fourth and the eighth of b, and zeros.
+/// Returns the fourth lane of a, the fourth and the eighth of b, and zeros.
 GRAINSWEEP_LANES F8 fourths(F4 a, F8 b) {
 #if HWY_CAP_GE512
     const __m256i lanes = _mm256_setr_epi32(11, 3, 7, 0, 0, 0, 0, 0);
@@ -88,7 +88,7 @@ GRAINSWEEP_LANES F8 fourths(F4 a, F8 b) {
     return join(fourths(a, low(b), high(b)), broadcast4(0.0f));
 #endif
 }
-/// a and b, with their fourth lanes from the second and the third of c.
+/// Returns a and b with their fourth lanes replaced by the second and the third lane of c.
 GRAINSWEEP_LANES F8 with_fourths(F4 a, F4 b, F4 c) {
 #if HWY_CAP_GE512
     const __m256i lanes = _mm256_setr_epi32(0, 0, 0, 1, 0, 0, 0, 2);

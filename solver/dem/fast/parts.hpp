@@ -1,5 +1,5 @@
-// The parts in which threads share what is no sweep: ranges of particles, of cells, of pairs. Results do not depend on
-// how many there are: what parts count or append is put together in their order.
+// Parts into which threads divide all work other than sweeps: ranges of particles, of cells, of pairs. Results do not
+// depend on their number, because counts and lists of the parts are joined in order.
 #pragma once
 
 #include <algorithm>
@@ -12,16 +12,16 @@
 
 namespace grainsweep::dem::fast {
 
-/// Begin and end of some consecutive things.
+/// Range of consecutive items.
 struct Range {
     std::int32_t begin, end;
 };
 
 class Parts {
 public:
-    /// One part: the calling thread alone.
+    /// Makes one part, for the calling thread alone.
     Parts() = default;
-    /// One for each thread of the pool. `lists`: of each, free for pairs that it finds.
+    /// Makes one part per thread of the pool. `lists`: one list per part for the pairs that it finds.
     Parts(ThreadPool& pool, std::vector<PairColumns*> lists) : pool_(&pool), lists_(std::move(lists)) {}
 
     [[nodiscard]] int count() const { return pool_ == nullptr ? 1 : pool_->size(); }
@@ -35,7 +35,7 @@ public:
         else
             pool_->run(work);
     }
-    /// The share of a part in `all` things; it begins with a multiple of `grain`.
+    /// Returns the share of a part in `all` items; it begins at a multiple of `grain`.
     [[nodiscard]] Range share(int part, std::int32_t all, std::int32_t grain = 1) const {
         const std::int64_t grains = (std::int64_t{all} + grain - 1) / grain, parts = count();
         const auto bound = [&](std::int64_t k) {
@@ -48,8 +48,8 @@ public:
     void run_shares(std::int32_t all, const Work& work, std::int32_t grain = 1) const {
         run([&](int part) { work(share(part, all, grain)); });
     }
-    /// Calls count(range) for the share of each part, which says how many things it found there. Returns how many were
-    /// found before each part, and behind them all that were.
+    /// Calls count(range) for the share of each part, which returns the number of items found there. Returns the number
+    /// found before each part, and finally the total.
     template <class Count>
     [[nodiscard]] std::vector<std::int32_t> counted(std::int32_t all, const Count& count_in,
                                                     std::int32_t grain = 1) const {

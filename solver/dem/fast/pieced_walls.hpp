@@ -1,4 +1,4 @@
-// What listing particles near walls made of pieces and finding their contacts share.
+// Shared functions for walls made of pieces: listing nearby particles, and finding contacts.
 #pragma once
 
 #include <cmath>
@@ -15,13 +15,14 @@ inline std::size_t record_index(Place place) {
     return place / places_per_index;
 }
 
-/// A particle's centre in the frame of the wall's body, m.
+/// Returns a particle's centre in the frame of the wall's body, m.
 inline Vec3 in_body(const MovingWall& wall, const Record& record, const Scale& scale) {
     return wall.pose().to_body(wall.image().of(position_of(record, scale)));
 }
 
-/// Calls visit(centre, as in_body) for the nearest image of the wall, and for those that are nearest after less than
-/// `way`, m: across the seam halfway between two images other pieces count.
+/// Calls visit(centre as of in_body) for the nearest image of the wall, and for images that become the nearest after a
+/// displacement of less than `way`, m: on the other side of the plane halfway between two images, other pieces are
+/// near.
 template <class Visit>
 void each_image(const MovingWall& wall, const Record& record, const Scale& scale, double way, Visit&& visit) {
     const NearestImage& image = wall.image();

@@ -1,4 +1,4 @@
-// Sorting particles by cell and making the lists anew, histories following their contacts.
+// Rebuild: sorts particles by cell and makes the lists anew; histories move with their contacts.
 #pragma once
 
 #include <span>
@@ -14,25 +14,26 @@ class Parts;
 class Resting;
 class Walls;
 
-/// The space that lists cover: domain, units and range.
+/// Space that the lists cover: domain, units and range.
 struct ListSpace {
     Domain domain;
     Scale scale;
     float skin;  ///< of the outer list, in largest diameters
 };
 
-/// Removes particles beyond open faces and those listed in `ids`, sorts the rest by cell, makes the outer list and
-/// the wall lists and carries all histories over. The inner list is left to refresh.
-/// `resting`: decides anew which particles rest, `steps` steps after the last rebuild; null where none may. `parts`:
-/// their number changes nothing.
+/// Removes particles beyond open faces and the particles in `ids`, sorts the others by cell, makes the outer list and
+/// the wall lists, and moves all histories. The inner list is made by refresh().
+/// `resting`: decides anew which particles rest, `steps` steps after the last rebuild; null if no particle may rest.
+/// The number of `parts` does not change the result.
 void rebuild(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space, const Walls& walls,
              std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps, const Parts& parts);
 
-/// Makes the inner list from the outer one; histories stay as they are, in the same order.
-/// `marked`: outer_touching already says which outer pairs touch.
+/// Makes the inner list from the outer list; histories keep their order. `marked`: outer_touching already marks the
+/// touching pairs.
 void refresh(Field& field, PairColumns& columns, const Kernels& kernels, float skin, bool marked);
 
-/// Writes the records behind the last particle that fill vectors up, and the one of any wall; lists are of all.
+/// Writes the records behind the last particle that pad vectors, and the record of a wall; only for the lists of all
+/// particles.
 void place_fillers(Field& field);
 
 }  // namespace grainsweep::dem::fast

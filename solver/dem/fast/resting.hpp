@@ -1,15 +1,15 @@
-// Powder at rest: particles that are not advanced, and the contacts between them, which are parked meanwhile.
+// Powder at rest: particles that are not advanced, and the parked contacts between them.
 //
-// A pair of two that are not advanced is not listed: they cost nothing but their part of a rebuild. To all others a
-// particle at rest is the partner it was, of the same mass. Decided at every rebuild:
+// A pair of two particles that are not advanced is not listed, so it costs time only in a rebuild. For all other
+// particles, a particle at rest is a partner of the same mass as before. Every rebuild decides:
 //
-//   rests     what has been slower than the rest speed, v and |w| R, for 256 steps, with nothing faster in reach of the
-//             outer list: nothing that moves can touch it before the next rebuild. Around what is 30 times faster two
-//             more layers of contacts stay advanced, to take up its impact
-//   advanced  again, when something faster comes into that reach, or the net force on it, or the net torque over R,
-//             averaged since the last rebuild, exceeds half its weight
+//   rests     a particle slower than the rest speed, v and |w| R, for 256 steps, with no faster body within the outer
+//             list: nothing that moves can touch it before the next rebuild. Around a body 30 times faster, two more
+//             layers of contacts stay advanced, to absorb its impact
+//   advanced  again, when a faster body comes within the outer list, or when the net force on the particle, or the net
+//             torque divided by R, averaged since the last rebuild, exceeds half its weight
 //
-// Neglected are a net force below half the weight, creep slower than the rest speed, and the effect of an impact on the
+// Neglected effects: a net force below half the weight, creep slower than the rest speed, and an impact's effect on the
 // fourth layer. The rebound from a pile at rest differs by 1 % (without the two layers: by 17 %).
 #pragma once
 
@@ -26,7 +26,7 @@
 
 namespace grainsweep::dem::fast {
 
-/// Steps after which lists are made anew though nothing else requires it, so that particles at rest are checked.
+/// Largest number of steps between two rebuilds, so that particles at rest are checked.
 inline constexpr std::int64_t rest_interval = 128;
 
 class Resting {
@@ -36,30 +36,31 @@ public:
 
     [[nodiscard]] bool wanted() const { return speed_ > 0; }
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
-    /// All are advanced from the next rebuild on.
+    /// Advances all particles from the next rebuild on.
     void advance_all(const Field& f);
-    /// So are particles that were added behind the others.
+    /// Advances particles that were added behind the others.
     void advance_also(std::size_t count);
-    /// The parked contacts, by index of the records.
+    /// Returns the parked contacts, by index of the records.
     [[nodiscard]] std::span<const ParkedContact> parked() const { return parked_; }
-    /// Particles at rest.
+    /// Returns the number of particles at rest.
     [[nodiscard]] std::int64_t count() const { return count_; }
-    /// Largest overlap among them, over the smaller diameter.
+    /// Returns the largest overlap among parked contacts, divided by the smaller diameter.
     [[nodiscard]] float overlap() const { return overlap_; }
 
-    /// Whether this can be the rest of `particles` particles.
+    /// Returns whether this state is valid for `particles` particles.
     [[nodiscard]] bool fits(std::int32_t particles) const;
 
-    // The parts of a rebuild, in this order.
-    /// Before particles are sorted: which of them the forces of the last `steps` steps have pushed.
+    // Steps of a rebuild, in this order.
+    /// Finds the particles that the forces of the last `steps` steps have pushed; before particles are sorted.
     void compare_forces(const Field& f, std::int64_t steps);
-    /// After they are sorted: everything here is put in the order of columns.place.
+    /// Puts all data in the order of columns.place; after particles are sorted.
     void reorder(const Field& f, const Columns& c);
-    /// After contacts have found their pairs in the outer list (columns.owner; parked ones number from `live` on):
-    /// what rests from now on. Pairs neither of which is advanced leave the list, their contacts are parked.
+    /// Decides which particles rest from now on; after contacts are assigned to pairs of the outer list (columns.owner;
+    /// parked contacts have numbers from `live` on). Pairs of two particles that are not advanced leave the list, and
+    /// their contacts are parked.
     void update(Field& f, Columns& c, const ListSpace& space, std::int32_t live);
 
-    /// Everything that changes.
+    /// Passes the complete state to an archive.
     template <class Archive>
     static void pass(auto& self, Archive& archive) {
         archive.list(self.held_);
@@ -89,8 +90,9 @@ private:
     // Of one rebuild.
     std::int64_t steps_ = 0;
     std::vector<std::uint8_t> pushed_;
-    std::vector<std::uint8_t> disturbs_;   ///< layers that a particle keeps advanced: none, those in reach, more
-    std::vector<std::uint8_t> disturbed_;  ///< layers left where the motion of others reaches
+    std::vector<std::uint8_t> disturbs_;   ///< layers of particles that a particle keeps advanced: none, those in
+                                           ///< reach, more
+    std::vector<std::uint8_t> disturbed_;  ///< remaining layers of the disturbance by others
     std::vector<ParkedContact> before_;
 };
 

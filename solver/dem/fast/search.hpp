@@ -1,7 +1,7 @@
 // The two lists. Outer: all pairs closer than contact plus a wide skin, found through cells, sorted by the first
-// particle (the particles themselves are sorted by cell). Inner: those of the outer list that may touch soon.
-// Both tests err on the side of keeping a pair. Pairs of two frozen particles are never listed.
-// Included by the files of the instruction paths; internal linkage on purpose.
+// particle (the particles themselves are sorted by cell). Inner: pairs of the outer list that may touch soon. Both
+// tests keep doubtful pairs. Pairs of two frozen particles are never listed. The files of the instruction paths include
+// this file; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/contact.hpp"
@@ -11,13 +11,13 @@ namespace {
 
 constexpr float rounding_allowance = 1 + 4e-6f;  // of squared distances in single precision
 
-/// Runs of sorted particles in one cell's neighbour cells that follow it in order.
+/// Runs of sorted particles in the neighbour cells that follow a cell in order.
 struct Runs {
     std::int32_t begin[64], end[64];
     int count;
 };
 
-/// Neighbour coordinates of c along an axis of n cells, each once.
+/// Writes the neighbour coordinates of c along an axis of n cells, each once.
 GRAINSWEEP_LANES int around(std::int32_t c, std::int32_t n, bool wraps, std::int32_t* out) {
     int k = 0;
     for (std::int32_t d = -1; d <= 1; ++d) {
@@ -44,7 +44,7 @@ GRAINSWEEP_LANES void append(Runs& r, const std::int32_t* start, std::int32_t fr
     }
 }
 
-/// Runs of the cells after cell (x, y, z) among its neighbours.
+/// Adds the runs of the neighbour cells after cell (x, y, z).
 inline void following(const Field& f, std::int32_t x, std::int32_t y, std::int32_t z, Runs& r) {
     const std::int32_t nx = f.cells[0], ny = f.cells[1];
     const std::int32_t own = (z * ny + y) * nx + x;
@@ -106,7 +106,7 @@ std::int64_t search(const Field& f, float skin) {
                     n += k;
                 }
             };
-            // the rest of the own cell runs on into the next one where that is a neighbour
+            // the run of the cell itself continues into the next cell if that is a neighbour
             int first = 0;
             std::int32_t own_end = end;
             if (runs.count > 0 && runs.begin[0] == end) own_end = runs.end[first++];
@@ -155,7 +155,7 @@ std::int32_t refresh(const Field& f, float skin) {
         f.inner_second[k] = static_cast<Place>((f.filler + 1) * places_per_index);
         if constexpr (unequal) f.inner_reach[k] = 0;
     }
-    // the touching bits travelled as signs of the second index; take them off again
+    // the bits of touching pairs were stored in the sign of the second index: remove them
     for (std::int64_t k = 0; k < padded; k += width) {
         const I second = load(f.inner_second + k);
         f.touching[k / width] = static_cast<std::uint16_t>(sign_bits(second));

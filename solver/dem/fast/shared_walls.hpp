@@ -1,8 +1,8 @@
-// Forces of walls by all threads of a case, with the bits of one.
+// Forces of walls computed by all threads of a case, with the same bits as by one thread.
 //
-// A wall's list is cut between tiles (layout.hpp). Where these begin depends on how many particles touch the wall
-// before them: all threads mark which do, then the tiles are counted through. The sums over a wall are added up tile by
-// tile, in their order. A wall that is not summed up may be cut anywhere. Walls follow one another, so that forces on a
+// A wall's list is divided between tiles (layout.hpp). The start of a tile depends on the number of earlier particles
+// that touch the wall: all threads mark these, then the tiles are counted. The sums over a wall are added tile by tile,
+// in order. A wall without sums may be divided anywhere. Walls are computed one after another, so that forces on a
 // particle are added in the order of the walls.
 #pragma once
 
@@ -26,7 +26,7 @@ private:
     void find_tiles(const Field& whole, std::int32_t wall, const Kernels& kernels, const Parts& parts);
 
     std::vector<std::uint16_t> touching_;  ///< lanes of each vector of the list
-    std::vector<WallSegment> tiles_;       ///< or, where nothing is summed up, a share for each part
+    std::vector<WallSegment> tiles_;       ///< or, without sums, one share for each part
     std::vector<WallSums> sums_;           ///< of each tile
     std::vector<Tally> tallies_;           ///< of each part
 };

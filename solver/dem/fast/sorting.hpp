@@ -1,4 +1,4 @@
-// The particles in the order of cells, which are no smaller than a listed distance: a counting sort.
+// Counting sort of the particles by cell. A cell is not smaller than the largest distance of a listed pair.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace grainsweep::dem::fast {
 
-/// Marks in `place` which particles stay (0) and which are removed (-1: left through a face, or listed); returns the
+/// Marks in `place` the particles that stay (0) and those removed (-1: left through a face, or in `ids`). Returns the
 /// number that stay.
 std::int32_t take_out(const Field& field, Columns& columns, const ListSpace& space, std::span<const std::int32_t> ids,
                       const Parts& parts);
 
-/// Sorts by cell, of equal cells in the order of before, and fills the columns the search reads. place maps old to new
-/// indices afterwards.
+/// Sorts by cell, stable within a cell, and fills the columns that the search reads. Afterwards `place` maps old to new
+/// indices.
 void sort_particles(Field& field, Columns& columns, const ListSpace& space, std::int32_t kept, const Parts& parts);
 
 }  // namespace grainsweep::dem::fast

@@ -1,14 +1,14 @@
-// One pass over the particles: sift, meet, scatter, advance.
+// Sweep: one pass over the particles with four phases.
 //
-//   sift      listed pairs in list order: position differences, in single precision, decide which may touch; these
-//             and their histories are packed together. A pair that does not touch costs this and nothing more.
-//   meet      packed pairs in tiles: motion is loaded and transposed, the law evaluated.
+//   sift      position differences of the listed pairs, in single precision, decide which may touch. These pairs and
+//             their histories are packed. Other pairs cause no further work.
+//   meet      packed pairs in tiles: motion is loaded and transposed, the law is evaluated.
 //   scatter   forces of a tile are added to both particles.
-//   advance   a particle whose pairs are all behind is integrated at once, while it is in the nearest cache
+//   advance   a particle is integrated as soon as all its pairs are done, while it is in the nearest cache
 //             (integration.hpp).
 //
-// R^2 - r^2 is formed in double precision from exact differences: overlap = (R^2 - r^2)/(R + r) keeps its digits
-// however stiff the particles are. Included by the files of the instruction paths; internal linkage on purpose.
+// R^2 - r^2 is computed in double precision from exact differences, so overlap = (R^2 - r^2)/(R + r) is accurate for
+// any stiffness. The files of the instruction paths include this file; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/integration.hpp"
@@ -20,27 +20,27 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-/// Pairs that may touch, packed; the buffers of one tile and a remainder.
+/// Buffers of packed pairs that may touch: one tile and a remainder.
 struct alignas(64) Packed {
     Place first[tile + 2 * width];
     Place second[tile + 2 * width];
     std::int32_t offset[3][tile + 2 * width];
     float outcome[tile / width + 1][9][width];
-    float memory[histories_at_most][tile + 2 * width];  ///< only where histories are streamed
+    float memory[histories_at_most][tile + 2 * width];  ///< only if histories are streamed
 };
 
-/// How far a sweep has come.
+/// Progress of a sweep.
 struct Progress {
-    std::int32_t batch;    ///< of the inner list, next to be sifted
+    std::int32_t batch;    ///< next vector of the inner list to be sifted
     std::int32_t packed;   ///< pairs in the buffers
     std::int32_t done;     ///< particles integrated
-    std::int64_t read;     ///< histories taken from the last step's stream
-    std::int64_t written;  ///< histories put into this step's
-    std::int64_t met;      ///< of these, those already evaluated
+    std::int64_t read;     ///< histories read from the stream of the last step
+    std::int64_t written;  ///< histories written to the stream of this step
+    std::int64_t met;      ///< written histories whose contacts are evaluated
 };
 
-/// Sifts batches until a tile is full or the list at its end. `streams`: histories wait in the buffers until meet() has
-/// evaluated them and writes them past the caches. Otherwise they are evaluated in place.
+/// Sifts batches until a tile is full or the list ends. `streams`: histories stay in the buffers until meet() evaluates
+/// them and writes them past the caches. Otherwise they are evaluated in place.
 template <class Kernel, bool streams>
 GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {
     const Constants& c = f.constants;
@@ -90,14 +90,14 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
     progress = s;
 }
 
-/// R^2 - r^2 from exact differences, rounded once.
+/// Returns R^2 - r^2 from exact differences, rounded once.
 GRAINSWEEP_LANES F closeness(const Constants& c, I x, I y, I z, D reach_squared) {
     const D dx = exact(x) * broadcast(c.unit[0]), dy = exact(y) * broadcast(c.unit[1]),
             dz = exact(z) * broadcast(c.unit[2]);
     return single(fnma(dx, dx, fnma(dy, dy, fnma(dz, dz, reach_squared))));
 }
 
-/// Sum over both particles of 1/(m R^2).
+/// Returns the sum over both particles of 1/(m R^2).
 GRAINSWEEP_LANES F sum_of_turning_masses(const Record* records, const Place* first, const Place* second) {
     float sum[width];
     for (int q = 0; q < width; ++q) {
@@ -108,7 +108,7 @@ GRAINSWEEP_LANES F sum_of_turning_masses(const Record* records, const Place* fir
     return load(sum);
 }
 
-/// The laws of pairs: the same of all, or by the kinds of both particles.
+/// Laws of the pairs: the same for all, or by the kinds of both particles.
 template <class Kernel, bool several>
 struct PairLaws {
     using Laws = typename Kernel::Laws;
@@ -129,7 +129,8 @@ struct PairLaws<Kernel, true> {
     LawTable<Laws> table;
 };
 
-/// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
+/// Computes force and torques of the packed pairs into the rows of results. Histories begin at index `at` of the
+/// stream.
 template <class Kernel, bool streams, bool several>
 GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, several>& laws, Packed& p, int batches,
                            std::int64_t at, Tally& t) {
@@ -249,7 +250,7 @@ GRAINSWEEP_PHASE void scatter(const Field& f, const Packed& p, int batches) {
     }
 }
 
-/// Fills the last vector up with a pair that never touches.
+/// Pads the last vector with a pair that never touches.
 GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
     for (int q = packed; q < packed + width; ++q) {
         p.first[q] = static_cast<Place>(f.filler * places_per_index);
@@ -258,7 +259,7 @@ GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
     }
 }
 
-/// Moves what a tile left over to the front.
+/// Moves the remainder of a tile to the front.
 template <class Kernel, bool streams>
 GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
     if constexpr (streams)
@@ -268,7 +269,7 @@ GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
     for (auto& offset : p.offset) store(offset, load(offset + from));
 }
 
-/// Fetches of what is written after a sweep as much as there has been of the sweep.
+/// Prefetches the memory that is written after the sweep, in proportion to the progress of the sweep.
 GRAINSWEEP_LANES void fetch_what_is_written_after(const Field& f, std::int32_t batch, std::int32_t batches,
                                                   std::int32_t& fetched) {
     const std::int32_t all = f.lines_written_after;
@@ -298,7 +299,7 @@ void sweep_pairs(const Field& f, bool advancing, Tally& t) {
         at.packed = last ? 0 : at.packed - full * width;
         keep_rest<Kernel, streams>(p, full * width);
         if (!advancing) continue;
-        // pairs still to come begin with the first one left over, or the next one listed
+        // the next pair is the first one left over, or else the next one listed
         const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
         const auto first = static_cast<std::int32_t>(next / places_per_index);
         // copies of other subdomains' particles lie behind the fillers, and come first in a list

@@ -1,7 +1,7 @@
-// Contacts with walls: the pair law with R* = R, m* = m. What is touched where is found in double precision
-// (wall_places.hpp); the laws are those of the wall's surface. Torque arm R - d/2. A wall that is not summed up is at
-// rest: neither its velocity nor the places where it is touched are needed.
-// Included by the files of the instruction paths; internal linkage on purpose.
+// Contacts with walls: the pair laws with R* = R, m* = m and the materials of the wall's surface. The places of contact
+// are found in double precision (wall_places.hpp). The torque arm is R - d/2. A wall without sums is at rest: neither
+// its velocity nor the places of contact are needed. The files of the instruction paths include this file; it has
+// internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/wall_places.hpp"
@@ -41,7 +41,7 @@ GRAINSWEEP_LANES void add_to(double* total, V3 a) {
     total[2] += sum_of(a.z);
 }
 
-/// Fills the last vector up with a particle that never touches.
+/// Pads the last vector with a particle that never touches.
 template <class Kernel>
 GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
     const F zero = broadcast(0.0f);
@@ -52,7 +52,7 @@ GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
     for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + packed, zero);
 }
 
-/// The laws at the packed contacts: forces on the particles, new memories, and where asked for the wall's sums.
+/// Applies the laws to the packed contacts: forces on the particles, new memories, and, if `summed`, the wall's sums.
 template <class Kernel, bool summed>
 GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, WallTile& t, int batches,
                             float& wall_overlap, WallSums& sums) {
@@ -112,7 +112,7 @@ GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, W
     sums.power += sum_of(lanes.power);
 }
 
-/// Several kinds of particles have laws of their own at a wall: one kind after the other.
+/// Applies the laws for one kind of particles after the other.
 template <class Kernel>
 void press_by_kinds(const Field& f, const PlacedWall& wall, WallTile& t, int packed, float& wall_overlap,
                     WallSums& sums) {
@@ -143,7 +143,7 @@ void press_by_kinds(const Field& f, const PlacedWall& wall, WallTile& t, int pac
     }
 }
 
-/// Memories back to the list; those of particles that do not touch end.
+/// Writes memories back to the list and clears those of particles that do not touch.
 template <class Kernel>
 GRAINSWEEP_LANES void return_memories(const Field& f, const WallTile& t, const WallProgress& p) {
     int at = 0, b = 0;
@@ -154,7 +154,7 @@ GRAINSWEEP_LANES void return_memories(const Field& f, const WallTile& t, const W
     }
 }
 
-/// Contacts that were found before, from number `from` on: `count` numbers of each column, in whole vectors.
+/// Copies `count` values of a column from index `from`, in whole vectors.
 template <class T>
 GRAINSWEEP_LANES void copy(T* to, const T* column, std::int32_t from, int count) {
     for (int q = 0; q < count; q += width) store(to + q, load(column + from + q));
@@ -170,7 +170,7 @@ GRAINSWEEP_LANES void take_touches(const Field& f, std::int32_t from, int count,
     }
     for (int a = 0; a < Kernel::histories; ++a) copy(t.memory[a], f.touch_memory[a], from, count);
 }
-/// Their memories back; no more than those, for the next may be another wall's.
+/// Writes exactly `count` memories back, because the next ones may belong to another wall.
 template <class Kernel>
 GRAINSWEEP_LANES void return_touches(const Field& f, std::int32_t from, int count, const WallTile& t) {
     for (int a = 0; a < Kernel::histories; ++a)

@@ -1,4 +1,4 @@
-// Which particles are near which wall: a segment of the list for each, histories following their contacts.
+// Lists of the particles near each wall, one segment per wall; histories move with their contacts.
 #pragma once
 
 #include "solver/dem/fast/columns.hpp"
@@ -8,18 +8,18 @@
 
 namespace grainsweep::dem::fast {
 
-/// Entries of the list, with those that fill vectors up.
+/// Returns the number of entries of the list, including padding.
 inline std::int32_t wall_contacts(const Field& f) {
     return f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
 }
 
-/// Walls that may be touched in one place; of the others wall_touches.hpp knows. `keep`: histories follow their
-/// contacts, by columns.place; else they start at zero.
+/// Makes the lists of walls that can be touched in one place only; for other walls see wall_touches.hpp. `keep`:
+/// histories move with their contacts, by columns.place; otherwise they start at zero.
 void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space,
                         const Walls& walls, bool keep, const Parts& parts);
 
-/// Calls visit(particle, slot) for the listed particles of a wall; of one that may be touched in several places for
-/// those that touch it, with the slot of the first contact.
+/// Calls visit(particle, slot) for the listed particles of a wall. For a wall that can be touched in several places, it
+/// visits the touching particles, with the slot of the first contact.
 template <class Visit>
 void for_each_near(const Field& f, const Walls& walls, std::size_t w, Visit&& visit) {
     const bool single = walls.is_single(w);
@@ -32,7 +32,7 @@ void for_each_near(const Field& f, const Walls& walls, std::size_t w, Visit&& vi
     }
 }
 
-/// Position of a particle as forces see it, m.
+/// Returns the position of a particle that the forces use, m.
 [[nodiscard]] Vec3 position_of(const Record& record, const Scale& scale);
 
 }  // namespace grainsweep::dem::fast

@@ -1,7 +1,7 @@
-// Which pieces of a wall particles touch: one lane for a particle and a piece near it, in double precision, rounded
-// once. A piece whose plane is touched inside all of its sides is done; of one that may be touched on a side, and of
-// several at one particle, the shape itself decides (wall_touches.cpp).
-// Included by the files of the instruction paths; internal linkage on purpose.
+// Search for the pieces of a wall that particles touch: one lane per particle and near piece, in double precision,
+// rounded once. If the plane of a piece is touched inside all its sides, this is the contact. If a piece may be touched
+// on a side, or a particle touches several pieces, the shape decides (wall_touches.cpp). The files of the instruction
+// paths include this file; it has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/wall_places.hpp"
@@ -9,14 +9,14 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-/// Lanes waiting to be looked at.
+/// Lanes of particles and pieces that wait for the test.
 struct PieceLanes {
     Place particle[width];
     std::int32_t entry[width];
     std::int32_t piece[width];
 };
 
-/// Appends those touched to the columns; returns their number.
+/// Appends the touched pieces to the columns. Returns their number.
 template <class S>
 GRAINSWEEP_LANES std::int32_t look_at(const Field& f, const PlacedWall& w, const PieceList& list,
                                       const PieceLanes& lanes, std::int32_t at) {
@@ -83,7 +83,7 @@ GRAINSWEEP_PHASE std::int32_t find_pieces_of(const Field& f, const PlacedWall& w
             waiting = 0;
         }
     if (waiting == 0) return at - begin;
-    for (int q = waiting; q < width; ++q) {  // what fills the vector up never touches
+    for (int q = waiting; q < width; ++q) {  // padding that never touches
         lanes.particle[q] = static_cast<Place>((f.count + 2) * places_per_index);
         lanes.entry[q] = lanes.piece[q] = 0;
     }
@@ -99,7 +99,7 @@ constexpr FindPieces find_pieces_in() {
     return nullptr;
 }
 
-/// One for each shape, in the order of the list.
+/// Functions for each shape, in the order of the list.
 template <class List>
 struct PieceFinders;
 template <class... Shapes>

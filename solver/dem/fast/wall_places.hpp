@@ -1,7 +1,7 @@
-// Where particles touch walls: for each shape of the list a function over lanes that takes the particles near a wall
-// into its frame and packs those that touch. Positions, distances and velocities of the wall's material are formed in
-// double precision and rounded once.
-// Included by the files of the instruction paths; internal linkage on purpose.
+// Search for the places where particles touch walls. For each shape of the list, a function over lanes transforms the
+// particles near a wall to its frame and packs those that touch. Positions, distances and velocities of the wall's
+// material are computed in double precision and rounded once. The files of the instruction paths include this file; it
+// has internal linkage on purpose.
 #pragma once
 
 #include "solver/dem/fast/contact.hpp"
@@ -39,25 +39,26 @@ GRAINSWEEP_LANES D3 add_cross(D3 c, D3 a, D3 b) {
     return {fnma(a.z, b.y, fma(a.y, b.z, c.x)), fnma(a.x, b.z, fma(a.z, b.x, c.y)), fnma(a.y, b.x, fma(a.x, b.y, c.z))};
 }
 
-/// Contacts with one wall, packed.
+/// Packed contacts with one wall.
 struct alignas(64) WallTile {
     Place particle[wall_tile + 2 * width];
     float overlap[wall_tile + 2 * width];
     float normal[3][wall_tile + 2 * width];
-    float velocity[3][wall_tile + 2 * width];  ///< of the wall's material; written where the wall is summed up
-    float lever[3][wall_tile + 2 * width];     ///< from the wall's pivot to the place on its surface; likewise
+    float velocity[3][wall_tile + 2 * width];  ///< of the wall's material; only for a wall with sums
+    float lever[3][wall_tile + 2 * width];     ///< from the wall's pivot to the place on its surface; only for a wall
+                                               ///< with sums
     float memory[histories_at_most][wall_tile + 2 * width];
 };
 
-/// How far a wall's list has come.
+/// Progress in a wall's list.
 struct WallProgress {
-    std::int32_t slot;                    ///< next to be looked at
+    std::int32_t slot;                    ///< next entry
     std::int32_t begin;                   ///< first of this tile
     std::int32_t packed;                  ///< contacts in it
-    std::uint16_t touch[listed_vectors];  ///< which lanes touch, vector by vector of the list
+    std::uint16_t touch[listed_vectors];  ///< touching lanes of each vector of the list
 };
 
-/// Position of the particles relative to a wall's origin: of the nearest of its images.
+/// Returns the positions of particles relative to the origin of the wall's nearest image.
 GRAINSWEEP_LANES D3 positions_at(const Field& f, const PlacedWall& w, const Place* particle) {
     const Constants& c = f.constants;
     I ix, iy, iz;
@@ -87,7 +88,7 @@ GRAINSWEEP_LANES D3 from_body(const double (&rows)[3][3], D3 a) {
     return {along(0), along(1), along(2)};
 }
 
-/// Distance and normal of the wall's closest points.
+/// Returns distance and normal of the wall's closest points.
 template <class S>
 GRAINSWEEP_LANES geometry::Near<D> nearest(const PlacedWall& w, D3 r) {
     typename S::Numbers numbers;
@@ -100,7 +101,7 @@ GRAINSWEEP_LANES geometry::Near<D> nearest(const PlacedWall& w, D3 r) {
     return {found.distance, normal.x, normal.y, normal.z};
 }
 
-/// Particles of a vector of the list against a wall: where they are, what of it is closest, how deep they are in it.
+/// Particles of a vector of the list relative to a wall: positions, closest points and overlaps.
 template <class S>
 struct Approach {
     D3 position;
@@ -111,7 +112,7 @@ struct Approach {
         : position(positions_at(f, w, particle)),
           surface(nearest<S>(w, position)),
           overlap(single(exact(load_radii(f.records, particle)) - surface.distance)) {}
-    /// Lanes that touch, or may still hold.
+    /// Returns the lanes that touch, or whose contact may last beyond touch.
     GRAINSWEEP_LANES Chosen near(const Field& f) const { return Chosen(broadcast(-f.constants.beyond_wall) < overlap); }
 };
 
@@ -121,7 +122,7 @@ GRAINSWEEP_LANES void store(float (&rows)[3][wall_tile + 2 * width], int at, V3 
     store(rows[2] + at, compress(a.z, lanes));
 }
 
-/// Packs what touches, or may still hold, from p.slot on, up to `end` or until a tile is full.
+/// Packs these particles from p.slot to `end`, or until a tile is full.
 template <class S>
 GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int32_t end, WallTile& t, WallProgress& p) {
     const D3 origin = broadcast(w.pivot), velocity = broadcast(w.velocity), spin = broadcast(w.spin);
@@ -152,7 +153,7 @@ GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int3
     }
 }
 
-/// See Kernels::touching.
+/// Implements Kernels::touching.
 template <class S>
 GRAINSWEEP_PHASE void mark_places(const Field& f, const PlacedWall& w, WallSegment slots, std::uint16_t* lanes) {
     for (std::int32_t slot = slots.begin; slot < slots.end; slot += width)
@@ -174,7 +175,7 @@ constexpr MarkPlaces mark_places_of() {
     return nullptr;
 }
 
-/// One for each shape, in the order of the list.
+/// Functions for each shape, in the order of the list.
 template <class List>
 struct PlaceFinders;
 template <class... Shapes>

@@ -1,12 +1,12 @@
-// Contacts with walls that a particle may touch in several places at once, because their shapes are made of pieces.
+// Contacts with walls whose shapes are made of pieces, so that a particle may touch them in several places.
 //
-//   list      at a rebuild: the pieces within the skin of each particle, its candidates
-//   refresh   when a particle may have come near another of them: the candidates that count until then
-//   find      each step: over lanes, which of these are touched (wall_pieces.hpp). One piece, inside its sides: that is
-//             the contact. Otherwise the shape says where it is touched, by those pieces
+//   list      at a rebuild: lists the pieces within the skin of each particle, its candidates
+//   refresh   when a particle may have come near other candidates: selects the ones to test until the next refresh
+//   find      at each step: finds the touched candidates, over lanes (wall_pieces.hpp). One piece touched inside its
+//             sides is the contact. Otherwise the shape computes the contacts from the touched pieces
 //
-// What contacts remember goes on by their normals (geometry/contact_memory.hpp). The laws are evaluated as at all other
-// walls (wall_contacts.hpp).
+// Memories of contacts are matched by their normals (geometry/contact_memory.hpp). The laws are evaluated as for all
+// other walls (wall_contacts.hpp).
 #pragma once
 
 #include <cstdint>
@@ -22,24 +22,26 @@ namespace grainsweep::dem::fast {
 
 class WallTouches {
 public:
-    /// New walls: nothing is touched yet.
+    /// Starts with new walls, without contacts.
     void begin(Field& field, Columns& columns, const Walls& walls, const Scale& scale);
-    /// The particles that may touch each wall until they have moved by `reach` against it, in largest diameters.
+    /// Lists the particles that may touch each wall before they have moved by `reach` relative to it, in largest
+    /// diameters.
     void list(const Field& field, const Walls& walls, const Scale& scale, double reach, const Parts& parts);
-    /// Where the walls are touched now; contacts keep their memories. `drift`: moved since the lists were made.
+    /// Finds the present contacts; they keep their memories. `drift`: displacement since the lists were made.
     void find(Field& field, Columns& columns, const Walls& walls, const Kernels& kernels, const Scale& scale,
               double drift, const Parts& parts);
-    /// A wall without an inside pushes on what has passed it. A centre that did so in the step that ended at `time`, by
-    /// what find() found: it is no farther from the wall than `moved`, the most by which anything moved against it.
+    /// Passage of a centre through a wall without an inside, which would then push it onwards. It is found after the
+    /// step that ended at `time`, among the contacts of find(): the centre is no farther from the wall than `moved`,
+    /// the largest relative displacement of the step.
     struct Passage {
         std::int32_t particle, wall;
     };
     [[nodiscard]] std::optional<Passage> passage(const Field& field, const Walls& walls, const Scale& scale,
                                                  double time, double moved, double smallest_radius) const;
-    /// After the particles were sorted: those of columns.place; contacts of removed ones end.
+    /// Renumbers particles by columns.place after sorting; contacts of removed particles end.
     void reorder(Field& field, Columns& columns);
 
-    /// Everything that changes; the first of its memories in columns.touch_memory.
+    /// Passes the complete state to an archive; memories are in columns.touch_memory.
     template <class Archive>
     static void pass(auto& self, Archive& archive, auto& columns) {
         archive.list(self.segment_);
@@ -48,25 +50,25 @@ public:
         for (auto& column : columns.touch_normal) archive.column(column, count);
         for (int a = 0; a < columns.histories; ++a) archive.column(columns.touch_memory[a], count);
     }
-    /// Whether this can be of `walls` walls and `particles` particles.
+    /// Returns whether this state is valid for `walls` walls and `particles` particles.
     [[nodiscard]] bool fits(const Columns& columns, std::size_t walls, std::int32_t particles) const;
-    /// After a state was read.
+    /// Restores derived data after a state was read.
     void restored(Field& field, Columns& columns, const Walls& walls, const Scale& scale, double reach);
 
 private:
-    /// A wall's pieces, and the particles near them.
+    /// Pieces of a wall, and the particles near them.
     struct PieceWall {
         std::size_t wall = 0;
         std::int32_t stride = 0;
         double margin = 0;
-        double seam = 0;              // way of a particle until the next list, m
+        double seam = 0;              // displacement of a particle until the next list, m
         std::vector<double> numbers;  // in the engine's units, in the frame of the body
         std::vector<Place> particle;  // ascending
         std::vector<std::int32_t> first, active;
         std::vector<std::uint32_t> candidate;  // a particle's active ones come first
-        std::vector<double> wake;              // drift from which on others may count
+        std::vector<double> wake;              // drift at which other candidates must be tested
     };
-    /// A contact of the step before.
+    /// Contact of the step before.
     struct Before {
         Place particle;
         float normal[3];
@@ -75,7 +77,7 @@ private:
         std::size_t begin, end;
     };
 
-    /// What one part of a search needs beside the columns.
+    /// Scratch data of one part of a search.
     struct Scratch {
         std::vector<std::int32_t> from;
         std::vector<std::uint32_t> of_one;
@@ -83,7 +85,7 @@ private:
         std::vector<WallTouch> before, now;
         WallSegment found;  // its contacts
     };
-    /// What all parts of a search read, and the columns that they write into.
+    /// Input of all parts of a search, and the columns that they write.
     struct Search {
         const PieceWall* pieces;
         const MovingWall* wall;
@@ -91,7 +93,7 @@ private:
         Columns* columns;
         const Scale* scale;
         std::size_t old_end;  // of the wall's contacts in before_
-        // Of each place in the columns: which of its part's particles, and which piece, was found there.
+        // For each place in the columns: index of the particle in its part, and the piece found.
         std::int32_t* entry;
         std::uint32_t* piece;
     };

@@ -214,6 +214,8 @@ void Walls::save(Writer& archive) const {
     for (const MovingWall& wall : moving_) write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
     archive.list(sums_);
     archive.list(work_);
+    for (const MovingWall& wall : moving_)
+        if (wall.free()) archive.value(wall.energy());
 }
 
 Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale, std::int32_t combination,
@@ -224,6 +226,12 @@ Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale,
     archive.list(walls.work_);
     if (walls.sums_.size() != count || walls.work_.size() != count)
         throw std::invalid_argument("the checkpoint holds values that no state has");
+    for (MovingWall& wall : walls.moving_) {
+        if (!wall.free()) continue;
+        geometry::BodyEnergy energy;
+        archive.value(energy);
+        wall.take_energy(energy);
+    }
     return walls;
 }
 

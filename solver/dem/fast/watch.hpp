@@ -1,11 +1,11 @@
-// Checks of the mixed engine's speeds and energy, as of the clear one's (dem/limits.hpp).
+// Checks of the mixed engine's speeds and energy, with the limits of dem/limits.hpp.
 //
-// Energy minus the work of gravity and of moving walls must not grow: contacts store or dissipate. The sum is made in
-// double precision every energy_interval steps. A check costs about as much as seven steps, so many particles are
-// checked less often: their laws cannot spin all of them up at once. Work of gravity uses the displacements since the
-// last check, which are defined up to whole periods. Where gravity acts along a periodic axis, checks come before any
-// particle covers a quarter of a period. A vessel that is
-// shaken is not balanced, for the work of shaking would take the momentum of every step.
+// Energy minus the work of gravity and of moving walls must not grow, because contacts only store or dissipate energy.
+// The sum is computed in double precision every energy_interval steps. A check costs about as much as seven steps, so
+// many particles are checked less often; their laws cannot spin all of them up at the same time. The work of gravity
+// uses the displacements since the last check, which are known up to whole periods. If gravity acts along a periodic
+// axis, a check is made before any particle covers a quarter of a period. A shaken vessel has no balance, because the
+// work of shaking would need the momentum of every step.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace grainsweep::dem::fast {
 
-/// Steps between two checks of the energy, of few particles and of more.
+/// Steps between two checks of the energy, for few particles and for many.
 inline constexpr std::int64_t energy_interval_of_few = 128, energy_interval = 1024;
 inline constexpr std::size_t few_particles = 100;
 
@@ -41,29 +41,29 @@ class Watch {
 public:
     Watch(const Setup& setup, const Scale& scale);
 
-    /// Sets the largest speed that can occur, from the state of the start or after a change of walls or particles.
+    /// Sets the largest possible speed, from the state at the start or after a change of walls or particles.
     void set_limit(const Moment& now, std::span<const MovingWall> walls);
-    /// A particle that was added: its id follows those before.
+    /// Adds a particle; its id follows the earlier ids.
     void begin(const Record& record) { seen_.push_back({record.position[0], record.position[1], record.position[2]}); }
-    /// Their work counts from here on.
+    /// Restarts the work of the walls.
     void forget_wall_work() { work_of_walls_ = 0; }
     /// Adds a step by the largest component of its velocities, engine's units.
     void add_travel(double fastest);
     /// Adds work of the walls on the particles, engine's units.
     void add_wall_work(double work) { work_of_walls_ += work * energy_unit_; }
-    /// Particles left: their energy is gone.
+    /// Restarts the balance after particles with their energy have left.
     void restart_balance() { balance_.restart(); }
 
-    /// Whether the speed limit may be exceeded, judged by the largest component.
+    /// Returns whether the largest velocity component may exceed the speed limit.
     [[nodiscard]] bool too_fast(double fastest) const;
     [[nodiscard]] bool due(std::int64_t steps) const;
-    /// What is wrong and with which particle; empty: the balance is sound.
+    /// Returns the fault of the balance and sets its particle; empty: the balance is sound.
     [[nodiscard]] std::string check(const Moment& now, std::int32_t& particle);
 
-    [[nodiscard]] std::size_t spheres() const { return seen_.size(); }  ///< that there were so far
+    [[nodiscard]] std::size_t spheres() const { return seen_.size(); }  ///< number of spheres so far
     [[nodiscard]] double speed_limit() const { return speed_limit_; }   ///< m/s
 
-    /// Everything that changes.
+    /// Passes the complete state to an archive.
     template <class Archive>
     static void pass(auto& self, Archive& archive) {
         archive.value(self.balance_);
@@ -90,7 +90,7 @@ private:
     EnergyBalance balance_;
     double work_of_walls_ = 0, work_of_gravity_ = 0;  ///< J
     double speed_limit_ = std::numeric_limits<double>::infinity();
-    double covered_ = 0;        ///< at most, since the last check, in lengths
+    double covered_ = 0;        ///< largest possible displacement since the last check, in lengths
     std::vector<Place3> seen_;  ///< positions of the last check, by id
 };
 

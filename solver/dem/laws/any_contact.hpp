@@ -1,4 +1,4 @@
-// A contact whose laws are chosen at run time, in double precision and SI.
+// Contact whose laws are chosen at run time, in double precision and SI.
 #pragma once
 
 #include "solver/dem/laws/contact.hpp"
@@ -21,21 +21,21 @@ public:
     virtual ~AnyContact() = default;
 
     [[nodiscard]] const Traits& traits() const { return traits_; }
-    /// Whether its laws compute a material.
+    /// Returns whether its laws can compute a material.
     [[nodiscard]] virtual bool covers(const Material& material) const = 0;
-    /// The same laws with the constants of another material.
+    /// Returns the same laws with the constants of another material.
     [[nodiscard]] virtual std::unique_ptr<const AnyContact> of(const Material& material) const = 0;
-    /// Values of all constants, in the order of the laws.
+    /// Returns the values of all constants, in the order of the laws.
     [[nodiscard]] virtual std::vector<double> constants() const = 0;
-    /// How far contacts may last beyond touch, m.
+    /// Returns the largest gap of a lasting contact, m.
     [[nodiscard]] virtual double beyond(double effective_radius) const = 0;
-    /// Whether a near pair, or a particle near a wall, is a contact; completes it.
+    /// Returns whether a near pair, or a particle near a wall, is a contact; completes the touch.
     [[nodiscard]] virtual bool begin(Touch<Partner::particle>& t, const double* memory) const = 0;
     [[nodiscard]] virtual bool begin(Touch<Partner::wall>& t, const double* memory) const = 0;
-    /// Forces at the present memory.
+    /// Returns the forces for the present memory.
     [[nodiscard]] virtual Response<double> respond(const Touch<Partner::particle>& t, const double* memory) const = 0;
     [[nodiscard]] virtual Response<double> respond(const Touch<Partner::wall>& t, const double* memory) const = 0;
-    /// Forces of a time step; the memory advances by it.
+    /// Returns the forces of a time step and advances the memory by it.
     [[nodiscard]] virtual Response<double> advance(const Touch<Partner::particle>& t, double* memory) const = 0;
     [[nodiscard]] virtual Response<double> advance(const Touch<Partner::wall>& t, double* memory) const = 0;
     [[nodiscard]] virtual double energy(const Touch<Partner::particle>& t, const double* memory) const = 0;

@@ -1,8 +1,8 @@
-// The arithmetic that laws are written in: numbers are doubles (here), or vectors of floats with one contact per lane
-// (fast/lane_arithmetic.hpp). A law is one text for both: `template <class Real> struct NAME`.
+// Arithmetic of the laws: numbers are doubles (here), or vectors of floats with one contact per lane
+// (fast/lane_arithmetic.hpp). A law is one template for both: `template <class Real> struct NAME`.
 //
-// Sums and products of three begin from the left here and from the right there, where they are fused; `spring` and
-// `product` keep that. What exceeds a limit is decided by comparing sizes here, by an inverse root there.
+// Sums and products of three numbers are evaluated from the left here, and from the right and fused in lanes; `spring`
+// and `product` keep this order. A limit is tested by comparing sizes here, by an inverse root in lanes.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -11,13 +11,13 @@
 
 namespace grainsweep::dem {
 
-/// A contact area A = disc x (the disc in which two spheres cut) + band R* d + cap (2 R* - d) d, m2.
+/// Contact area A = disc x (the disc in which two spheres intersect) + band R* d + cap (2 R* - d) d, m2.
 struct AreaForm {
     double disc = 0, band = 0, cap = 0;  ///< at a pair
     double wall_band = 0, wall_cap = 0;  ///< at a wall
 };
 
-/// Whether the tangential or rolling spring is beyond its limit, and the factor that brings it back.
+/// Test whether a tangential or rolling spring exceeds its limit, and the factor that reduces it to the limit.
 template <class Real, class Mask>
 struct Cut {
     Mask exceeds;
@@ -31,7 +31,7 @@ template <>
 struct Arithmetic<double> {
     using Vector = geometry::Vec3;
     using Mask = bool;
-    /// Coefficient c of a damper c sqrt(m* a), a the radius of the contact, and c over that of the normal damper.
+    /// Coefficient c of a damper c sqrt(m* a), a the radius of the contact, and c divided by that of the normal damper.
     struct Damping {
         double coefficient, over_normal;
     };
@@ -48,7 +48,7 @@ struct Arithmetic<double> {
     static void remember(double* memory, const Vector& v) {
         for (std::size_t k = 0; k < 3; ++k) memory[k] = v[k];
     }
-    static constexpr int iterations = 6;  ///< of Newton's method that begins with one digit
+    static constexpr int iterations = 6;  ///< of Newton's method from a start with one digit
     static double divided(double a, double b) { return a / b; }
     static double larger(double a, double b) { return a < b ? b : a; }
     static double smaller(double a, double b) { return b < a ? b : a; }
@@ -57,21 +57,21 @@ struct Arithmetic<double> {
     static double fnma(double a, double b, double c) { return c - a * b; }  ///< c - a b
     static double abs(double a) { return std::abs(a); }
     static double sqrt(double a) { return std::sqrt(a); }
-    static double drop(bool m, double a) { return m ? 0.0 : a; }  ///< a, or 0 where m holds
+    static double drop(bool m, double a) { return m ? 0.0 : a; }  ///< a, or 0 if m is true
     /// v + factor w
     static Vector add(const Vector& v, double factor, const Vector& w) {
         using namespace geometry;
         return v + factor * w;
     }
-    /// v without its part along n.
+    /// Returns v without its component along n.
     static Vector across(const Vector& v, const Vector& n) { return add(v, -geometry::dot(v, n), n); }
     static Vector scaled(const Vector& v, double factor) { return geometry::operator*(factor, v); }
-    /// A vector of this size in the direction of v, 0 where v is 0.
+    /// Returns a vector of this size in the direction of v; 0 if v is 0.
     static Vector directed(double size, const Vector& v) {
         const double length = geometry::norm(v);
         return scaled(v, length > 0 ? size / length : 0.0);
     }
-    /// Of k |s| against a limit.
+    /// Compares k |s| with a limit.
     static Cut<double, bool> cut(double k, const Vector& s, double limit) {
         return cut_to(k * std::sqrt(geometry::dot(s, s)), limit);
     }
@@ -83,7 +83,7 @@ struct Arithmetic<double> {
     }
 
 private:
-    // Both answers are computed and one is chosen: which of them holds is hard to predict.
+    // Both results are computed and one is selected, because a branch would be hard to predict.
     static Cut<double, bool> cut_to(double size, double limit) {
         const bool exceeds = size > limit;
         return {exceeds, exceeds ? limit / size : 1.0};

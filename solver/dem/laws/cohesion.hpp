@@ -1,11 +1,11 @@
 // Cohesion proportional to a contact area (Johnson, Kendall & Roberts, simplified):  F = -k A n.
 //
-// k is the cohesion energy density (J/m3 = Pa). Three areas are in use; r the distance of the centres:
-//     sjkr    pair  A = -pi/4 (r-Ri-Rj)(r+Ri-Rj)(r-Ri+Rj)(r+Ri+Rj)/r^2, the disc where the spheres cut
+// k is the cohesion energy density (J/m3 = Pa). Three areas are available; r is the distance of the centres:
+//     sjkr    pair  A = -pi/4 (r-Ri-Rj)(r+Ri-Rj)(r-Ri+Rj)(r+Ri+Rj)/r^2, the disc in which the spheres intersect
 //             wall  A = pi (2 R d - d^2)                                       (LIGGGHTS 3.8 `sjkr`)
 //     sjkr2   pair  A = 4 pi R* d            wall  A = 2 pi R d                (LIGGGHTS 3.8 `sjkr2`)
 //     paper   A = pi (2 R* d - d^2)/4, pair and wall alike (Gupta, eq. 15 read literally)
-// The area also gives the stored energy, minus k times the integral of A over the overlap.
+// The stored energy is minus k times the integral of A over the overlap.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -27,7 +27,7 @@ namespace grainsweep::dem {
     }
 }
 
-/// `lens`: sjkr of which friction sees nothing, the case worth a law of its own.
+/// Cohesion by area. `lens`: sjkr without effect on friction, which is compiled as a separate law.
 template <class Real, bool lens>
 struct CohesionOver : LawTraits {
     using A = Arithmetic<Real>;
@@ -54,7 +54,7 @@ struct CohesionOver : LawTraits {
         : force(A::area_force(c[0], {c[1], c[2], c[3], c[4], c[5]})), seen(A::number(c[6])) {}
 
     typename A::AreaForce force;
-    Real seen;  ///< 1: Coulomb's limit has the cohesive force, 0: it does not
+    Real seen;  ///< 1: Coulomb's limit includes the cohesive force, 0: it does not
 
     template <bool advance, class T>
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real*) const {
@@ -63,7 +63,7 @@ struct CohesionOver : LawTraits {
         if constexpr (!lens) r.seen = A::fnma(seen, attraction, r.seen);
     }
 
-    /// Minus the work of the attraction since first touch, J: every area grows as d to first order.
+    /// Returns minus the work of the attraction since first touch, J: every area is proportional to d to first order.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {
         return -0.5 * t.template over_area<lens>(force) * t.overlap;

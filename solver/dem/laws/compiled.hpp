@@ -1,5 +1,5 @@
-// The combinations of laws that are compiled, from lean to general: engines, checkpoints and readers of contacts follow
-// from this list. A case takes the first combination that fits its material.
+// List of the compiled combinations of laws, from special to general, for engines, checkpoints and readers of contacts.
+// A case uses the first combination that fits its materials.
 #pragma once
 
 #include "solver/dem/laws/capillary.hpp"
@@ -22,11 +22,11 @@ namespace grainsweep::dem {
 
 class AnyContact;
 
-/// What engines compile a combination for.
+/// Spheres for which engines compile a combination.
 enum class Columns {
-    equal,  ///< equal spheres only, and only materials that want every one of its laws
-    sizes,  ///< the same, also spheres of many sizes
-    any     ///< any spheres, by the code for many sizes; a law that a material does not want has zero constants
+    equal,  ///< equal spheres only, and only materials that need all its laws
+    sizes,  ///< as equal, and also spheres of many sizes
+    any     ///< any spheres, by the code for many sizes; a law that a material does not need has zero constants
 };
 
 template <Columns compiled_for, template <class> class... Laws>
@@ -62,34 +62,34 @@ using Compiled = CombinationList<Combination<Columns::equal, Hertz>,            
                                  Combination<Columns::any, Hertz, Cohesion, Mindlin, ConstantTorque>,         //
                                  Combination<Columns::any, Hertz, Cohesion, Mindlin, RollingResistance>>;     //
 
-/// Calls visit.operator()<Combination>() for number `index` of the list.
+/// Calls visit.operator()<Combination>() for the combination with number `index`.
 template <class Visit, class... Combinations>
 void visit_combination(int index, CombinationList<Combinations...>, Visit&& visit) {
     int k = 0;
     ((k++ == index ? visit.template operator()<Combinations>() : void()), ...);
 }
 
-/// What an engine may ask of a combination before it is chosen.
+/// Properties of a combination that an engine needs before it is chosen.
 struct CombinationFacts {
     Columns columns;
     bool spin;
 };
 
-/// Returns the number of the first combination that fits all materials of powder and surfaces and that the engine's
-/// `compiles` allows; general ones it must allow.
+/// Returns the number of the first combination that fits all materials of powder and surfaces and for which `compiles`
+/// returns true. `compiles` must accept the general ones.
 template <class Compiles>
 [[nodiscard]] int choose_combination(std::span<const Material> materials, Compiles&& compiles);
 
 [[nodiscard]] bool fits(int combination, std::span<const Material> materials);
 [[nodiscard]] int combinations();
 [[nodiscard]] CombinationFacts facts_of(int combination);
-/// In SI, those of its laws in order.
+/// Returns the constants of its laws, in order, in SI.
 [[nodiscard]] std::vector<Quantity> constants_of(int combination, const Material& material);
 [[nodiscard]] std::unique_ptr<const AnyContact> make_contact(int combination, const Material& material);
 
-/// Components of the longest memory.
+/// Number of components of the longest memory.
 inline constexpr int memories_at_most = 7;
-/// Constants of the longest combination.
+/// Number of constants of the longest combination.
 inline constexpr int constants_at_most = 20;
 
 template <class Compiles>

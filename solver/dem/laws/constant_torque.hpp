@@ -4,9 +4,9 @@
 //     k_n d = 4/3 E* sqrt(R* d) d or that of the linear law, the elastic part of F_n
 //
 // Zhou, Wang, Yang & Xu (1999), Physica A 269, 536, eq. 7 (model A of Ai, Chen, Rotter & Ooi (2011), Powder Technol.
-// 206, 269), as LIGGGHTS 3.8 `rolling_friction cdt` evaluates it: normalised by the whole |w|, twist included, before
-// the part along n is taken out; F_n without its damping. It has no memory and no threshold: a particle that would stay
-// at rest rocks about w = 0 within mu_r k_n d R* dt/I.
+// 206, 269), as evaluated by LIGGGHTS 3.8 `rolling_friction cdt`: the torque is divided by the whole |w|, including
+// twist, before its component along n is removed; F_n is without damping. It has no memory and no threshold, so a
+// particle at rest oscillates around w = 0 within mu_r k_n d R* dt/I.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -34,7 +34,7 @@ struct ConstantTorque : LawTraits {
         r.rolling = A::across(A::directed(size, t.turning), t.normal);
     }
 
-    /// Nothing is stored.
+    /// Returns 0: no energy is stored.
     template <class T>
     [[nodiscard]] Real energy(const T&, const Real*) const {
         return Real{};

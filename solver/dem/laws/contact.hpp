@@ -1,4 +1,5 @@
-// A contact: laws applied one after the other. It needs what any of them needs, and remembers their memories in order.
+// Contact: laws applied one after the other. It needs the inputs of all laws, and its memory is their memories in
+// order.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -10,7 +11,7 @@
 
 namespace grainsweep::dem {
 
-/// Whether any law there is decides an aspect of this material (compiled.cpp).
+/// Returns whether a law for this aspect is needed by the material (compiled.cpp).
 [[nodiscard]] bool wants(const Material& material, Aspect aspect);
 
 template <class Real, template <class> class... Laws>
@@ -20,28 +21,29 @@ struct Contact : Laws<Real>... {
     static constexpr bool reaches = (Laws<Real>::reaches || ...);
     static constexpr bool acts_apart = (Laws<Real>::acts_apart || ...);
     static constexpr bool remembers_separation = (Laws<Real>::remembers_separation || ...);
-    /// Components of its memory.
+    /// Number of components of its memory.
     static constexpr int memories = (0 + ... + Laws<Real>::memory_kind.components);
     static constexpr bool remembers = memories > 0;
     static constexpr int constants = (0 + ... + Laws<Real>::constants);
     using Memory = std::array<Real, static_cast<std::size_t>(memories)>;
 
-    /// From the constants of all laws, in order.
+    /// Takes the constants of all laws, in order.
     explicit Contact(const double* c) : Laws<Real>(c + constants_before<Laws<Real>>())... {}
 
-    /// Where a law reaches beyond touch, once before the rest: whether a near pair is a contact, and its radius.
+    /// Decides, for laws that reach beyond touch, whether a near pair is a contact, and computes its radius. Called
+    /// once before the laws are applied.
     template <class T>
     [[gnu::always_inline]] void begin(T& t, const Real* memory) const {
         (Laws<Real>::begin(t, memory + memory_before<Laws<Real>>()), ...);
     }
-    /// How far contacts may last beyond touch, m.
+    /// Returns the largest gap of a lasting contact, m.
     [[nodiscard]] static double beyond(const Material& m, double effective_radius) {
         double largest = 0;
         ((largest = std::max(largest, Laws<Real>::beyond(m, effective_radius))), ...);
         return largest;
     }
 
-    /// Force of a touching pair; `advance` true: memories move on by one time step.
+    /// Returns the forces of a touching pair. `advance` true: memories advance by one time step.
     template <bool advance, class T>
     [[nodiscard, gnu::always_inline]] Response<Real> respond(const T& t, Real* memory) const {
         Response<Real> r;
@@ -49,13 +51,13 @@ struct Contact : Laws<Real>... {
         return r;
     }
 
-    /// Energy stored in the pair, J.
+    /// Returns the energy stored in the pair, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real* memory) const {
         return (0.0 + ... + Laws<Real>::energy(t, memory + memory_before<Laws<Real>>()));
     }
 
-    /// Whether it computes a material: all of its laws suit it, and nothing that it wants is missing.
+    /// Returns whether it can compute a material: all laws suit the material, and no law that it needs is missing.
     [[nodiscard]] static bool covers(const Material& m) {
         bool result = (Laws<Real>::suits(m) && ...);
         for (const Aspect a : {Aspect::normal, Aspect::cohesion, Aspect::sliding, Aspect::rolling})
@@ -68,15 +70,15 @@ struct Contact : Laws<Real>... {
         (append(Laws<Real>::constants_of(material)), ...);
         return all;
     }
-    /// Their values in SI.
+    /// Returns the values of the constants in SI.
     [[nodiscard]] static std::vector<double> values_of(const Material& material) {
         std::vector<double> values;
         for (const Quantity& q : constants_of(material)) values.push_back(q.value);
         return values;
     }
-    /// In SI.
+    /// Returns the contact of a material, in SI.
     [[nodiscard]] static Contact of(const Material& material) { return Contact(values_of(material).data()); }
-    /// Of every component of the memory.
+    /// Returns the kind of every component of the memory.
     [[nodiscard]] static std::vector<MemoryKind> memory_kinds() {
         std::vector<MemoryKind> all;
         (all.insert(all.end(), Laws<Real>::memory_kind.components, Laws<Real>::memory_kind), ...);

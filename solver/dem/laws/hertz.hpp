@@ -4,7 +4,7 @@
 //     S_n = 2 E* sqrt(R* d),   beta = ln e / sqrt(ln^2 e + pi^2) <= 0
 //
 // Hertz (1882); damping after Tsuji, Tanaka & Ishida (1992), Powder Technol. 71, 239, in the form of Antypov &
-// Elliott (2011), EPL 94, 50004. Not clipped: near its end a damped contact attracts.
+// Elliott (2011), EPL 94, 50004. The force is not clipped: near its end a damped contact attracts.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -37,7 +37,7 @@ struct Hertz : LawTraits {
         r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
     }
 
-    /// Stored in the overlap, J.
+    /// Returns the energy stored in the overlap, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {
         return 0.4 * stiffness * t.root * t.overlap * t.overlap;

@@ -2,20 +2,20 @@
 //
 //     a^4 - 2 R* d a^2 - (2 pi w R*^2/E*) a + R*^2 d^2 = 0,  a the largest root        w: work of adhesion, J/m2
 //     F_n = 4 E* a^3/(3 R*) - sqrt(8 pi w E* a^3) = 4/3 E* a d - 2/3 sqrt(2 pi w E* a^3)
-//     it begins at d = 0 and ends at d_c = -3/4 (pi^2 w^2 R*/E*^2)^(1/3); pull-off force F_po = 3/2 pi w R*
+//     the contact begins at d = 0 and ends at d_c = -3/4 (pi^2 w^2 R*/E*^2)^(1/3); pull-off force F_po = 3/2 pi w R*
 //
-// Johnson, Kendall & Roberts (1971), Proc. R. Soc. Lond. A 324, 301. Here Hertz's law has the radius a instead of
-// sqrt(R* d), and this law adds the rest; damping, tangential and rolling stiffness follow a as well (as 2 E* a, 8 G*
-// a). With a_0^3 = 9 pi w R*^2/(2 E*) and y = sqrt(a/a_0) the quartic is
+// Johnson, Kendall & Roberts (1971), Proc. R. Soc. Lond. A 324, 301. Hertz's law then uses the radius a instead of
+// sqrt(R* d), and this law adds the other terms. Damping, tangential and rolling stiffness use a as well (as 2 E* a, 8
+// G* a). With a_0^3 = 9 pi w R*^2/(2 E*) and y = sqrt(a/a_0) the quartic is
 //     y^4 - (2/3) y = s,  s = d R*/a_0^2 > -6^(-1/3)/2
-// and, after Ferrari, y = (k + sqrt(4/(3 k) - k^2))/2 with k^2 = m, m^3 + 4 s m = 4/9, whose root is simple and well
-// conditioned for every s: Newton's iteration from a guess within 20 % doubles its digits each time. (The closed form
-// of Parteli et al. (2014), Sci. Rep. 4, 6227, is the same root; it loses digits where |d| is small.)
+// and, after Ferrari, y = (k + sqrt(4/(3 k) - k^2))/2 with k^2 = m, m^3 + 4 s m = 4/9. This root is simple and well
+// conditioned for every s: Newton's iteration from a start within 20 % doubles its digits in each step. (The closed
+// form of Parteli et al. (2014), Sci. Rep. 4, 6227, is the same root; it loses digits where |d| is small.)
 //
 // Coulomb's limit: F_n + 2 F_po (Thornton & Yin (1991), Powder Technol. 65, 153), or the net force
-// (Material::friction_limit). Rolling by constant torque takes 4/3 E* a d less the attraction plus 2 F_po for k_n d.
-// The energy is that of the contact, 0 at its end: touch releases 7.09 (w^5 R*^4/E*^2)^(1/3) (Thornton & Ning (1998),
-// Powder Technol. 99, 154), which is lost; slower impacts stick.
+// (Material::friction_limit). Rolling by constant torque uses 4/3 E* a d minus the attraction plus 2 F_po instead of
+// k_n d. The energy is 0 at the end of the contact. First touch releases 7.09 (w^5 R*^4/E*^2)^(1/3) (Thornton & Ning
+// (1998), Powder Technol. 99, 154), which is dissipated, so slower impacts stick.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -50,20 +50,20 @@ struct Jkr : LawTraits {
           pull(A::number(c[3])),
           limit(A::number(c[4])) {}
 
-    Real size;                  ///< a_0 over R*^(2/3)
+    Real size;                  ///< a_0/R*^(2/3)
     Real inverse_size_squared;  ///< 1/size^2
     Real strength;              ///< 2/3 sqrt(2 pi w E*)
     Real pull;                  ///< 2 F_po/R*
-    Real limit;                 ///< 1: Coulomb's limit has 2 F_po, 0: it is the net force
+    Real limit;                 ///< 1: Coulomb's limit includes 2 F_po, 0: it uses the net force
 
-    /// |d_c|, m
+    /// Returns |d_c|, m.
     static double beyond(const Material& m, double effective_radius) {
         if (!wanted(m)) return 0;
         const double ratio = std::numbers::pi * m.surface_energy / effective_modulus(m);
         return 0.75 * std::cbrt(ratio * ratio * effective_radius);
     }
 
-    /// Whether there is a contact, and its radius.
+    /// Decides whether there is a contact, and computes its radius.
     template <class T>
     [[gnu::always_inline]] void begin(T& t, const Real* lasting) const {
         const Real root = A::cbrt(t.effective_radius);
@@ -83,7 +83,7 @@ struct Jkr : LawTraits {
         if constexpr (advance) lasting[0] = t.kept(A::number(1));
     }
 
-    /// What the contact holds besides Hertz's part 8/15 E* a d^2, J.
+    /// Returns the energy of the contact in addition to Hertz's part 8/15 E* a d^2, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {
         const Real root = A::cbrt(t.effective_radius), a0 = size * root * root;
@@ -95,7 +95,7 @@ private:
     /// -6^(-1/3)/2: s at the end of a contact.
     static constexpr double least = -0.27516060407455223;
 
-    /// y for s >= least.
+    /// Returns y for s >= least.
     [[gnu::always_inline]] static Real shape(Real s) {
         const Real zero = A::number(0), four_ninths = A::number(4.0 / 9);
         const Real four_s = A::number(4) * s;

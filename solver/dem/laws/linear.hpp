@@ -2,16 +2,16 @@
 //
 //     F_n = k d - g v_n,   g = -2 beta sqrt(k m*),   beta = ln e / sqrt(ln^2 e + pi^2) <= 0
 //
-// k is given. An impact lasts t_c = pi/sqrt(k/m* - (g/(2 m*))^2) and has the restitution e = exp(-g t_c/(2 m*)),
-// whatever its speed: a damped harmonic oscillator through half its period. Not clipped: near its end a damped contact
+// k is given. An impact is half a period of a damped harmonic oscillator: at any speed it lasts t_c = pi/sqrt(k/m* -
+// (g/(2 m*))^2) and has the restitution e = exp(-g t_c/(2 m*)). The force is not clipped: near its end a damped contact
 // attracts.
 //
 //     s += v_t dt;  s -= (s.n) n;   k_t = r k,   g_t = q g
 //     sticking  k_t |s| <= mu |F_n|:  F_t = -k_t s - g_t v_t          (the sum is not limited)
 //     sliding   otherwise:            F_t = -mu |F_n| s/|s|,  s := -F_t/k_t   (no tangential damping)
 //
-// A sphere free to turn meets the tangential spring with the mass 2/7 m*. At r = 2/7 both springs have the same period,
-// and at q = r as well the same restitution.
+// A freely rotating sphere has the effective mass 2/7 m* at the tangential spring. At r = 2/7 both springs have the
+// same period, and with q = r also the same restitution.
 //
 // Cundall & Strack (1979), Geotechnique 29, 47; ratios after Schaefer, Dippel & Wolf (1996), J. Phys. I France 6, 5.
 #pragma once
@@ -45,7 +45,7 @@ struct Linear : LawTraits {
         r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
     }
 
-    /// Stored in the overlap, J.
+    /// Returns the energy stored in the overlap, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {
         return 0.5 * stiffness * t.overlap * t.overlap;
@@ -62,7 +62,8 @@ struct LinearSliding : LawTraits {
 
     static bool wanted(const Material& m) { return m.friction > 0; }
     static bool suits(const Material& m) { return m.normal_law == NormalLaw::linear; }
-    /// Without friction a spring that is not displaced yet would count as sticking, with a dashpot.
+    /// Returns the constants. Without friction the dashpot is 0, because a spring that is not displaced counts as
+    /// sticking.
     static std::array<Quantity, constants> constants_of(const Material& m) {
         return {{{m.tangential_ratio * m.stiffness, force_per_length},
                  {m.friction > 0 ? m.tangential_damping.value_or(m.tangential_ratio) : 0.0, number},
@@ -75,7 +76,7 @@ struct LinearSliding : LawTraits {
     Real over_normal;  ///< q
     Real friction;     ///< mu
 
-    /// `advance` false: forces only, the displacement s stays as it is.
+    /// Adds the tangential force. `advance` false: the displacement s does not change.
     template <bool advance, class T>
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* displacement) const {
         auto s = A::vector(displacement);
@@ -86,7 +87,7 @@ struct LinearSliding : LawTraits {
         if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
     }
 
-    /// Stored in the tangential displacement, J.
+    /// Returns the energy stored in the tangential displacement, J.
     template <class T>
     [[nodiscard]] Real energy(const T&, const Real* displacement) const {
         const auto s = A::vector(displacement);

@@ -4,8 +4,8 @@
 //     sticking  k_t |s| <= mu |F_n|:  F_t = -k_t s - g_t v_t          (the sum is not limited)
 //     sliding   otherwise:            F_t = -mu |F_n| s/|s|,  s := -F_t/k_t   (no tangential damping)
 //
-// Mindlin (1949), J. Appl. Mech. 16, 259, no-slip stiffness in total form. F_n is what the laws before this one let
-// friction see: the contact force alone or the net one (Material::friction_limit).
+// Mindlin (1949), J. Appl. Mech. 16, 259, no-slip stiffness in total form. F_n is the contact force alone or the net
+// force, as set by the laws before this one (Material::friction_limit).
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -23,7 +23,8 @@ struct Mindlin : LawTraits {
 
     static bool wanted(const Material& m) { return m.friction > 0; }
     static bool suits(const Material& m) { return m.normal_law == NormalLaw::hertz; }
-    /// Without friction a spring that is not displaced yet would count as sticking, with a dashpot.
+    /// Returns the constants. Without friction the dashpot is 0, because a spring that is not displaced counts as
+    /// sticking.
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double modulus = 8 * effective_shear_modulus(m), on = m.friction > 0 ? 1 : 0;
         return {{{modulus, pressure},
@@ -38,7 +39,7 @@ struct Mindlin : LawTraits {
     typename A::Damping damping;  ///< -2 sqrt(5/6) beta sqrt(8 G*), sqrt(Pa)
     Real friction;                ///< mu
 
-    /// `advance` false: forces only, the displacement s stays as it is.
+    /// Adds the tangential force. `advance` false: the displacement s does not change.
     template <bool advance, class T>
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* displacement) const {
         auto s = A::vector(displacement);
@@ -50,7 +51,7 @@ struct Mindlin : LawTraits {
         if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
     }
 
-    /// Stored in the tangential displacement, J.
+    /// Returns the energy stored in the tangential displacement, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real* displacement) const {
         const auto s = A::vector(displacement);

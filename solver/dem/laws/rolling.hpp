@@ -6,15 +6,14 @@
 //     otherwise:             M := mu_r R* |F_n| M/|M|,  moment on i  -M     (no dashpot)
 //
 // Ai, Chen, Rotter & Ooi (2011), Powder Technol. 206, 269, model C; stiffness after Iwashita & Oda (1998),
-// J. Eng. Mech. 124, 285, as LIGGGHTS 3.8 `rolling_friction epsd` evaluates it: the memory is the moment, not the
-// angle, so k_r acts at the overlap of its time, and M is not turned with n (over a contact that sticks n turns by
-// less than the angles the spring allows). Twisting about n is not resisted.
+// J. Eng. Mech. 124, 285, as evaluated by LIGGGHTS 3.8 `rolling_friction epsd`. The memory is the moment, not the
+// angle, so each increment uses k_r at the overlap of its time. M does not rotate with n; during a sticking contact n
+// rotates by less than the angles that the spring allows. Twist about n is not resisted.
 //
-// mu_r is the tangent of the steepest slope on which a sphere stays at rest. Two differences to LIGGGHTS. At a wall
-// it takes (R - d/2)/(R - d) times w_i for the relative rotation; here it is w_i, except under
-// RollingLaw::epsd_liggghts. Its evaluation before the first step has the moment of one step later, as under
-// epsd_liggghts. F_n is the normal
-// force that Coulomb's limit sees, too.
+// mu_r is the tangent of the steepest slope on which a sphere stays at rest. There are two differences from LIGGGHTS,
+// unless RollingLaw::epsd_liggghts is chosen. At a wall, LIGGGHTS uses (R - d/2)/(R - d) times w_i as relative
+// rotation; here it is w_i. In its evaluation before the first step, LIGGGHTS has the moment of one step later. F_n is
+// the normal force of Coulomb's limit.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -22,7 +21,7 @@
 
 namespace grainsweep::dem {
 
-/// `linear`: beside the linear normal law.
+/// Rolling spring. `linear`: used with the linear normal law.
 template <class Real, bool linear>
 struct RollingSpring : LawTraits {
     using A = Arithmetic<Real>;
@@ -49,16 +48,16 @@ struct RollingSpring : LawTraits {
     Real stiffness;  ///< 2.25 mu_r^2 4/3 E*, Pa; linear: 2.25 mu_r^2 k, N/m
     Real friction;   ///< mu_r
     Real dashpot;    ///< 2 eta_r
-    Real lever;      ///< at walls the rotation counts 1 + lever d/(R - d) times
+    Real lever;      ///< at walls the rotation is multiplied by 1 + lever d/(R - d)
 
-    /// k_r, N m
+    /// Returns k_r, N m.
     template <class T>
     [[nodiscard, gnu::always_inline]] Real spring(const T& t) const {
         if constexpr (linear) return stiffness * t.effective_radius * t.effective_radius;
         return stiffness * t.root * t.effective_radius * t.effective_radius;
     }
 
-    /// `advance` false: moments only, the spring's M stays as it is.
+    /// Adds the moments. `advance` false: the spring's M does not change.
     template <bool advance, class T>
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* moment_of_spring) const {
         const Real k = spring(t);
@@ -76,7 +75,7 @@ struct RollingSpring : LawTraits {
         if constexpr (advance) A::remember(moment_of_spring, t.kept(m));
     }
 
-    /// Stored in the spring, J.
+    /// Returns the energy stored in the spring, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real* moment_of_spring) const {
         const Real k = spring(t);

@@ -88,6 +88,7 @@ void refuse_flaw(const std::string& flaw) {
 MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest) : wall_(std::move(wall)) {
     refuse_flaw(std::visit([](const auto& s) { return s.flaw(); }, wall_.shape));
     take_motions(wall_.motions);
+    energy_.start = kinetic_energy(wall_.motions);
     refuse_flaw(flaw(wall_.surface, "a wall"));
     single_contact_ = std::visit([](const auto& s) { return SingleContact<decltype(s)>; }, wall_.shape);
     bounded_ = true;
@@ -128,6 +129,7 @@ MovingWall MovingWall::moving_as(const Wall& other, const geometry::Domain& doma
     std::vector<Motion> motions = other.motions;
     for (Motion& motion : motions) take_state(motion, wall_.motions);
     made.take_motions(std::move(motions));
+    made.energy_.bounds += kinetic_energy(made.wall_.motions) - kinetic_energy(wall_.motions);
     made.require_possible(domain);
     made.bound_speeds();
     return made;
@@ -145,14 +147,14 @@ void MovingWall::take_motions(std::vector<Motion> motions) {
 
 void MovingWall::kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span) {
     if (!free_) return;
-    geometry::kick(wall_.motions, force, torque, about, time, span);
+    geometry::kick(wall_.motions, force, torque, about, time, span, energy_);
     displacing_ = displacing(wall_.shape, wall_.motions);
 }
 
 void MovingWall::drift(double span) {
     if (!free_) return;
     before_ = pose_;
-    for (Motion& motion : wall_.motions) geometry::drift(motion, span);
+    for (Motion& motion : wall_.motions) geometry::drift(motion, span, energy_);
     displacing_ = displacing(wall_.shape, wall_.motions);
 }
 

@@ -1,4 +1,4 @@
-// A wall is a shape, motions that are added up, and a surface that may differ from the powder's.
+// Wall: a shape, motions that are added, and a surface that may differ from the powder's material.
 #pragma once
 
 #include "solver/dem/material.hpp"
@@ -26,7 +26,7 @@ using geometry::Tube;
 using geometry::Vec3;
 using geometry::Vibration;
 
-/// What differs from the powder's material in contacts with a wall, or with frozen spheres.
+/// Deviations from the powder's material in contacts with a wall, or with frozen spheres.
 struct Surface {
     std::optional<double> friction{}, rolling_friction{}, restitution{};
     std::optional<double> cohesion{}, surface_energy{};  ///< by the powder's law, J/m3 and J/m2
@@ -34,16 +34,16 @@ struct Surface {
     bool operator==(const Surface&) const = default;
 };
 
-/// Why no engine computes it, one sentence about the surface of `whom`; empty where one does.
+/// Returns why no engine can compute the surface of `whom`, in one sentence; empty: one can.
 [[nodiscard]] std::string flaw(const Surface& surface, std::string_view whom);
 
-/// A shape alone is a wall at rest. Times of motions count from when the walls were set.
+/// Wall; a shape alone is a wall at rest. Times of motions are measured from the setting of the walls.
 struct Wall {
     Shape shape;
     std::vector<geometry::Motion> motions;
     Surface surface;
-    std::vector<Material> materials;  ///< of its contacts with each kind of spheres, where there are several
-    bool present = true;              ///< false: nothing touches it until Engine::change_walls makes it present
+    std::vector<Material> materials;  ///< one for its contacts with each kind of spheres, if there are several kinds
+    bool present = true;              ///< false: no particle touches it until Engine::change_walls makes it present
 
     Wall() = default;
     template <class S>
@@ -52,11 +52,11 @@ struct Wall {
         : shape(std::forward<S>(of)), motions(std::move(in_motion)), surface(with) {}
 };
 
-/// Whether two walls are the same but for motions and presence.
+/// Returns whether two walls differ at most in motions and presence.
 [[nodiscard]] bool same_body(const Wall& one, const Wall& other);
 
-/// A bar that moves with x velocity `speed` and the vertical displacement amplitude sin(2 pi frequency t): the blade
-/// that spreads powder. A sphere touches its closest point, once.
+/// Blade that spreads powder: a bar with x velocity `speed` and the vertical displacement amplitude sin(2 pi frequency
+/// t). A sphere touches only its closest point.
 struct Blade {
     double front = 0, thickness = 0, bottom = 0, top = 0;  ///< m, at t = 0
     double speed = 0;                                      ///< m/s

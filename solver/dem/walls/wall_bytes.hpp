@@ -1,4 +1,4 @@
-// A wall in a checkpoint: its parameters, one after the other. Where it stands follows from them and its time.
+// Wall in a checkpoint: its parameters, one after the other. They and the time determine its place.
 #pragma once
 
 #include "solver/dem/walls/wall.hpp"
@@ -17,7 +17,7 @@ void for_each_part(Of& surface, Visit&& visit) {
         visit(*part);
 }
 
-/// Calls visit(number) for every number of a material, its words as numbers.
+/// Calls visit(number) for every number of a material, with words as numbers.
 template <class Of, class Visit>
 void for_each_number(Of& m, Visit&& visit) {
     for (auto* part :
@@ -39,7 +39,7 @@ void write_alternative(const Variant& alternatives, Put&& put) {
     std::visit([&](const auto& one) { one.fields(one, put); }, alternatives);
 }
 
-/// Writes all but motions and presence.
+/// Writes all parameters except motions and presence.
 template <class Put>
 void write_body(const Wall& wall, Put&& put) {
     write_alternative(wall.shape, put);
@@ -65,7 +65,7 @@ void write_wall(const Wall& wall, Put&& put) {
     for (const geometry::Motion& motion : wall.motions) write_alternative(motion, put);
 }
 
-/// The alternative with this number, to be filled.
+/// Returns the alternative with this number, to be filled.
 template <class Variant, std::size_t k = 0>
 [[nodiscard]] Variant alternative(std::uint64_t index) {
     if constexpr (k == std::variant_size_v<Variant>)
@@ -74,7 +74,7 @@ template <class Variant, std::size_t k = 0>
         return index == k ? Variant(std::in_place_index<k>) : alternative<Variant, k + 1>(index);
 }
 
-/// get(value) reads what put wrote. What the wall then is, MovingWall judges.
+/// Reads a wall; get(value) reads a value that put wrote. MovingWall checks the result.
 template <class Get>
 [[nodiscard]] Wall read_wall(Get&& get) {
     const auto read = [&](auto& alternatives) {

@@ -1,4 +1,4 @@
-// The rows of the catalogue, one per probe; each is defined in the file of its name.
+// Rows of the catalogue, one per probe, each defined in the file of its name.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -9,6 +9,7 @@ extern const ProbeInfo amount_count, amount_mass, amount_volume, mean_diameter;
 extern const ProbeInfo bed_angle;
 extern const ProbeInfo bed_surface_angle, bed_surface_residual, bed_surface_speed, bed_layer_depth;
 extern const ProbeInfo centre;
+extern const ProbeInfo contact_energy, wall_energy;
 extern const ProbeInfo contact_force, contact_force_density, fabric;
 extern const ProbeInfo coordination;
 extern const ProbeInfo cover, cover_angle, cover_area, cover_outline;

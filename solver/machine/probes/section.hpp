@@ -1,4 +1,4 @@
-// What the probes of a bed in a drum share: the view along its axis, and sums over the frames.
+// Shared parts of the probes of a bed in a drum: the view along its axis, and sums over the frames.
 #pragma once
 
 #include "solver/machine/selection.hpp"
@@ -18,13 +18,13 @@ inline constexpr OptionSpec section_radius_option{"radius", OptionSpec::Kind::nu
 inline constexpr OptionSpec section_diameter_option{
     "diameter", OptionSpec::Kind::number, "m", "diameter D of the particles", true, {0, 1e3, true, false}};
 
-/// The particles that count, in the plane across an axis with "up" against gravity.
+/// Selected particles in the plane across an axis, with "up" against gravity.
 class SectionLook {
 public:
     explicit SectionLook(const Options& options)
         : selection_(options), axis_(options.vector("axis")), through_(options.vector("through", {})) {}
 
-    /// Returns nothing where gravity has no part across the axis: there is no surface to look for.
+    /// Returns nothing if gravity has no component across the axis: there is no surface.
     [[nodiscard]] std::optional<observables::Section> operator()(const Sight& sight) const {
         using geometry::operator-;
         using geometry::operator*;
@@ -44,7 +44,7 @@ private:
     Vec3 axis_, through_;
 };
 
-/// Moment of the last frame of a sum, so that one that ends a phase and begins the next one counts once.
+/// Time of the last frame of a sum, so that a frame that ends one phase and begins the next counts once.
 class FramesOnce {
 public:
     /// Returns true at the first call for this moment.

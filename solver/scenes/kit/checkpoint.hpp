@@ -1,4 +1,4 @@
-// The frame of a DEM experiment's checkpoint: the number of its format, what the scene writes, the engine.
+// Frame of a DEM experiment's checkpoint: number of its format, data of the scene, engine.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -10,7 +10,7 @@
 
 namespace grainsweep::kit {
 
-/// `write(out)` puts what the scene has besides its engine.
+/// Writes a checkpoint; `write(out)` writes the data of the scene without its engine.
 template <class Write>
 void write_checkpoint(Bytes& into, std::uint64_t format, const dem::Engine& engine, Write&& write) {
     into.clear();
@@ -22,7 +22,7 @@ void write_checkpoint(Bytes& into, std::uint64_t format, const dem::Engine& engi
     out.put(of_engine);
 }
 
-/// At what the scene wrote. Throws std::invalid_argument where the format is another.
+/// Returns a reader at the data of the scene. Throws std::invalid_argument for another format.
 [[nodiscard]] inline ByteReader open_checkpoint(std::span<const std::byte> from, std::uint64_t format) {
     ByteReader in(from);
     std::uint64_t theirs = 0;
@@ -31,7 +31,7 @@ void write_checkpoint(Bytes& into, std::uint64_t format, const dem::Engine& engi
     return in;
 }
 
-/// The engine's bytes, with which a checkpoint ends. Throws std::invalid_argument where it does not.
+/// Returns the engine's bytes at the end of a checkpoint. Throws std::invalid_argument if there are other bytes.
 [[nodiscard]] inline Bytes engine_at_end(ByteReader& in) {
     Bytes engine;
     in.get(engine);

@@ -1,4 +1,4 @@
-// An observable of a scene, written once: declared by what it holds, recorded by its handle.
+// Observable of a scene, defined once: it declares the observable and records its values.
 //
 //     inline constexpr Scalar mfr{"mfr", "1", "mass flow rate under the blade ..."};
 //     info.observables = observed(mfr, flux_series);      mfr.record(into, flux); flux_series.in(into).push_back(...)
@@ -18,7 +18,7 @@ struct Scalar {
     std::string_view absent = {};  ///< why a completed case can be without a value
 
     void record(Observations& into, double value) const { into.scalars.insert_or_assign(std::string(name), value); }
-    /// Where the value is finite; else it stays undefined.
+    /// Records the value if it is finite; otherwise it stays undefined.
     void record_known(Observations& into, double value) const {
         if (std::isfinite(value)) record(into, value);
     }
@@ -27,12 +27,12 @@ struct Scalar {
     }
 };
 
-/// Several values along a time (series) or a bin (profile).
+/// Observable with several values along time (series) or bins (profile).
 template <Shape shape>
 struct Curve {
     std::string_view name, unit, meaning, over;
 
-    /// Its samples, to be added to; there from then on, empty or not.
+    /// Returns its samples for appending. From then on the observable exists, even if it is empty.
     [[nodiscard]] std::vector<Sample>& in(Observations& into) const { return into.series[std::string(name)]; }
     [[nodiscard]] ObservableSpec spec() const {
         return {std::string(name), std::string(unit), std::string(meaning), shape, std::string(over)};

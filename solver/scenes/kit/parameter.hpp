@@ -1,5 +1,5 @@
-// A parameter of a scene, written once: its name, unit, meaning, default and bounds; called with a case's inputs it
-// gives the value in its type.
+// Parameter of a scene, defined once with name, unit, meaning, default and bounds. Called with a case's inputs it
+// returns the value in its type.
 //
 //     inline constexpr Real gap{"gap", "m", "height of the lower edge over the base", 0.004, {1e-5, 0.1}};
 //     info.parameters = declared(friction, gap);      const double height = gap(inputs);
@@ -17,14 +17,14 @@
 
 namespace grainsweep::kit {
 
-/// When a parameter matters (Relevance); no name: always.
+/// Condition under which a parameter has an effect (Relevance); no name: always.
 struct When {
     std::string_view other{};
     Relevance::Condition condition = Relevance::Condition::nonzero;
     std::array<std::string_view, 5> words{};
 };
 
-/// All must hold.
+/// Conditions that must all hold.
 using Conditions = std::array<When, 3>;
 
 [[nodiscard]] constexpr When if_set(std::string_view other) {
@@ -33,7 +33,7 @@ using Conditions = std::array<When, 3>;
 [[nodiscard]] constexpr When if_zero(std::string_view other) {
     return {other, Relevance::Condition::zero, {}};
 }
-/// The other parameter is one of the words.
+/// Returns the condition that the other parameter is one of the words.
 template <class... Word>
 [[nodiscard]] constexpr When if_word(std::string_view other, Word... words) {
     return {other, Relevance::Condition::is_word, {words...}};
@@ -43,25 +43,25 @@ template <class... Word>
     return {low, high, true, false};
 }
 
-/// The other parameter is a file.
+/// Returns the condition that the other parameter is a file.
 [[nodiscard]] constexpr When if_file(std::string_view other) {
     return {other, Relevance::Condition::is_file, {}};
 }
 
-/// The names that conditions give, in the form of a ParameterSpec.
+/// Returns the conditions that have a name, in the form of a ParameterSpec.
 [[nodiscard]] std::vector<Relevance> relevance(const Conditions& conditions);
-/// Throws std::logic_error where the scene does not declare the parameter.
+/// Returns the value of a parameter. Throws std::logic_error if the scene does not declare it.
 [[nodiscard]] const Value& value_of(const Inputs& inputs, std::string_view name);
 
 struct Real {
     std::string_view name, unit, meaning;
-    double standard = 0;  ///< the default
+    double standard = 0;  ///< default value
     Interval bounds{};
     Conditions only{};
 
     [[nodiscard]] double operator()(const Inputs& inputs) const { return std::get<double>(value_of(inputs, name)); }
     [[nodiscard]] ParameterSpec spec() const;
-    /// The same parameter with what a scene's study fixes.
+    /// Returns the parameter with the default and bounds of a scene's study.
     [[nodiscard]] constexpr Real with(double its_standard, Interval its_bounds) const {
         return {name, unit, meaning, its_standard, its_bounds, only};
     }
@@ -82,14 +82,14 @@ struct Whole {
     [[nodiscard]] ParameterSpec spec() const;
 };
 
-/// A word and what it stands for in the program.
+/// Word and its meaning in the program.
 template <class Meant>
 struct Named {
     std::string_view word;
     Meant meant{};
 };
 
-/// One of some words, read as what it stands for; the first is the default.
+/// Parameter with a choice of words, read as their meaning; the first word is the default.
 template <class Meant, std::size_t n>
 struct Choice {
     std::string_view name, meaning;
@@ -112,15 +112,15 @@ struct Choice {
     [[nodiscard]] constexpr Choice with(std::string_view its_meaning) const { return {name, its_meaning, words, only}; }
 };
 
-/// What stands in the file that a parameter names. Throws std::invalid_argument where it is not among the files.
+/// Returns the contents of the file that a parameter names. Throws std::invalid_argument if it is not among the files.
 [[nodiscard]] const std::string& contents_of(std::string_view name, const Inputs& inputs, const Files& files);
 
-/// One of some words, read as what it stands for, or a file; the first word is the default.
+/// Parameter with a choice of words, read as their meaning, or a file; the first word is the default.
 template <class Meant, std::size_t n>
 struct ChoiceOrFile {
     std::string_view name, meaning;
     std::array<Named<Meant>, n> words{};
-    Meant file{};                                        ///< what a file stands for
+    Meant file{};                                        ///< meaning of a file
     void (*check)(std::string_view contents) = nullptr;  ///< throws std::invalid_argument with one sentence
     Conditions only{};
 
@@ -139,17 +139,17 @@ struct ChoiceOrFile {
     }
 };
 
-/// A file, or the word that says there is none; the word is the default.
+/// Parameter that is a file, or a word for no file; the word is the default.
 struct FileOr {
     std::string_view name, meaning, word;
     void (*check)(std::string_view contents) = nullptr;  ///< throws std::invalid_argument with one sentence
     Conditions only{};
 
-    /// Whether a file is given.
+    /// Returns whether a file is given.
     [[nodiscard]] bool operator()(const Inputs& inputs) const {
         return file_word(std::get<std::string>(value_of(inputs, name))).has_value();
     }
-    /// Throws std::invalid_argument where it is not among the files.
+    /// Returns the contents of the file. Throws std::invalid_argument if it is not among the files.
     [[nodiscard]] const std::string& contents(const Inputs& inputs, const Files& files) const;
     [[nodiscard]] ParameterSpec spec() const;
 };

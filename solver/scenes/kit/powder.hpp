@@ -1,5 +1,5 @@
-// The powder of a granular scene and the numerics of its contacts: one block of parameters with the same names in every
-// scene. A scene takes the block over, sets the defaults and bounds that its study fixes, and lists what it offers:
+// Parameters of the powder of a granular scene and of the numerics of its contacts, with the same names in every scene.
+// A scene copies the block, sets the defaults and bounds of its study, and declares the parameters that it offers:
 //
 //     inline constexpr Powder powder = [] { Powder p; p.diameter = p.diameter.with(45e-6, {1e-7, 0.1}); return p; }();
 //     info.parameters = declared(powder.diameter, powder.friction, opening);
@@ -16,7 +16,7 @@
 
 namespace grainsweep::kit {
 
-/// Value of a wall's property that means: the same as the powder's.
+/// Value of a wall's property with the meaning "as the powder".
 inline constexpr double as_powder = -1;
 
 enum class SizeLaw { monodisperse, weibull_wide, weibull_narrow, lognormal, uniform, file };
@@ -116,24 +116,26 @@ struct Powder {
         "reference",
         {{{"mixed", dem::Method::Precision::mixed}, {"double", dem::Method::Precision::double_precision}}}};
 
-    /// Of all parameters from density to cohesion_law.
+    /// Returns the material from all parameters from density to cohesion_law.
     [[nodiscard]] dem::Material material(const Inputs& inputs) const;
-    /// What the walls do differently from the powder. Throws std::invalid_argument with one sentence on what is neither
-    /// a property nor as_powder, and where 'jkr' has surface energy at the walls only, or everywhere else.
+    /// Returns the deviations of the walls from the powder. Throws std::invalid_argument with one sentence for a value
+    /// that is neither a property nor as_powder, and if with 'jkr' only the walls, or only all other contacts, have
+    /// surface energy.
     [[nodiscard]] dem::Surface wall_surface(const Inputs& inputs) const;
-    /// Of d/D. Throws std::invalid_argument
-    /// with one sentence where the file is missing or D is outside of it.
+    /// Returns the distribution of d/D. Throws std::invalid_argument with one sentence if the file is missing or D is
+    /// outside its range.
     [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files& files) const;
-    /// time_step, or time_step_fraction of the limits for particles of at least `radius` meeting at most at `speed`.
+    /// Returns time_step, or time_step_fraction times the limit for particles of at least `radius` that collide at most
+    /// at `speed`.
     [[nodiscard]] double step(const Inputs& inputs, double radius, double speed) const;
     [[nodiscard]] dem::Method method(const Inputs& inputs) const;
 };
 
-/// The value of a wall's property, none for as_powder. Throws std::invalid_argument with one sentence on any other
-/// negative value, and with `positive` on 0.
+/// Returns the value of a wall's property; empty for as_powder. Throws std::invalid_argument with one sentence for any
+/// other negative value, and with `positive` also for 0.
 [[nodiscard]] std::optional<double> own(const Real& property, const Inputs& inputs, bool positive = false);
 
-/// Recorded where the powder is cohesive.
+/// Bond number, recorded if the powder is cohesive.
 inline constexpr Scalar bond_number{
     "bond_number", "1",
     "largest attraction of two particles of diameter D at rest over their weight: with cohesion energy density k, "
@@ -141,9 +143,9 @@ inline constexpr Scalar bond_number{
     "with surface energy w 3/4 pi w R/(m g) for jkr, pi w R/(m g) for dmt, whatever the stiffness",
     "the powder has no cohesion"};
 
-/// The largest attraction of two equal spheres at rest, N; of cohesion by an area to first order in the overlap.
+/// Returns the largest attraction of two equal spheres at rest, N; for cohesion by area, to first order in the overlap.
 [[nodiscard]] double pull_off_force(const dem::Material& material, double diameter);
-/// Records it, where there is cohesion.
+/// Records the bond number if there is cohesion.
 void record_bond_number(Observations& into, const dem::Material& material, double diameter, double gravity);
 
 }  // namespace grainsweep::kit

@@ -1,4 +1,4 @@
-// Sizes that are too rare for the number of particles of a case.
+// Warning about sizes that are too rare for the number of particles of a case.
 #pragma once
 
 #include "solver/particles/size_distribution.hpp"
@@ -8,8 +8,8 @@
 
 namespace grainsweep::kit {
 
-/// Warns where the largest sizes, which hold a tenth of the powder's volume, expect fewer than three of `count`
-/// spheres.
+/// Warns if fewer than three of `count` spheres are expected among the largest sizes with a tenth of the powder's
+/// volume.
 void warn_of_rare_sizes(std::vector<Warning>& warnings, const particles::SizeDistribution& sizes, double diameter,
                         double count);
 

@@ -1,4 +1,4 @@
-// Sentences with numbers in them, for warnings and for what is refused.
+// Sentences with numbers, for warnings and refusals.
 #pragma once
 
 #include <array>
@@ -8,19 +8,19 @@
 
 namespace grainsweep::kit {
 
-/// The format, as of printf, with the numbers it asks for; of 400 characters at most.
+/// Returns the text of a printf format with numbers, at most 400 characters.
 [[nodiscard]] inline std::string sentence(const char* format, double a, double b = 0, double c = 0, double d = 0) {
     std::array<char, 401> buffer{};
     std::snprintf(buffer.data(), buffer.size(), format, a, b, c, d);
     return buffer.data();
 }
 
-/// a >= b up to rounding: 0.0045 is three times 0.0015, though 3 * 0.0015 is greater.
+/// Returns whether a >= b up to rounding: 0.0045 is three times 0.0015, but 3 * 0.0015 is greater in double precision.
 [[nodiscard]] inline bool at_least(double a, double b) {
     return a >= b * (1 - 1e-12);
 }
 
-/// Throws std::invalid_argument with the sentence where something does not hold.
+/// Throws std::invalid_argument with the sentence if `holds` is false.
 inline void require(bool holds, const std::string& words) {
     if (!holds) throw std::invalid_argument(words);
 }

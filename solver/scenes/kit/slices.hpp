@@ -1,4 +1,4 @@
-// Steps of an engine towards a stop that the experiment fixes, in slices that a caller fixes.
+// Steps of an engine to a stop of the experiment, in slices of the caller.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -10,7 +10,7 @@
 namespace grainsweep::kit {
 
 /// Runs from `step` to `stop`, or to the first step whose time is not before `until`; at least one step. Returns the
-/// step reached, which an unsound state cuts short. Where slices end never changes where stops are.
+/// step reached; an unsound state ends the run early. The slices do not change the stops.
 [[nodiscard]] inline std::int64_t run_towards(dem::Engine& engine, std::int64_t step, std::int64_t stop,
                                               double time_step, double until) {
     const double left = std::ceil(until / time_step - static_cast<double>(step));

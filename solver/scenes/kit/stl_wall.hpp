@@ -1,5 +1,5 @@
-// A wall from an STL file, as parameters of a scene: the file, what its unit of length is, and which of its facets
-// stand for a curved surface.
+// Wall from an STL file, as parameters of a scene: the file, its unit of length, and the angle up to which facets
+// represent a curved surface.
 //
 //     inline constexpr StlWall tool = stl_wall("tool_file", "tool that spreads the powder: an STL file",
 //                                              "tool_scale", "tool_facet_angle");
@@ -14,8 +14,8 @@
 
 namespace grainsweep::kit {
 
-/// The surface in the contents of an STL file, m. Throws std::invalid_argument with the parameter's name and the
-/// reason.
+/// Returns the surface in the contents of an STL file, m. Throws std::invalid_argument with the parameter's name and
+/// the reason.
 [[nodiscard]] geometry::Mesh mesh_of(std::string_view parameter, std::string_view contents, double scale,
                                      double facet_angle);
 
@@ -23,14 +23,14 @@ struct StlWall {
     FileOr file;
     Real scale, facet_angle;
 
-    /// Whether there is a file.
+    /// Returns whether there is a file.
     [[nodiscard]] bool given(const Inputs& inputs) const { return file(inputs); }
-    /// Where it stands in the file, m. Throws std::invalid_argument with one sentence, the parameter's name and the
-    /// reason, where the file is not given or has no such surface.
+    /// Returns the surface in its place in the file, m. Throws std::invalid_argument with the parameter's name and the
+    /// reason if the file is not given or has no such surface.
     [[nodiscard]] geometry::Mesh mesh(const Inputs& inputs, const Files& files) const;
 };
 
-/// Throws std::invalid_argument with one sentence where the contents are no STL with a triangle.
+/// Throws std::invalid_argument with one sentence if the contents are no STL with a triangle.
 void require_stl(std::string_view contents);
 
 [[nodiscard]] constexpr StlWall stl_wall(std::string_view file, std::string_view meaning, std::string_view scale,

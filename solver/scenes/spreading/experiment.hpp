@@ -1,4 +1,4 @@
-// The spreading experiment as it runs: settling, then sweeping, sampled at equal distances of travel; layer by layer.
+// Run of the spreading experiment, layer by layer: settling, then sweeping, sampled at equal distances of travel.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -13,7 +13,7 @@ namespace grainsweep::spreading {
 inline constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
 inline constexpr double behind_to = 15;         // of solid_behind, in diameters
 
-/// What is said of each layer; NaN: undefined.
+/// Answers of each layer; NaN: undefined.
 struct LayerAnswer {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double mfr = none, packing_fraction = none, roughness = none, empty_share = none, patch_sd = none, force = none;
@@ -21,7 +21,7 @@ struct LayerAnswer {
 
 class Experiment final : public Scene {
 public:
-    /// A shared bed is taken from `artefacts`, which must outlive the experiment, or settled and left there.
+    /// Takes a shared bed from `artefacts`, or settles it and stores it there. `artefacts` must outlive the experiment.
     Experiment(const Study& study, std::uint64_t seed, const dem::Method& method, Artefacts& artefacts);
 
     void advance(double until) override;
@@ -49,27 +49,28 @@ public:
     static constexpr std::size_t profile_layers = 12;
 
 private:
-    /// Of this layer, as is step_.
+    /// Returns the last step of this layer, counted like step_.
     [[nodiscard]] std::int64_t last_step() const { return step_of_sample(end_sample_); }
     [[nodiscard]] std::int64_t step_of_sample(std::int64_t sample) const;
     [[nodiscard]] double time_of_sample(std::size_t sample) const;
     [[nodiscard]] double flux_scale() const;
     [[nodiscard]] std::vector<double> measured_flux() const;
     [[nodiscard]] bool known_well_enough() const;
-    /// The shared bed as another case left it; nullptr: there is none.
+    /// Returns the shared bed stored by another case; nullptr: there is none.
     [[nodiscard]] std::unique_ptr<dem::Engine> settled_before(const dem::Setup& setup, const dem::Method& method);
     void end_settling();
     void start_sweep();
     void sample();
-    /// The next layer: engine, walls and columns, over the bed.
+    /// Prepares the next layer above the bed: engine, walls and columns.
     void supply(const dem::State& bed);
     [[nodiscard]] dem::Setup setup_of_layer() const;
-    /// What `setup` is made of, by id.
+    /// Stores the properties of the spheres of `setup` by id.
     void take_over(const dem::Setup& setup);
     void next_layer();
-    /// The powder as it is now, without what is glued to the base.
+    /// Returns the present powder without the particles glued to the base.
     [[nodiscard]] dem::State powder() const;
-    /// Adds to left_behind_ what has left the box since the last sample, and notes the place of what is there.
+    /// Adds the particles that have left the box since the last sample to left_behind_, and stores the places of the
+    /// others.
     void count_left(double front);
     [[nodiscard]] double mean_flux() const;
     [[nodiscard]] LayerAnswer layer_answer() const;
@@ -87,22 +88,23 @@ private:
     std::int64_t layer_ = 0;
     std::int64_t step_ = 0;  // of this layer
     bool sweeping_ = false;
-    double borrowed_particle_steps_ = 0;  // another case's work on the bed
-    double earlier_particle_steps_ = 0;   // of the layers below
+    double borrowed_particle_steps_ = 0;  // work of another case on the bed
+    double earlier_particle_steps_ = 0;   // of the earlier layers
     double earlier_overlap_ = 0;
-    dem::State bed_;                   // on the platform when this layer was supplied
-    std::vector<LayerAnswer> layers_;  // below
+    dem::State bed_;                   // powder on the platform when this layer was supplied
+    std::vector<LayerAnswer> layers_;  // earlier layers
     std::int64_t end_sample_ = sweep_samples;
-    std::vector<double> volume_;  // by id, of the sphere of diameter D; 0 of what was not supplied for this layer
-    std::vector<double> behind_;  // volume behind the edge, by sample, with what left the box there
+    std::vector<double> volume_;  // by id, in volumes of the sphere of diameter D; 0 for spheres not supplied for this
+                                  // layer
+    std::vector<double> behind_;  // volume behind the edge, by sample, including particles that left the box there
     std::vector<double> under_;   // volume under the blade and below the gap, by sample
     std::vector<double> solid_;   // solid_behind by sample
     double force_sum_ = 0, lift_sum_ = 0;  // of the measured samples, N
     enum class Place : char { ahead, behind, left };
-    std::vector<Place> place_;      // by id: of the edge at the last sample, or out of the box
+    std::vector<Place> place_;      // by id: place relative to the edge at the last sample, or outside the box
     double left_behind_ = 0;        // volume that left the box behind the edge
     dem::Domain domain_;            // for pictures, as the walls
-    std::vector<dem::Wall> gates_;  // between which the layer settles
+    std::vector<dem::Wall> gates_;  // gates between which the layer settles
     observables::VelocityProfile profile_{profile_layers};
     dem::State state_;  // scratch of sample()
 };

@@ -1,4 +1,4 @@
-// What a case of powder spreading answers.
+// Observables of powder spreading.
 #pragma once
 
 #include "solver/scenes/kit/powder.hpp"
@@ -88,7 +88,7 @@ inline constexpr kit::Series flux_series{"flux_series", "1",
                                          "mfr of each 1/140 of the travel; time since the tool started",
                                          "time since the tool started (s)"};
 
-// Of each layer where there are several; observables without "by_layer" belong to the last layer.
+// With several layers there is one value per layer; observables without "by_layer" belong to the last layer.
 inline constexpr std::string_view number_of_layer = "number of the layer";
 inline constexpr kit::Profile mfr_by_layer{
     "mfr_by_layer", "1", "mfr of each layer, of the powder supplied for it; several layers only", number_of_layer};

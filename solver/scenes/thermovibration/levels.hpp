@@ -1,4 +1,4 @@
-// The levels of coupling that a case can name, and what follows from each.
+// Levels of coupling that a case can choose, with their traits.
 #pragma once
 
 #include "solver/coupling/levels.hpp"
@@ -26,16 +26,16 @@ public:
     Coupled& operator=(const Coupled&) = delete;
     virtual ~Coupled() = default;
 
-    /// Threads that compute a step from now on; no bit depends on their number.
+    /// Sets the threads that compute a step; no bit depends on their number.
     virtual void use(const Slabs& slabs) = 0;
     virtual void step() = 0;
     [[nodiscard]] virtual const flow::Flow<flow::Boussinesq>& fluid() const = 0;
     [[nodiscard]] virtual const coupling::Cloud& cloud() const = 0;
-    /// Space that the particles take from the fluid; nullptr: none.
+    /// Returns the volume of the particles on the grid; nullptr: they displace no fluid.
     [[nodiscard]] virtual const coupling::SolidsVolume* solids() const = 0;
-    /// Momentum exchanged in the last step; nullptr: the particles do not act on the fluid.
+    /// Returns the momentum exchanged in the last step; nullptr: the particles do not act on the fluid.
     [[nodiscard]] virtual const coupling::MomentumBudget* budget() const = 0;
-    /// Steps in which a packing limit moved particles; absent: there is no limit.
+    /// Returns the number of steps in which a packing limit moved particles; empty: there is no limit.
     [[nodiscard]] virtual std::optional<std::int64_t> limited_steps() const = 0;
     virtual void save(std::vector<std::byte>& into) const = 0;
     virtual void restore(std::span<const std::byte>& from) = 0;
@@ -44,16 +44,16 @@ public:
 struct LevelInfo {
     std::string_view name;
     bool acts_on_fluid = false;
-    bool dense = false;              ///< particles take space from the fluid
+    bool dense = false;              ///< particles displace fluid
     bool stressed = false;           ///< solids pressure and a packing limit
     bool resolves_contacts = false;  ///< particles start without overlaps
-    double seconds_on_grid = 0;      ///< of a step on 40^3 cells, besides the fluid's and the spreading
+    double seconds_on_grid = 0;      ///< of a step on 40^3 cells, without fluid and spreading
     std::unique_ptr<Coupled> (*make)(const Question&, std::uint64_t seed);
 };
 
-/// From the one that does least.
+/// Returns the levels, the simplest first.
 [[nodiscard]] std::span<const LevelInfo> levels();
-/// Of a name that exists.
+/// Returns the level of an existing name.
 [[nodiscard]] const LevelInfo& level_named(std::string_view name);
 
 }  // namespace grainsweep::thermovibration

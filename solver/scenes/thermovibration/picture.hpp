@@ -1,4 +1,4 @@
-// What a thermovibration case shows: particles, the cavity with its hot and cold wall, the flow in its cells.
+// Pictures of a thermovibration case: particles, the cavity with its hot and cold wall, the flow in its cells.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -7,11 +7,11 @@
 
 namespace grainsweep::thermovibration {
 
-/// Particles and walls; lengths in L, time in L^2/alpha.
+/// Returns particles and walls; lengths in L, time in L^2/alpha.
 [[nodiscard]] Snapshot picture(const Question& question, const coupling::Cloud& cloud);
 
-/// Velocity, and temperature (theta) unless it is nullptr, at the cell centres of the whole cube; a velocity there is
-/// the mean of the two faces of its cell. Both live on question.flow_grid(): half of the cube is unfolded.
+/// Returns velocity, and temperature (theta) unless it is nullptr, at the cell centres of the whole cube. A velocity is
+/// the mean of two faces of its cell. Both fields are on question.flow_grid(); a half cube is mirrored.
 [[nodiscard]] FlowField drawn_flow(const Question& question, const flow::FaceVectors& velocity,
                                    const flow::Field* temperature);
 

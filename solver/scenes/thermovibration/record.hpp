@@ -1,4 +1,4 @@
-// What a thermovibration case has measured so far, and its answer.
+// Measurements of a thermovibration case, and its answer.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -15,19 +15,19 @@ namespace grainsweep::thermovibration {
 
 /// Averages of the flow over a window of steps.
 struct FlowMeans {
-    double energy = 0;   ///< mean of |V|^2/2 over volume and window
-    double nusselt = 0;  ///< of the hot wall, mean over the window
+    double energy = 0;   ///< mean of |V|^2/2 in volume and window
+    double nusselt = 0;  ///< of the hot wall, mean in the window
     double peak = 0;     ///< largest |V_d| in the window
 
-    /// Counts the state after one of `window` steps.
+    /// Adds the state after one of `window` steps.
     void add(const flow::Flow<flow::Boussinesq>& fluid, std::int64_t window);
 };
 
-/// Root mean squares over a window of steps of the momentum the particles exchange (levels that act on the fluid).
+/// Root mean squares, in a window of steps, of the momentum exchanged by the particles (levels that act on the fluid).
 struct BudgetMeans {
     double given = 0, drive = 0;  ///< mean squares so far
 
-    /// Counts one of `window` steps.
+    /// Adds one of `window` steps.
     void add(const coupling::MomentumBudget& budget, std::int64_t window) {
         given += budget.given * budget.given / static_cast<double>(window);
         drive += budget.drive * budget.drive / static_cast<double>(window);
@@ -38,11 +38,11 @@ class Record {
 public:
     explicit Record(const Question& question);
 
-    /// The particles at time t, always at the same phase of the vibration.
+    /// Samples the particles at time t, always at the same phase of the vibration.
     void sample(double t, const coupling::Cloud& cloud);
     void set_flow(const FlowMeans& means) { flow_ = means; }
     void set_budget(const BudgetMeans& means) { budget_ = means; }
-    /// Share of the steps so far in which the packing limit moved particles.
+    /// Sets the share of the steps so far in which the packing limit moved particles.
     void set_limited_share(double share) { limited_share_ = share; }
 
     void observe(Observations& into) const;

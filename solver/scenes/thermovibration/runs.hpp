@@ -1,8 +1,8 @@
-// The two ways a thermovibration case is run.
+// The two kinds of run of a thermovibration case.
 //
 // Live: fluid and particles together from t = 0.
-// Carried: one-way particles released into a flow that has become periodic. The flow is found once, stored as
-// harmonics (an artefact shared by all cases of the same fluid) and always read back from that representation.
+// Carried: one-way particles are released into a flow that has become periodic. The flow is computed once, stored as
+// harmonics (an artefact shared by all cases of the same fluid), and always evaluated from the harmonics.
 #pragma once
 
 #include "solver/coupling/march.hpp"
@@ -18,17 +18,18 @@
 
 namespace grainsweep::thermovibration {
 
-/// Why the state is not sound after a step: Courant numbers above 1, values that are no numbers, particles that
-/// cross more than a cell in a step, cells fuller of particles than spheres can fill them. Empty: none.
+/// Returns the fault of the state after a step; empty: none. Faults are Courant numbers above 1, NaN, particles that
+/// cross more than a cell in a step, and cells with more particles than spheres can fill.
 [[nodiscard]] std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time);
 [[nodiscard]] std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time);
 [[nodiscard]] std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, double time);
-/// Particles are watched after every step, fluid and fractions every so many (and before what they are sampled for):
-/// about eight, with no divisor in common with those of a period, so that all phases of the vibration come up in turn.
+/// Returns the steps between two checks of fluid and fractions (also made before samples; particles are checked in
+/// every step). It is about eight, without a common divisor with the steps of a period, so that all phases of the
+/// vibration are checked in turn.
 [[nodiscard]] std::int64_t watch_interval(std::int64_t steps_per_period);
 
-/// How many of `count` threads (0: one for each core) have enough to do: with fewer cells for each of them, waiting for
-/// one another costs more than it saves.
+/// Returns how many of `count` threads (0: one for each core) are useful: with too few cells per thread, waiting costs
+/// more than the threads save.
 [[nodiscard]] int threads_for(const flow::Grid& grid, int count);
 
 class Live final : public Scene {
@@ -58,7 +59,7 @@ private:
 
     Question question_;
     Record record_;
-    FlowMeans means_;  // of the last window, as far as it has come
+    FlowMeans means_;  // of the last window, which may be incomplete
     BudgetMeans budget_;
     std::unique_ptr<Coupled> coupled_;
     Slabs slabs_;
@@ -66,16 +67,16 @@ private:
     std::string fault_;
 };
 
-/// Runs a fluid alone until it repeats itself, then stores one period.
+/// Run of a fluid alone until its flow is periodic; then one period is stored.
 ///
-/// Judged by the mean velocity M over one period in every twenty: conduction relaxes as exp(-pi^2 t), so what is still
-/// to come is about |M - M'| / (pi^2 20 P). Periodic when that is below 2 % of |M| or 1e-5 of the rms velocity, twice
-/// in succession.
+/// The criterion is the mean velocity M of one period in every twenty. Conduction relaxes as exp(-pi^2 t), so the
+/// remaining change is about |M - M'| / (pi^2 20 P). The flow is periodic if this is below 2 % of |M| or 1e-5 of the
+/// rms velocity, twice in succession.
 class SpinUp {
 public:
     explicit SpinUp(const Question& question);
 
-    /// Threads that compute a step from now on; no bit depends on their number.
+    /// Sets the threads that compute a step; no bit depends on their number.
     void use(const Slabs& slabs) { fluid_.use(slabs); }
     void step();
     [[nodiscard]] double time() const { return fluid_.time(); }
@@ -96,7 +97,7 @@ private:
     flow::Flow<flow::Boussinesq> fluid_;
     flow::FaceVectors velocity_, acceleration_;  // scratch
     flow::FaceVectors mean_, previous_mean_;
-    double mean_square_ = 0;  // of the velocity over the period being judged
+    double mean_square_ = 0;  // of the velocity in the period that is judged
     std::int64_t passes_ = 0;
     Stage stage_ = Stage::settling;
     FlowMeans means_;
@@ -104,7 +105,7 @@ private:
     std::string fault_;
 };
 
-/// Particles in a stored flow that they do not change.
+/// Particles in a stored flow.
 struct CarriedCloud {
     explicit CarriedCloud(const Question& question, std::uint64_t seed)
         : grid(question.flow_grid()),
@@ -122,7 +123,7 @@ struct CarriedCloud {
     Slabs slabs;
 };
 
-/// Advances it by a step; `phase` and `vibration` in the middle of the step.
+/// Function that advances such a cloud by a step; `phase` and `vibration` in the middle of the step.
 using CarriedStep = void(CarriedCloud& cloud, double phase, double vibration);
 template <class Level, class Kernel>
 void carry(CarriedCloud& cloud, double phase, double vibration) {
@@ -150,7 +151,7 @@ void carry(CarriedCloud& cloud, double phase, double vibration) {
         [](std::size_t, const coupling::Vec3&) {}, cloud.slabs);
 }
 
-/// The step of a case's particles (levels.cpp).
+/// Returns the step function of a case's particles (levels.cpp).
 [[nodiscard]] CarriedStep* carried_step(const Question& question);
 
 class Carried final : public Scene {
@@ -160,7 +161,7 @@ public:
     void advance(double until) override;
     int use_threads(int count) override;
     void observe(Observations& into) const override { record_.observe(into); }
-    /// The time the flow took to become periodic, if it was found here, and the time of the particles since.
+    /// Returns the time of the particles, plus the time until the flow was periodic if this run computed the flow.
     [[nodiscard]] double time() const override {
         return (spin_up_ ? spin_up_->time() : spun_) + static_cast<double>(steps_) * question_.step();
     }
@@ -172,7 +173,7 @@ public:
     }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
-    /// Without temperature, which the stored flow has not.
+    /// Returns a picture without temperature, which the stored flow does not contain.
     [[nodiscard]] Snapshot snapshot() const override;
     [[nodiscard]] double picture_period() const override { return question_.period(); }
 
@@ -187,7 +188,7 @@ private:
     CarriedCloud cloud_;
     CarriedStep* carry_;
     Record record_;
-    std::optional<SpinUp> spin_up_;  // only while the flow is not yet known
+    std::optional<SpinUp> spin_up_;  // only until the periodic flow is known
     std::int64_t steps_ = 0;         // of the particles
     double spun_ = 0;
     std::string fault_;

@@ -1,4 +1,4 @@
-// What a case of TPMS discharge answers.
+// Observables of a TPMS discharge.
 #pragma once
 
 #include "solver/scenes/kit/powder.hpp"

@@ -1,5 +1,4 @@
-// Inputs of a TPMS discharge: its parameters with their defaults (the study's table 1), and a case's inputs as numbers
-// ready to use.
+// Inputs of a TPMS discharge: parameters with their defaults (the study's table 1), and a case's inputs as numbers.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -14,7 +13,7 @@
 namespace grainsweep {
 
 [[nodiscard]] std::vector<ParameterSpec> tpms_discharge_parameters();
-/// The packing's file. Throws std::invalid_argument where it is not among the files.
+/// Returns the contents of the packing's file. Throws std::invalid_argument if it is not among the files.
 [[nodiscard]] const std::string& tpms_packing_text(const Inputs& inputs, const Files& files);
 
 struct TpmsQuestion {
@@ -22,7 +21,7 @@ struct TpmsQuestion {
     int side = +1;
     double edge = 100;           ///< L, diameters
     double shell = 4;            ///< diameters
-    bool packing_given = false;  ///< as a file
+    bool packing_given = false;  ///< the packing is a file
     double packing_fraction = 0.62;
     std::uint64_t packing_seed = 1;
     double diameter = 45e-6;  ///< m
@@ -37,7 +36,7 @@ struct TpmsQuestion {
     double rest_speed = 0;    ///< in units of free_fall_speed()
     dem::Method::Precision precision = dem::Method::Precision::mixed;
 
-    /// Complete inputs and the case's seed. Throws std::invalid_argument where they are impossible together.
+    /// Takes complete inputs and the case's seed. Throws std::invalid_argument if their combination is impossible.
     TpmsQuestion(const Inputs& inputs, std::uint64_t seed);
 
     [[nodiscard]] double length() const { return edge * diameter; }  ///< L, m

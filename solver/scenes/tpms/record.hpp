@@ -1,5 +1,5 @@
-// What a TPMS discharge has shown so far: counts and speeds at each sample, contact forces, and whether the powder has
-// come to rest.
+// Record of a TPMS discharge: counts and speeds at each sample, contact forces, and whether the powder has come to
+// rest.
 #pragma once
 
 #include "solver/bytes.hpp"
@@ -12,16 +12,16 @@
 
 namespace grainsweep {
 
-/// What is measured at one moment.
+/// Measurements at one moment.
 struct Moment {
     std::int64_t step = 0;
     std::int64_t in_cell = 0;  ///< mobile centres in the cell
-    double fastest_down = 0;   ///< in the cell, along gravity, m/s; 0: none moves along it; NaN: the cell is empty
-    std::int64_t mobile = 0;   ///< not yet gone
+    double fastest_down = 0;   ///< in the cell, along gravity, m/s; 0: no particle moves down; NaN: the cell is empty
+    std::int64_t mobile = 0;   ///< not yet removed
     std::int64_t at_rest = 0;  ///< in the cell, slower than quiet_speed
 };
 
-/// One bin of a histogram taken at a step.
+/// Bin of a histogram at a step.
 struct Bin {
     std::int64_t step = 0;
     double centre = 0;
@@ -30,16 +30,16 @@ struct Bin {
 
 class TpmsRecord {
 public:
-    /// start: mobile particles at time 0. The question must outlive the record.
+    /// start: number of mobile particles at time 0. The question must outlive the record.
     TpmsRecord(const TpmsQuestion& question, std::int64_t start) : question_(&question), start_(start) {}
 
     void add(const Moment& now);
-    /// The largest contact force, and with `histograms` how overlaps and forces are distributed.
+    /// Adds the largest contact force, and with `histograms` the distributions of overlaps and forces.
     void add(std::span<const dem::ContactForce> contacts, std::int64_t step, bool histograms);
 
-    /// Whether at this step the powder has been at rest for as long as the rule "quiet" asks.
+    /// Returns whether the powder has been at rest for the time that the rule "quiet" requires.
     [[nodiscard]] bool is_quiet(std::int64_t step) const;
-    /// When the retention first fell to a share, in t*; NaN if it never did.
+    /// Returns the time at which the retention first fell to a share, in t*; NaN: it never did.
     [[nodiscard]] double time_to(double share) const;
     void observe(Observations& into) const;
 
@@ -52,7 +52,7 @@ private:
     const TpmsQuestion* question_;
     std::int64_t start_;
     std::int64_t quiet_since_ = 0;  // step of the last sample that was not quiet
-    std::int64_t quiet_count_ = 0;  // in the cell then
+    std::int64_t quiet_count_ = 0;  // particles in the cell at that step
     double max_force_ = 0;          // m 9.81
     std::vector<Moment> moments_;
     std::vector<Bin> overlaps_, forces_;

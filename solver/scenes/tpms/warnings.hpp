@@ -1,4 +1,4 @@
-// What a user must know before asking a tpms_discharge case whose inputs make little sense together.
+// Warnings about tpms_discharge cases with questionable combinations of inputs.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -7,7 +7,7 @@
 
 namespace grainsweep {
 
-/// At most one warning of a kind. Throws std::invalid_argument where the inputs are impossible together.
+/// Returns at most one warning of each kind. Throws std::invalid_argument if the combination of inputs is impossible.
 [[nodiscard]] std::vector<Warning> tpms_discharge_warnings(const Inputs& inputs, const Files&);
 
 }  // namespace grainsweep

@@ -1,0 +1,109 @@
+// Energy of walls that the powder moves, and what changed it: pressed and driven walls, free bodies.
+//
+//     kinetic = start + contacts + own + bounds + turning + residual
+//
+// The engine books the work of every force where it changes a speed (geometry::BodyEnergy), so that the residual is
+// rounding at any time step. `turning` is the error of the integrator in a free turn. Contacts of a wall took
+//
+//     loss = impact_energy - wall_work - contacts
+//
+// out of the motion of powder and wall, of which contact_energy is stored: wall_work is that of the forces on the
+// powder at the speed that the laws see, `contacts` that on the wall at the mean speed of the step.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+#include <array>
+
+namespace grainsweep::machine::probes {
+namespace {
+
+enum class EnergyPart { kinetic, contacts, own, bounds, turning, residual };
+constexpr std::array<std::string_view, 6> energy_parts = {"kinetic", "contacts", "own",
+                                                          "bounds",  "turning",  "residual"};
+
+double part_of(EnergyPart part, const geometry::BodyEnergy& energy, const dem::Wall& wall) {
+    switch (part) {
+        case EnergyPart::kinetic:
+            return geometry::kinetic_energy(wall.motions);
+        case EnergyPart::contacts:
+            return energy.contacts;
+        case EnergyPart::own:
+            return energy.own;
+        case EnergyPart::bounds:
+            return energy.bounds;
+        case EnergyPart::turning:
+            return energy.turning;
+        case EnergyPart::residual:
+            break;
+    }
+    return geometry::kinetic_energy(wall.motions) - energy.sum();
+}
+
+class WallEnergy final : public machine::Probe {
+public:
+    explicit WallEnergy(const Options& options)
+        : walls_(options.numbers("wall")),
+          part_(static_cast<EnergyPart>(std::ranges::find(energy_parts, options.word("part", "kinetic")) -
+                                        energy_parts.begin())) {}
+    double look(const Sight& sight) override {
+        double total = walls_.empty() ? undefined : 0;  // walls that this case is without
+        for (const std::size_t w : walls_) total += part_of(part_, sight.engine.wall_energy(w), sight.engine.wall(w));
+        return total;
+    }
+
+private:
+    std::vector<std::size_t> walls_;
+    EnergyPart part_;
+};
+
+/// Stored in contacts at this moment.
+class ContactEnergy final : public machine::Probe {
+public:
+    explicit ContactEnergy(const Options& options) : walls_(options.numbers("wall")), at_walls_(options.has("wall")) {}
+    double look(const Sight& sight) override {
+        double total = 0;
+        for (const auto& contact : sight.contacts)
+            if (counts(contact)) total += contact.stored;
+        return total;
+    }
+
+private:
+    [[nodiscard]] bool counts(const dem::ContactForce& contact) const {
+        if (!at_walls_) return true;
+        return contact.second < 0 &&
+               std::ranges::find(walls_, static_cast<std::size_t>(-1 - contact.second)) != walls_.end();
+    }
+
+    std::vector<std::size_t> walls_;
+    bool at_walls_;
+};
+
+constexpr std::array wall_energy_options = {
+    OptionSpec{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true},
+    OptionSpec{
+        "part",
+        OptionSpec::Kind::word,
+        "",
+        "'kinetic': the energy now; its change since the start is the work of 'contacts', of the wall's 'own' force "
+        "and weight, of the 'bounds' of its speed, the error of 'turning', and the 'residual'; default: 'kinetic'",
+        false,
+        {},
+        energy_parts}};
+constexpr std::array contact_energy_options = {
+    OptionSpec{"wall", OptionSpec::Kind::walls, "", "only contacts with this wall, or these; default: all contacts"}};
+
+}  // namespace
+
+const ProbeInfo contact_energy{
+    "contact_energy",
+    "J",
+    "energy that contacts store in their springs and by cohesion",
+    contact_energy_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<ContactEnergy>(given); },
+    true};
+const ProbeInfo wall_energy{
+    "wall_energy", "J", "kinetic energy of pressed, driven and free walls, or a part of its balance",
+    wall_energy_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<WallEnergy>(given); }};
+
+}  // namespace grainsweep::machine::probes
