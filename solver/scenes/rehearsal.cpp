@@ -148,7 +148,7 @@ ParameterSpec coordinate(std::size_t j) {
 SceneInfo rehearsal_scene() {
     SceneInfo info;
     info.name = "rehearsal";
-    info.summary = "exactly solvable responses and chosen misbehaviour: proves a campaign without simulating";
+    info.summary = "formulas with known answers, and cases that fail on request: try a campaign without simulating";
     info.revision = 1;
     for (std::size_t j = 1; j <= dimensions; ++j) info.parameters.push_back(coordinate(j));
     info.parameters.push_back({"response",

@@ -77,7 +77,7 @@ std::vector<std::string> scene_words() {
 }
 
 std::string_view program_summary() {
-    return "any program, deck or script: a command per case, or lines to one that stays alive";
+    return "any program, deck or script: a command per case, or one process that answers line by line";
 }
 
 }  // namespace grainsweep::campaign
