@@ -336,8 +336,9 @@ SceneInfo tpms_discharge_scene() {
     info.revision = 4;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_record::observables();
-    // Twice the study's step, for 0.6 of the cost: retention at 1 t* differs by -0.1 +- 0.07 %, of a jammed cell at 3
-    // t* by -0.5 +- 1.4 %; but that comes to rest later, and at 3 us it never does (solver/dem/README.md).
+    // Twice the study's step has 0.6 of the cost. It changes the retention at 1 t* by -0.1 +- 0.07 %, and the retention
+    // of a jammed cell at 3 t* by -0.5 +- 1.4 %. But such a cell comes to rest later, and with a step of 3 us never
+    // (solver/dem/README.md).
     info.accuracy["fast"] = {{"precision", std::string("mixed")}, {"time_step", 2e-6}};
     info.accuracy["balanced"] = {{"precision", std::string("mixed")}};
     info.accuracy["reference"] = {{"precision", std::string("double")}};

@@ -41,8 +41,8 @@ store::Table text_table(std::span<const NumericsCost> costs, const std::string& 
     return table;
 }
 
-/// Returns a text with the points at which the bias of the cheapest suitable setting would be within the tolerance with
-/// its error, if the bias is as found.
+/// Returns a text with the number of points that would be enough: with them the bias of the cheapest suitable setting,
+/// if it is as found, is within the tolerance, its error included.
 std::string points_text(std::span<const NumericsCost> costs, std::span<const std::string> observables,
                         double tolerance) {
     const NumericsCost* cheapest = nullptr;

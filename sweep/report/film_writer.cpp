@@ -226,8 +226,8 @@ private:
                 {"clipped", range.clipped}};
     }
 
-    /// Writes corners as 16-bit numbers in the wall's own box: one frame for a fixed wall, else `frames` frames from
-    /// `first` on, in which the wall is shown.
+    /// Writes corners as 16-bit numbers in the wall's own box: one frame for a fixed wall, else the `frames` frames
+    /// from `first` on that show the wall.
     void write_walls() {
         Json walls = Json::array(), left_out = Json::array();
         for (const auto& wall : film_.walls_) {

@@ -87,8 +87,8 @@ double variance_in_bins(const Responses& responses, const stats::PureError& pure
     return freedom > 0 ? std::max(0.0, squares / freedom) : not_a_number;
 }
 
-/// Returns the trend. The response bends if the distance of its bin means from the best rising and the best falling
-/// curve is more than scatter explains: a sum of squares beyond three standard deviations of a chi-squared variable.
+/// Returns the trend. The response bends if its bin means are too far from the best rising and from the best falling
+/// curve: the sum of squared distances is beyond three standard deviations of a chi-squared variable.
 Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, const Responses& responses,
                const stats::PureError& pure, std::span<const double> response) {
     double centre = 0, count = 0;

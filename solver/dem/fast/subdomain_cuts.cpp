@@ -100,8 +100,8 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
 }
 
 /// Chooses ranges that need about the same time. Pairs across subdomains are computed in both. The cost of a
-/// subdomain's pairs with earlier ones depends little on the exact start of its range, so it is taken from ranges
-/// chosen without this cost.
+/// subdomain's pairs with earlier subdomains depends little on the exact start of its range. So this cost is computed
+/// for ranges that were chosen without it.
 void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
     for (const auto& subdomain : subdomains_) subdomain->ghost_cost = 0;
     set_ranges(whole, columns);
