@@ -1,4 +1,4 @@
-// Whether the squares of a sample's deviations are numbers that double precision has.
+// Check that powers of a sample's deviations are within the range of double precision.
 #pragma once
 
 #include <span>
@@ -6,8 +6,8 @@
 
 namespace grainsweep::stats {
 
-/// Explains why sums of the `power`-th powers of deviations overflow or vanish; empty where they do neither. Values
-/// that are not finite are left out.
+/// Returns why sums of the `power`-th powers of deviations overflow or vanish; empty if they do neither. Values that
+/// are not finite are left out.
 [[nodiscard]] std::string reason_against_powers(std::span<const double> values, int power);
 
 }  // namespace grainsweep::stats

@@ -7,7 +7,8 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr double margin = 0.9;  // of the tolerance: the half-widths of the next check scatter, too
+constexpr double margin = 0.9;  // share of the tolerance that is aimed at, because the half-widths of the next check
+                                // scatter
 constexpr double no_moment = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> squared_from(std::span<const double> values, double centre) {
@@ -27,12 +28,12 @@ struct Sizes {
     double points = 0, pairs = 0;
 };
 
-/// Half-width^2 n of both parts.
+/// Half-width^2 n of the two parts of the error.
 struct Variances {
     double points = 0, pairs = 0;
 };
 
-/// Sizes at which statistics^2 + numerics^2 is `target`^2 at least cost, with no more points than there are.
+/// Returns the cheapest sizes at which statistics^2 + numerics^2 = `target`^2, within the points of the design.
 Sizes optimal(const Variances& v, double target, const TwoLevelRule& rule) {
     const double squared = target * target, root = std::sqrt(rule.cost_ratio);
     const double mixed = std::sqrt(v.points * v.pairs);
@@ -44,7 +45,7 @@ Sizes optimal(const Variances& v, double target, const TwoLevelRule& rule) {
     return {std::max(sizes.points, sizes.pairs), sizes.pairs};
 }
 
-/// The sizes that all gates need; NaN where one is unknown.
+/// Returns the sizes that are enough for all gates; NaN if they are unknown for a gate.
 Sizes needed(const TwoLevelRule& rule, const TwoLevelCheck& check) {
     Sizes sizes;
     for (const auto& moment : check.moments) {
@@ -77,7 +78,8 @@ void propose(const TwoLevelRule& rule, std::int64_t sequences, TwoLevelCheck& ch
     check.next_pairs = check.pairs == 0 ? 0 : whole_sequences(next.pairs, sequences, check.next_points);
 }
 
-/// Cost of the values and pairs that are still to run, in cheap values; infinite where it is unknown.
+/// Returns the cost of the values and pairs that are still to run, in units of a cheap value; infinite if it is
+/// unknown.
 double further_cost_of_pairs(const TwoLevelRule& rule, const PairedValues& values) {
     TwoLevelCheck check{.points = std::ssize(values.cheap), .pairs = std::ssize(values.expensive), .moments = {}};
     for (const auto gate : rule.gates) {
@@ -95,7 +97,7 @@ double further_cost_of_pairs(const TwoLevelRule& rule, const PairedValues& value
            missing(sizes.pairs, first.pairs, check.pairs) * rule.cost_ratio;
 }
 
-/// The same of the expensive response alone.
+/// Returns the further cost of the expensive response alone, in the same unit; infinite if it is unknown.
 double further_cost_alone(const TwoLevelRule& rule, const PairedValues& values) {
     const auto n = static_cast<double>(values.expensive.size());
     const double cases = cases_alone(rule, {values.expensive, {}, values.sequences, values.points});
