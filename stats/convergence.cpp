@@ -15,15 +15,15 @@ namespace {
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Whether repetitions of a statistic differ by more than rounding: only then do they tell an error. False where one
-/// of them is undefined.
+/// Returns whether repetitions of a statistic differ by more than rounding; only then can an error be estimated from
+/// them. False if one of them is undefined.
 bool differ(std::span<const double> repetitions) {
     if (repetitions.empty() || std::ranges::any_of(repetitions, [](double x) { return std::isnan(x); })) return false;
     const auto [low, high] = std::ranges::minmax(repetitions);
     return high - low > 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
 }
 
-/// Statistics of all values but those of one part, for each part. Medians are not known.
+/// Returns, for each part, the statistics of all values outside of it. Medians are not computed.
 std::vector<Summary> without_each(const std::vector<Moments>& parts) {
     std::vector<Moments> after(parts.size() + 1);
     for (std::size_t i = parts.size(); i > 0; --i) {

@@ -29,7 +29,7 @@ std::size_t pieces_of(std::size_t rows, std::size_t columns) {
     return low;
 }
 
-/// Where part p of m parts of so many rows begins.
+/// Returns the first row of part p, if `rows` rows make m parts.
 std::size_t begin_of_part(std::size_t rows, std::size_t parts, std::size_t p) {
     return rows * p / parts;
 }

@@ -119,12 +119,13 @@ Part means_of(const Eigen::ArrayXXd& each) {
     return means;
 }
 
-/// What every index needs.
+/// Values that every index needs.
 struct Whole {
     Part variance;
     double unseen;  ///< share of the variance of the mean response that is not in the model
 
-    /// Value of the whole model; its half-width from models without a group, the scramblings and what is unseen.
+    /// Returns the value of the whole model. The half-width comes from models without a group, from the scramblings,
+    /// and from the part of the response that the model misses.
     [[nodiscard]] SensitivityIndex index_of(const Part& part) const {
         const Eigen::ArrayXd all = variance.colwise().mean(), versions = part.colwise().mean().transpose() / all;
         const double value = versions(0);

@@ -31,7 +31,7 @@ struct ProbabilityModel::State {
 
 namespace {
 
-constexpr double inside_by = 1e-9;    // of the box: what round-off of a feature may do
+constexpr double inside_by = 1e-9;    // relative to the box: largest round-off of a feature
 constexpr double sure_within = 1e-9;  // where the moments of a probability have too few digits
 constexpr std::size_t places_in_search = 200, most_places = 1000, places_at_once = 1024;
 

@@ -19,7 +19,7 @@ namespace {
 
 using response::Kriging;
 
-constexpr double outside_by = 1e-9;        // of the box: what round-off of a feature may do
+constexpr double outside_by = 1e-9;        // relative to the box: largest round-off of a feature
 constexpr double worth_a_logarithm = 2.5;  // largest value over the least
 constexpr double kept_below = 0.97;        // of the error without it
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

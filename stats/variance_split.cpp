@@ -59,7 +59,7 @@ double legendre(std::size_t degree, double x) {
 /// How finely the models resolve the response; the coarse ones show what finer ones may still lack.
 enum class Resolution { fine, coarse };
 
-/// The functions of one factor: columns of the additive model, and those that enter products.
+/// Functions of one factor: columns of the additive model, and the functions that enter products.
 class FactorFunctions {
 public:
     FactorFunctions(const SplitFactor& factor, std::span<const Point> points, Resolution resolution)
@@ -210,7 +210,7 @@ Fit fit(const Sums& sums, std::size_t columns) {
     solver.compute(gram);
     const VectorXd coefficients = solver.solve(sums.products.head(p));
     const double explained = coefficients.dot(sums.products.head(p));
-    // What is left of a response that the model meets exactly is rounding.
+    // If the model reproduces the response exactly, the rest is rounding.
     const double left = sums.squares - explained;
     return {left > 1e-12 * sums.squares ? left : 0, static_cast<double>(solver.rank())};
 }

@@ -108,7 +108,7 @@ void TransportedTemperature::advance(const SolidsVolume& solids, const Straining
         const double theta = values_(i, j, k);
         const double root = std::sqrt(theta);
         const double expansion = straining.expansion(i, j, k);
-        const double work = grains_.pressure(a) * expansion;  // p_s div v per Theta: cools what expands
+        const double work = grains_.pressure(a) * expansion;  // p_s div v per Theta: an expanding cell cools
         const double heating =
             2 * grains_.viscosity(a) * root * std::max(0.0, straining.shear(i, j, k) - expansion * expansion / 3);
         const double sink = grains_.dissipation(a) * root + 3 * grains_.drag * a + std::max(work, 0.0);

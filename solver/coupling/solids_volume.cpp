@@ -218,7 +218,7 @@ double SolidsVolume::largest_fraction() const {
         const auto size = static_cast<std::ptrdiff_t>(fraction_.size());
         double most = -std::numeric_limits<double>::infinity();
         for (auto m = size * slab / slabs_.count(); m < size * (slab + 1) / slabs_.count(); ++m)
-            most = values[m] > most ? values[m] : most;  // what is no number is passed over
+            most = values[m] > most ? values[m] : most;  // NaN is ignored
         largest[static_cast<std::size_t>(slab)] = most;
     });
     if (std::isnan(values[0])) return values[0];

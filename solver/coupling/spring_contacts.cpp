@@ -109,7 +109,7 @@ void SpringContacts::find_active(const Cloud& freely_moved) {
     list_contacts(pairs, 2 * longest + diameter);
 }
 
-// Everything the active particles could touch, with the memory of those that touch already.
+// Lists all possible contacts of the active particles, with the memory of existing contacts.
 void SpringContacts::list_contacts(const std::vector<Pair>& pairs, double reach) {
     remembered_.swap(contacts_);
     contacts_.clear();

@@ -35,7 +35,7 @@ Axis::Axis(int cells, double low, double high, double clustering)
     measure();
 }
 
-/// What follows from the cells.
+/// Computes the distances and widths that follow from the cells.
 void Axis::measure() {
     per_width_.clear();
     per_spacing_.assign(1, 0);

@@ -11,7 +11,8 @@ AxisProduct::AxisProduct(const Grid& grid, int direction, const Eigen::MatrixXd&
     const Eigen::Index n = matrix.rows();
     for (Eigen::Index r = 0; r < n; ++r)
         for (Eigen::Index c = 0; c < n; ++c) entries_.push_back(direction == 0 ? matrix(c, r) : matrix(r, c));
-    // What the product takes at once: rows of the left operand or, along x, vectors of columns of the right one.
+    // Number of items that the product processes together: rows of the left operand or, along x, vectors of columns of
+    // the right one.
     const Eigen::Index at_once = 8;
     const double least = negligible * matrix.cwiseAbs().maxCoeff();
     for (Eigen::Index row = 0; row < n; row += at_once) {

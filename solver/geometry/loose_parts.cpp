@@ -39,7 +39,7 @@ double size_of(const Mesh& mesh) {
     return norm(mesh.high() - mesh.low());
 }
 
-/// Where a triangle reaches a level: two points of its sides, or none.
+/// Returns the points where the sides of a triangle cross a level: two or none.
 std::vector<Vec3> cut(const Triangle& t, const End& end, double level) {
     std::vector<Vec3> points;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -130,7 +130,7 @@ std::optional<Turn> turn_of(const Motion& motion, double t) {
     return std::nullopt;
 }
 
-/// The pose after turning what stands in `pose` about a point.
+/// Returns the pose after a rotation about a point.
 Pose rotated(const Pose& pose, const std::array<Vec3, 3>& rows, const Vec3& point) {
     const Pose rotation{.turned = true, .rows = rows, .shift = {}};
     Pose result{.turned = true, .rows = {}, .shift = {}};

@@ -56,7 +56,7 @@ public:
         ++number_;
     }
 
-    /// Throws where particles of two fillings overlap.
+    /// Throws if particles of two fillings overlap.
     void require_apart() const {
         if (loose_.size() < 2) return;
         std::vector<Vec3> centres;

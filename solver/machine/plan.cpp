@@ -21,7 +21,7 @@ using kit::sentence;
 constexpr double early = 0.5;                          // of a phase that may end before its time
 constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
 constexpr double softest = 0.1;                        // overlap over diameter
-constexpr double most_loose = 0.35;                    // solid fraction of what is thrown in at random
+constexpr double most_loose = 0.35;                    // solid fraction of particles placed at random
 constexpr double most_on_lattice = 0.345, most_packed = 0.62, most_rain = 0.16;  // of fillings
 constexpr double longest_way = 0.05;     // of a wall in a time step, smallest diameters
 constexpr double steps_per_period = 20;  // of a vibration
@@ -72,7 +72,8 @@ double count_of(const Spec& spec, const Species& species) {
     return count;
 }
 
-/// Height of a filling, along gravity, m: what its region has, or what its particles need loosely.
+/// Returns the height of a filling along gravity, m: the height of its region, or the height that its particles need
+/// when packed loosely.
 double height_of(const Spec& spec, const Fill& fill) {
     const double g = geometry::norm(spec.gravity);
     if (!(g > 0)) return 0;
@@ -87,7 +88,7 @@ double height_of(const Spec& spec, const Fill& fill) {
                                                   : height * std::min(1.0, solid / (most_on_lattice * *volume));
 }
 
-/// Of what is filled in or fed, m/s. Walls that hit powder faster than that show in max_overlap.
+/// Returns the fastest fall of filled or fed particles, m/s. Faster impacts of walls are visible in max_overlap.
 double fastest_fall(const Spec& spec) {
     const double g = geometry::norm(spec.gravity);
     double fastest = 0;
@@ -188,7 +189,7 @@ void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
-/// Rest and the end of a flow are waited for in vain where something is moved or fed.
+/// Warns of phases that wait for rest or for the end of a flow while walls move or particles are fed.
 void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
     for (std::size_t p = 0; p < spec.phases.size(); ++p) {
         const Phase& phase = spec.phases[p];
@@ -227,7 +228,7 @@ CostEstimate cost_of(const Spec& spec) {
     double work = 0, most = particles_at_start(spec);
     work += most * duration_of(spec, {});
     for (const Feed& feed : spec.feeds) {
-        // What is fed stays for half of the time, in the mean.
+        // A fed particle stays for half of the time, in the mean.
         const double fed = feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix);
         work += fed * duration_of(spec, feed.during) / 2;
         most += fed;

@@ -163,7 +163,7 @@ std::int64_t Run::credited_ahead(const Feed& feed) const {
     return std::min((since / every + 1) * every, phase_steps()) - since;
 }
 
-// A batch is what falls due until the next one, or until the end of the phase.
+// Feeds a batch: the mass that is due until the next batch, or until the end of the phase.
 void Run::feed() {
     for (std::size_t k = 0; k < feeders_.size(); ++k) {
         if (!holds(spec_.feeds[k].during, phase_)) continue;

@@ -1,4 +1,4 @@
-// What a run has to answer so far: measurements by their reductions, expressions of them, and what every machine has.
+// Answers of a run so far: reduced measurements, expressions of them, and the observables of every machine.
 #include "solver/machine/reduction.hpp"
 #include "solver/machine/run.hpp"
 #include "solver/scenes/kit/sentence.hpp"
@@ -74,7 +74,7 @@ void Run::observe(Observations& into) const {
         into.scalars[spec_.phases[p].name + "_time"] = times_.end[p] - times_.begin[p];
         into.scalars[spec_.phases[p].name + "_ended"] = ended_by_[p];
     }
-    // What a machine measures under one of these names stands in its place.
+    // A measurement of the machine with one of these names replaces it.
     for (const auto& measure : spec_.measures) into.scalars.erase(measure.name);
     for (const auto& derived : spec_.derived) into.scalars.erase(derived.name);
     for (const auto& time_of : spec_.times) into.scalars.erase(time_of.name);

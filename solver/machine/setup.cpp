@@ -18,7 +18,7 @@ using geometry::operator+;
 using geometry::operator*;
 
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr double deepest_in_walls = 0.45;  // diameters: what walls pinch between them goes on
+constexpr double deepest_in_walls = 0.45;  // diameters; particles pinched between walls do not end the run
 constexpr int poses = 400;                 // of a moving wall at which its extent is taken
 constexpr double margin = 2;               // largest diameters around the walls
 
@@ -125,7 +125,7 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     return setup;
 }
 
-/// Duration of an impact of two equal spheres of these, s. Rayleigh waves are those of one body.
+/// Returns the duration of an impact of two equal spheres of these materials, s. Rayleigh waves are of one body.
 static double impact_time(const dem::Material& pair, double radius, double speed) {
     return pair.normal_law == dem::NormalLaw::linear ? dem::linear_contact_time(pair, radius)
                                                      : dem::hertz_contact_time(pair, radius, speed);
@@ -163,7 +163,7 @@ double fastest_of(const Spec& spec) {
             for (std::size_t k = 0; k < 3; ++k)
                 x[k] = std::clamp((corner >> k & 1U) != 0 ? bounds.high[k] : bounds.low[k], spec.domain.low[k],
                                   spec.domain.high[k]);
-            // How far the domain goes on downhill from there.
+            // Distance from there to the lower end of the domain.
             double drop = 0;
             for (std::size_t k = 0; k < 3; ++k) {
                 const double along = spec.gravity[k] / g;

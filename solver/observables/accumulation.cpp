@@ -8,7 +8,7 @@
 namespace grainsweep::observables {
 namespace {
 
-// What is no number counts in the first bin.
+// Returns the bin of x; NaN counts in the first bin.
 int bin(double x, double low, double high, int n) {
     const double at = (x - low) / (high - low) * n;
     return at > 0 ? static_cast<int>(std::min(at, n - 1.0)) : 0;

@@ -9,7 +9,7 @@ namespace grainsweep::observables {
 
 std::vector<std::pair<double, double>> log_histogram(std::span<const double> values, int per_decade, double floor) {
     std::map<std::int64_t, std::int64_t> counts;
-    constexpr double most = 1e300;  // what is no number counts as the floor, what is infinite as this
+    constexpr double most = 1e300;  // NaN counts as the floor, infinity as this
     for (const double value : values)
         ++counts[static_cast<std::int64_t>(
             std::floor(std::log10(value > floor ? std::min(value, most) : floor) * per_decade))];

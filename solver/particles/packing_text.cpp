@@ -28,7 +28,7 @@ struct PackingHeader {
     throw std::invalid_argument("packing, line " + std::to_string(line) + ": " + what);
 }
 
-/// One line "x,y,z"; nothing where it is not three numbers.
+/// Returns the numbers of a line "x,y,z"; empty if it is not three numbers.
 std::optional<std::array<double, 3>> three_numbers(std::string_view line) {
     std::array<double, 3> x{};
     for (std::size_t k = 0; k < 3; ++k) {

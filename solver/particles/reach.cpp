@@ -203,7 +203,7 @@ void OpenSpace::spread_beyond(const Block& home) {
         }
 }
 
-/// Where a block borders on one not stored, water comes in.
+/// Lets water in through faces to blocks that are not stored.
 void OpenSpace::seed_faces(Block& home) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (const std::int32_t side : {-1, 1}) {

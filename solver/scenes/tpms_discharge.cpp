@@ -41,7 +41,7 @@ namespace {
 using geometry::Vec3;
 
 constexpr double margin = 2;            // diameters around the cell before a sphere is gone
-constexpr double most_overlap = 0.1;    // diameters: what the dropped wall spheres presume
+constexpr double most_overlap = 0.1;    // diameters; removing wall spheres is correct below this
 constexpr double sample_time = 0.0165;  // t*, between two samples
 constexpr std::int64_t samples_per_force_sample = 10;
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)

@@ -35,7 +35,7 @@ ThreadPool::ThreadPool(int threads)
     threads_.reserve(static_cast<std::size_t>(threads));
     try {
         for (int k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
-    } catch (const std::system_error&) {  // the system gives no more: those that there are do all parts
+    } catch (const std::system_error&) {  // the system gives no more threads: the existing ones do all parts
     }
 }
 

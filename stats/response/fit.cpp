@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t cases_of_first_search = 200, cases_for_map = 200, compared_per_start = 8, followed = 2;
 constexpr int most_evaluations = 80;
-constexpr double value_tolerance = 1e-3;  // of a log density: far below what tells models apart
+constexpr double value_tolerance = 1e-3;  // of a log density: far below the differences between models
 
 Bounds bounds(const Likelihood& likelihood) {
     const Eigen::Index d = likelihood.points().cols(), size = likelihood.parameters();

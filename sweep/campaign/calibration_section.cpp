@@ -1,4 +1,4 @@
-// "calibration": what was measured, under which conditions. Takes the place of "design": conditions become factors with
+// "calibration": measurements and their conditions. The section replaces "design": conditions become factors with
 // levels, and the waves are a design of their own.
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/csv_table.hpp"
@@ -102,7 +102,7 @@ bool names_errors(std::string_view name) {
 
 using CurveRow = std::array<double, 3>;  // where, value, error
 
-/// Refuses row numbers where places are expected: whole numbers under a name of row numbers, and 0, 1, 2, ... or
+/// Refuses row numbers in the column of places: whole numbers under a name of row numbers, and 0, 1, 2, ... or
 /// 1, 2, 3, ... before places and values without errors. (A column without a name is refused with the header.)
 void refuse_row_numbers(const Cursor& file, const CsvRecord& header, std::span<const CurveRow> rows) {
     bool whole = true, counts = rows.front()[0] == 0 || rows.front()[0] == 1, second_grows = true;
@@ -123,7 +123,7 @@ void refuse_row_numbers(const Cursor& file, const CsvRecord& header, std::span<c
                         shown(header[0]), shown(header[1]), shown(header[2])));
 }
 
-/// Lines "where,value[,error]" below a header; a target for each.
+/// Returns a target for each line "where,value[,error]" below the header.
 std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const designs::MeasuredTarget& alike,
                                                 bool has_error, const std::filesystem::path& folder) {
     const std::string text = read_csv_text(file, folder / file.text());

@@ -11,7 +11,7 @@
 namespace grainsweep::campaign {
 namespace {
 
-/// A number, or what another program writes for one: +1, 1.0D+03, nan.
+/// Returns whether the cell is a number, or a number as other programs write it: +1, 1.0D+03, nan.
 bool is_number(std::string_view cell) {
     const bool begins = !cell.empty() && std::string_view("+-.0123456789").find(cell.front()) != std::string_view::npos;
     const bool digits = cell.find_first_of("0123456789") != std::string_view::npos;

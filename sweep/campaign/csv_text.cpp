@@ -24,7 +24,7 @@ std::string read_csv_text(const Cursor& file, const fs::path& path) {
     if (fs::file_size(path, error) > largest_table || error)
         file.refuse("the file must be readable and at most 256 MiB");
     std::string text = files::whole_file(path, error);
-    if (error)  // what was read is a part, and would pass for a shorter list
+    if (error)  // the rows read so far are only a part, but would look like a shorter list
         file.refuse(fmt::format("'{}' cannot be read beyond line {}: {}", path.string(),
                                 1 + std::ranges::count(text, '\n'), error.message()));
     return text;

@@ -24,7 +24,7 @@ const designs::DesignInfo& read_kind(const Cursor& place) {
     return *designs::find_design(place["kind"].word(known));
 }
 
-/// One count, or one per factor; where a factor has levels, its entry is their number.
+/// Returns one count, or one per factor. The entry of a factor with levels is the number of its levels.
 OptionValue read_counts(const Cursor& place, const OptionSpec& option, std::span<const std::size_t> levels) {
     const Interval bounds{static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
     if (!place.json().is_array()) return place.whole(bounds);
@@ -69,7 +69,7 @@ OptionValue read_rows(const Section& section, const OptionSpec& option, const Pa
     return rows;
 }
 
-/// The number of points an option asks for, as far as it alone can tell.
+/// Checks the number of points that an option requests, as far as this option alone determines it.
 void check_size(const Cursor& place, const OptionValue& value, std::span<const std::size_t> levels, bool points) {
     double size = 1;
     if (const auto* count = std::get_if<std::int64_t>(&value)) {

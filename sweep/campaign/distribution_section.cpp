@@ -1,4 +1,4 @@
-// A distribution of a factor: its figures, and what the bounds of the parameter leave of it.
+// Distribution of a factor: its figures, cut off at the bounds of the parameter.
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
@@ -14,7 +14,7 @@ using Ranges = std::variant<Between, stats::Distribution>;
 
 constexpr double most_cut = 0.05;
 
-/// Where the figures of a distribution are read, and of what.
+/// Place of the figures of a distribution, and their parameter.
 struct Reading {
     const Section& section;
     const ParameterSpec& parameter;

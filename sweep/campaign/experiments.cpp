@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto scene_keys = std::to_array<std::string_view>({"scene", "machine", "program"});
 
-/// One experiment as a campaign file of its own, and where its parts stand in the whole file.
+/// One experiment as a campaign file of its own, with the places of its parts in the whole file.
 struct Experiment {
     std::string name;
     Json document;

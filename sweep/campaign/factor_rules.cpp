@@ -1,4 +1,4 @@
-// What a factor may say beside its values: steps, groups, conditions; and which factors are shares that add to one.
+// Rules of factors besides their values: steps, groups, conditions, and shares that add to one.
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/step.hpp"
@@ -130,7 +130,7 @@ void check_share(const Cursor& place, const Factor& factor, const SceneInfo& sce
     if (range->low < 0) place.refuse("a share is not negative: 'between' begins below 0");
 }
 
-/// No share can be larger than what the smallest of the others leave: it is the upper end of every range.
+/// A share cannot be larger than 1 minus the smallest values of the others. This is the upper end of its range.
 void check_upper_ends(const Cursor& place, std::vector<Factor>& factors) {
     double lows = 0;
     for (const auto& factor : factors)

@@ -1,4 +1,4 @@
-// "factors" and "fixed": what varies and what is held.
+// "factors" and "fixed": varied parameters and fixed parameters.
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/quantity.hpp"
@@ -48,7 +48,7 @@ Levels read_levels(const Section& factor, const ParameterSpec& parameter, const 
     return levels;
 }
 
-/// The one key that says which values the factor takes.
+/// Returns the one key that defines the values of the factor.
 std::string_view range_key(const Section& section) {
     std::vector<std::string_view> given;
     for (const auto key : range_keys())
@@ -79,7 +79,7 @@ bool resembles_quantity(std::string_view text) {
     return begins && !text.empty() && text.find_first_of("()+*<>=&|,") == std::string_view::npos;
 }
 
-/// The expression that a fixed number is given by; none: it is a value.
+/// Returns the expression that defines a fixed number; empty: it is given as a value.
 std::optional<Formula> read_formula(const Cursor& place, const ParameterSpec& parameter, const SceneInfo& scene) {
     if (!place.json().is_string() || std::holds_alternative<std::string>(parameter.default_value)) return std::nullopt;
     const auto& text = place.json().get_ref<const std::string&>();

@@ -18,10 +18,10 @@ namespace grainsweep::campaign {
 
 namespace {
 
-/// The files that inputs name, read again where other ones are named than before.
+/// Files that inputs name. They are read again if the names change.
 class NamedFiles {
 public:
-    /// Throws std::invalid_argument where one cannot be read.
+    /// Throws std::invalid_argument if a file cannot be read.
     const Files& of(const Inputs& inputs) {
         Inputs words;
         for (const auto& [name, value] : inputs) {
@@ -157,7 +157,8 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     return warnings;
 }
 
-/// A program takes what it is given: whether 1 to 10 counts things only its author knows.
+/// Warns of factors that may be counts. A program accepts any number, and only its author knows whether 1 to 10 are
+/// counts.
 void warn_of_counts(const Campaign& campaign, std::vector<std::string>& warnings) {
     if (!is_program(campaign.scene().name)) return;
     for (const auto& factor : campaign.space.factors) {
@@ -173,7 +174,7 @@ void warn_of_counts(const Campaign& campaign, std::vector<std::string>& warnings
     }
 }
 
-/// Names how many runs the design makes, where several of its places ask the same; empty where none do.
+/// Returns a text with the number of different runs, if several places of the design are the same case; else empty.
 std::string repeated_cases(const Campaign& campaign, const Forecast& forecast) {
     if (forecast.questions == forecast.places) return {};
     const auto* design = designs::find_design(campaign.design);

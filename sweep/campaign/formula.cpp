@@ -44,7 +44,7 @@ double chosen(double condition, double value, double otherwise) {
     return condition != 0 ? value : otherwise;
 }
 
-/// The smallest (sign 1) or largest (sign -1) argument; NaN where one is NaN, whatever their order.
+/// Returns the smallest (sign 1) or largest (sign -1) argument; NaN if any argument is NaN.
 template <int sign>
 double extreme(const double* arguments, int count) {
     double best = arguments[0];
@@ -76,12 +76,12 @@ constexpr std::array<std::string_view, 6> comparisons = {"<=", ">=", "==", "!=",
 constexpr std::array<std::string_view, 14> operators = {"<=", ">=", "==", "!=", "<", ">", "&&",
                                                         "||", "+",  "-",  "*",  "/", "^", ","};
 
-/// Checks a text token by token, so that muParser meets nothing but what is offered here.
+/// Checks a text token by token, so that muParser receives only the functions and operators of this file.
 class FormulaCheck {
 public:
     FormulaCheck(std::string_view text, const WordList& names) : text_(text), names_(names) {}
 
-    /// Why not; none: it is a formula.
+    /// Returns why the text is no formula; empty: it is one.
     std::optional<std::string> reason() {
         if (text_.size() > longest_formula) return fmt::format("a formula has at most {} characters", longest_formula);
         levels_.emplace_back();
@@ -123,14 +123,14 @@ private:
         return text_.substr(here_, end - here_);
     }
 
-    /// The character of the text here, whole where it has several bytes.
+    /// Returns the whole character at this place, which may have several bytes.
     [[nodiscard]] std::string_view character() const {
         std::size_t end = here_ + 1;
         while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U) ++end;
         return text_.substr(here_, end - here_);
     }
 
-    /// Adds what was read since `start` to the plain text.
+    /// Adds the text read since `start` to the plain text.
     void pass(std::size_t start) {
         if (negative_) plain += '-';
         negative_ = false;

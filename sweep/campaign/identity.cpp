@@ -40,7 +40,7 @@ std::string line_of(const Factor& factor) {
 
 constexpr std::string_view group_mark = " group ", when_mark = " when ";
 
-/// How a factor stands to others, as lines behind those of all factors.
+/// Returns the relations of a factor to others, as lines that follow the lines of all factors.
 std::string ties_of(const Factor& factor) {
     std::string lines;
     if (!factor.group.empty()) lines += fmt::format("{}{} {}\n", group_mark, factor.name, factor.group);
@@ -85,7 +85,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// The lines of those options that say which design it is, or of those that say how much of it is asked.
+/// Returns the lines of the options that identify the design, or (`extent`) of the options that set its size.
 std::string options_of(const designs::DesignInfo& design, const std::string& text, bool extent) {
     std::set<std::string> kept;
     for (const auto& line : lines_of(text)) {
@@ -113,7 +113,7 @@ double identity_number(const std::string& text) {
     return number;
 }
 
-/// What line_of() wrote; of a sample the name alone.
+/// Returns the factor that line_of() wrote; for a sample only its name.
 StatedFactor factor_in(const std::string& line) {
     constexpr std::string_view levels = " levels ", between = " between ";
     StatedFactor factor;
@@ -158,7 +158,8 @@ void add_distributions(std::vector<StatedFactor>& factors, const std::vector<std
     }
 }
 
-/// Counts per factor as they act: without those of factors whose own levels decide, and one for all written out.
+/// Returns the counts per factor that have an effect: without counts of factors with levels of their own. One count for
+/// all factors is written out.
 std::string counts_that_act(const std::string& value, const std::vector<std::string>& factors) {
     std::istringstream stream(value);
     std::vector<std::int64_t> counts;
@@ -178,7 +179,7 @@ std::string in_one_line(const std::string& lines) {
     return text;
 }
 
-/// The same factor with every old level kept: a lattice grows so.
+/// Returns whether the factor is the same, with all its old levels and new ones. A lattice may grow in this way.
 bool levels_added(const std::string& before, const std::string& after) {
     const auto was = factor_in(before), is = factor_in(after);
     return was.name == is.name && !was.levels.empty() && std::ranges::all_of(was.levels, [&](const auto& level) {
@@ -186,7 +187,7 @@ bool levels_added(const std::string& before, const std::string& after) {
            });
 }
 
-/// First line in which two texts differ, "nothing" where one has ended.
+/// Returns the first line in which two texts differ; "nothing" for a text that has ended.
 std::pair<std::string, std::string> first_difference(const std::string& before, const std::string& after,
                                                      bool may_add_levels) {
     auto a = lines_of(before);
@@ -216,7 +217,7 @@ Identity identity_of(const Campaign& campaign) {
     for (const auto& [name, value] : fixed_as_stated(campaign.space))
         identity.fixed += fmt::format("{} = {}\n", name, identity_text(value));
     for (const auto& [name, value] : campaign.request.options) {
-        if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by what they ask
+        if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by their cases
         const auto* option = find_option(design, name);
         const bool extent = option != nullptr && option->extent;
         (extent ? identity.extent : identity.options) += fmt::format("{} = {}\n", name, text_of(value));
@@ -316,7 +317,7 @@ std::string larger_extent(std::string_view design, const std::string& before, co
 
 namespace {
 
-/// A design that does not extend stands as it was asked first.
+/// A design that cannot be extended keeps its first size.
 void refuse_another_size(const Identity& stored, const Identity& asked, std::string_view archive) {
     const auto& design = designs::design_named(asked.design);
     if (design.extends) return;
@@ -381,7 +382,7 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
         refuse("$.where", asked.condition.empty() ? "none" : asked.condition,
                stored.condition.empty() ? "no condition" : fmt::format("the condition {}", stored.condition));
     }
-    // Which option is of the extent is the program's to say, not the archive's: both texts are sorted anew.
+    // The program, not the archive, defines which options belong to the extent. So both texts are sorted again.
     same("$.design", "design option", options_of(design, stored.options + stored.extent, false),
          options_of(design, asked.options + asked.extent, false));
     refuse_another_size(stored, asked, archive);

@@ -78,7 +78,7 @@ std::shared_ptr<const Machine> machine_if_any(const std::string& argument) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(argument, error)) return installed_machine(argument);
     const std::string text = files::whole_file(argument, error, largest_campaign_text);
-    // What is no JSON is refused where it is read as a campaign file.
+    // A text that is no JSON is refused later, when it is read as a campaign file.
     const Json document = error ? Json() : Json::parse(text, nullptr, false);
     return is_machine_document(document) ? read_machine(argument) : nullptr;
 }

@@ -28,7 +28,7 @@ std::string place_of(std::string_view text, std::size_t byte) {
     return fmt::format("line {}, column {}", line, column);
 }
 
-/// What the parser says beside its own notion of the place: "unexpected end of input; expected '}'".
+/// Returns the parser's message without its own statement of the place: "unexpected end of input; expected '}'".
 std::string complaint_of(std::string_view what) {
     if (const auto marker = what.find("last read: '"); marker != std::string_view::npos) {
         // The quoted token may hold any bytes: it is shown by the caller, escaped.
@@ -45,7 +45,7 @@ std::string complaint_of(std::string_view what) {
     return std::string(bracket == std::string_view::npos ? what : what.substr(bracket + 2));
 }
 
-/// The word or number around a byte, or the byte alone, and where it starts.
+/// Returns the word or number around a byte, or the byte alone, with its start.
 std::pair<std::size_t, std::string> word_at(std::string_view text, std::size_t byte) {
     const auto of_word = [&](std::size_t k) {
         const char c = text[k];
@@ -60,7 +60,7 @@ std::pair<std::size_t, std::string> word_at(std::string_view text, std::size_t b
     return {start, std::string(text.substr(start, end - start))};
 }
 
-/// The last byte before `end` that is no white space; npos where there is none.
+/// Returns the last byte before `end` that is no white space; npos: none.
 std::size_t last_before(std::string_view text, std::size_t end) {
     return text.substr(0, end).find_last_not_of(" \t\r\n");
 }

@@ -56,7 +56,7 @@ Cursor cursor_at(const Json& document, const std::string& root, const Json::json
     return cursor;
 }
 
-/// All texts that a text with "{NAME}" can become, in the order of the words; none where a case names the file.
+/// Returns all texts that a text with "{NAME}" can become, in the order of the words; none if a case names the file.
 std::vector<std::string> expansions(const std::string& text, const std::vector<ParameterSpec>& parameters) {
     const std::size_t open = text.find('{'), close = text.find('}', open);
     if (open == std::string::npos || close == std::string::npos) return {text};
@@ -88,7 +88,7 @@ Json without_notes(const Json& value) {
     return all;
 }
 
-/// Without what changes no answer; files by the hashes of their contents.
+/// Returns the machine without the parts that change no answer; files as hashes of their contents.
 Json answering_part(const Machine& machine) {
     Json identity = *machine.document;
     for_each_file(*machine.document, [&](const Json::json_pointer& place) {

@@ -58,7 +58,7 @@ Enum law_of(const Section& section, const MachineScope& scope, std::string_view 
     return static_cast<Enum>(std::ranges::find(words, chosen) - words.begin());
 }
 
-/// Where a wall does not say: the only material, or the only one that no particles are of.
+/// Returns the default material of walls: the only material, or the only one without particles.
 std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading) {
     std::vector<std::size_t> free;
     for (std::size_t m = 0; m < reading.materials.size(); ++m)

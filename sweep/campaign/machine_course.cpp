@@ -15,7 +15,7 @@ namespace {
 
 using machine::OptionSpec;
 
-/// What an entry of "measure" is.
+/// Kind of an entry of "measure".
 enum class EntryKind { probe, time_of, expression };
 
 EntryKind entry_kind(const Cursor& place) {
@@ -122,7 +122,7 @@ std::pair<double, bool> threshold_of(const Section& section, const MachineReadin
     return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
 }
 
-/// Expressions behind those that they need. Refuses circles.
+/// Sorts expressions so that each follows the expressions that it needs. Refuses circles.
 void put_in_order(const Cursor& all, std::vector<machine::Derived>& derived) {
     std::vector<machine::Derived> sorted;
     const auto waits = [&](const std::string& name) {
@@ -241,7 +241,7 @@ void read_measures(const Section& top, MachineReading& reading) {
         const auto [threshold, above] = threshold_of(section, reading, unit_of_measure(reading, of));
         spec.times.push_back({name, of, threshold, above});
     }
-    // Expressions see parameters, "let", what is measured, and one another.
+    // Expressions may use parameters, "let", measurements, and one another.
     std::vector<std::string> known;
     for (const auto& observable : machine_observables(top))
         if (observable.shape == Shape::scalar) known.push_back(observable.name);

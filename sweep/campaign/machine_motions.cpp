@@ -16,7 +16,7 @@ using geometry::operator+;
 using geometry::operator*;
 using machine::Vec3;
 
-/// Farthest corner of what bounds a shape, m; infinite where nothing does.
+/// Returns the distance of the farthest corner of a shape's bounding box, m; infinite if the shape is unbounded.
 double arm_of(const geometry::Shape& shape, const Vec3& centre) {
     Vec3 farthest{};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -210,7 +210,7 @@ void refuse_names_twice(const Cursor& place, const std::vector<ParameterSpec>& p
                                 parameter.name));
 }
 
-/// Numbers that expressions know once species are read.
+/// Returns the names that expressions may use after the species are read.
 std::set<std::string> species_names(const Section& top) {
     std::set<std::string> names;
     const auto species = top.find("species");
@@ -231,7 +231,7 @@ double any_quantity(const Cursor& place) {
     place.refuse(why);
 }
 
-/// Adds what "let" defines, except what needs a name that is still to come. Refuses a circle.
+/// Adds the definitions of "let", except those with a name that is defined later. Refuses a circle.
 void evaluate_lets(const Section& top, const std::set<std::string>& to_come, MachineScope& scope) {
     const auto lets = top.find("let");
     if (!lets) return;
@@ -256,7 +256,7 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
         if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
         used[name] = std::get<Formula>(parsed).names();
     }
-    // Whatever needs nothing that is open is next.
+    // A definition that needs no open name is next.
     while (!open.empty()) {
         const auto ready = std::ranges::find_if(open, [&](const std::string& name) {
             return std::ranges::none_of(

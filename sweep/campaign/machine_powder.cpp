@@ -25,7 +25,7 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     const auto& scope = reading.scope;
     const auto place = section.find("spread"), file = section.find("file");
     if (!place && !file) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
-    // Where a parameter chooses, the values of all choices stand beside it.
+    // If a parameter chooses, the values of all choices are beside it.
     const bool chosen = place && place->json().is_string() && place->text().find('{') != std::string::npos;
     const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Key::name)->words;
     const auto spread = place ? scope.word(*place, words) : std::string("file");
@@ -141,7 +141,7 @@ machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading
 constexpr std::array<std::string_view, 10> sphere_columns = {"x",  "y",  "z",  "diameter", "vx",
                                                              "vy", "vz", "wx", "wy",       "wz"};
 
-/// Rows of a CSV file, in SI units; what is absent is 0, and the diameter that of the species.
+/// Returns the rows of a CSV file, in SI units. Absent values are 0; an absent diameter is the diameter of the species.
 std::vector<machine::Placed> spheres_in_file(const Cursor& place, const MachineReading& reading, std::size_t species) {
     const auto refuse = [&](const std::string& rule) { place.refuse(rule); };
     CsvTable table(reading.contents(place), refuse);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view of_walls = "wall_";
 
-/// What the machine file states itself stays.
+/// Sets a value unless the machine file has one itself.
 void fill(Json& object, const std::string& key, const Json& value) {
     if (!object.contains(key)) object[key] = value;
 }

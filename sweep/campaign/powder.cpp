@@ -179,7 +179,7 @@ PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
                                             : fmt::format("file:{}:{}", content_hash(sizes.csv), sizes.file.string())};
         });
     }
-    for (const auto& name : ours) {  // with all in place: what no case can feel is left at its default
+    for (const auto& name : ours) {  // after all inputs are set: an input without effect on any case keeps its default
         if (!no_effect(space, *space.scene->find_parameter(name)))
             use.set.push_back(name);
         else

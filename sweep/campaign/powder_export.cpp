@@ -1,4 +1,4 @@
-// From columns of sizes and shares to shares below rising sizes, with what is missing asked for.
+// Converts columns of sizes and shares to shares below rising sizes. Requests choices for missing information.
 #include "sweep/campaign/powder_export.hpp"
 
 #include "sweep/campaign/case.hpp"
@@ -17,7 +17,7 @@ namespace {
 constexpr double small_rest = 0.01;  // relative: by which shares may miss their whole
 constexpr double rounding = 1e-9;
 
-/// A row: where its size lies, and its share as printed.
+/// Size and printed share of one row.
 struct Entry {
     ExportSize size;
     double share = 0;
@@ -87,7 +87,7 @@ std::vector<Entry> entries_of(const ExportGrid& grid, const ExportColumns& colum
     return entries;
 }
 
-/// What the numbers allow a column to be.
+/// Meanings of a column that its numbers allow.
 struct Allowed {
     bool passing = true, retained = true, each = true;
 };
@@ -118,7 +118,7 @@ Allowed allowed_by(const std::vector<Entry>& entries, const ExportColumns& colum
     return allowed;
 }
 
-/// passing, retained or each; asks where neither words nor numbers decide.
+/// Returns passing, retained or each; requests a choice if neither words nor numbers decide.
 std::string kind_of_shares(const std::vector<Entry>& entries, const ExportColumns& columns,
                            const ExportChoices& choices, std::string& from) {
     if (choices.as) return from = "--as", *choices.as;
@@ -165,10 +165,10 @@ double whole_of(const std::vector<Entry>& entries, const std::string& as, const 
     return as == "each" ? total : whole;
 }
 
-/// Lower edge, upper edge or middle: what a size says of its class.
+/// Returns whether sizes are the lower edges, the upper edges or the middles of their classes.
 std::string edge_of(const std::vector<Entry>& entries, const ExportColumns& columns, const ExportChoices& choices) {
     if (choices.edge) return *choices.edge;
-    if (columns.sieved) return "lower";  // a sieve holds back what is larger than its openings
+    if (columns.sieved) return "lower";  // a sieve holds back particles larger than its openings
     const bool first_is_edge = entries.front().share == 0, last_is_edge = entries.back().share == 0;
     if (first_is_edge && !last_is_edge) return "upper";
     if (last_is_edge && !first_is_edge) return "lower";
@@ -224,7 +224,7 @@ Curve of_classes(const std::vector<Entry>& entries, const ExportColumns& columns
             add(k + 1 < n ? std::sqrt(mid(k) * mid(k + 1)) : mid(k) * std::sqrt(mid(k) / mid(k - 1)),
                 below += classes[k].share / whole);
     }
-    // ">90" has its lower edge at the last one; with lower edges it is what remains.
+    // ">90" starts at the last edge; with lower edges it is the remaining share.
     if (above > 0 && edge != "lower" && std::abs(curve.below.back() + above - 1) > small_rest)
         refuse_export("the shares of its classes do not add up");
     return curve;
@@ -280,7 +280,7 @@ void end_curve(Curve& curve, const ExportChoices& choices, std::vector<std::stri
     for (std::size_t k = 1; k < curve.below.size(); ++k) curve.below[k] = std::max(curve.below[k], curve.below[k - 1]);
 }
 
-/// Without what lies wholly in empty ends.
+/// Removes the empty classes at both ends.
 void trim(Curve& curve) {
     std::size_t first = 0, last = curve.sizes.size() - 1;
     while (first + 1 < last && curve.below[first + 1] <= 0) ++first;

@@ -63,7 +63,7 @@ std::string from_utf16(std::string_view bytes, bool little) {
     return text;
 }
 
-/// The text in UTF-8, and what it was.
+/// Returns the text in UTF-8, and its original encoding.
 std::pair<std::string, std::string> decoded(std::string_view bytes) {
     if (bytes.starts_with("\xFF\xFE")) return {from_utf16(bytes.substr(2), true), "UTF-16"};
     if (bytes.starts_with("\xFE\xFF")) return {from_utf16(bytes.substr(2), false), "UTF-16"};

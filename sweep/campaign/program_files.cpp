@@ -1,4 +1,4 @@
-// "files" and "templates" of a program: what lies in every case's folder.
+// "files" and "templates" of a program: the files in every case's folder.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/program_file_name.hpp"
 #include "sweep/campaign/program_section.hpp"

@@ -1,4 +1,4 @@
-// "observables" of a program: what is measured, and where its value is found.
+// "observables" of a program: measured quantities, and the places of their values in the output.
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/program_section.hpp"

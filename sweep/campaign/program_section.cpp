@@ -43,7 +43,7 @@ void check_case(const Cursor& place, const std::string& name, const auto& others
                                  fmt::format("{} and {} are one name in SQL; rename one", other, name));
 }
 
-/// What a word of a factor may hold: it becomes text in commands, templates, ids and tables.
+/// Checks the characters of a factor's word, because it becomes text in commands, templates, ids and tables.
 void check_word(const Cursor& place) {
     const auto& word = place.json().get_ref<const std::string&>();
     const bool control =
@@ -62,7 +62,7 @@ bool has_whole_steps(const nlohmann::json& factor) {
     return step.is_number() && step.get<double>() == std::floor(step.get<double>());
 }
 
-/// The parameters that a campaign gives values to, and what words each takes.
+/// Parameters that a campaign gives values to, and the words of each.
 class Given {
 public:
     explicit Given(const Section& top) {

@@ -60,7 +60,7 @@ decltype(ProgramObservable::from) source_in(const Json& from) {
     return FromOutput{text("output")};
 }
 
-/// What changes an answer.
+/// Returns the parts of the program that change an answer.
 Json answer_json(const Program& program) {
     Json identity = {{"command", program.command},
                      {"protocol", program.protocol == Program::Protocol::files ? "files" : "lines"},
@@ -144,7 +144,7 @@ void require_within_folder(const std::string& name) {
         throw std::invalid_argument(fmt::format("it names a file '{}' outside of the case's folder: {}", name, flaw));
 }
 
-/// The same rules as of a campaign file: the text may come from anybody, and its hash is no signature.
+/// Applies the rules of a campaign file, because the text may come from anybody: its hash is no signature.
 void require_harmless(const Program& program) {
     constexpr std::size_t digits = 32;
     if (program.command.empty() || program.command.front().empty()) throw std::invalid_argument("its command is empty");

@@ -179,7 +179,7 @@ bool UnitDatabase::in_radians(const ut_unit* speed) const {
     return short_decimal(factor) || short_decimal(1 / factor);
 }
 
-/// The double nearest to number * factor, where `number` is a decimal text. None: out of range.
+/// Returns the double nearest to number * factor for a decimal text `number`; empty: out of range.
 std::optional<double> product(std::string_view number, Decimal factor) {
     std::string digits;
     int exponent = factor.exponent;
@@ -227,7 +227,8 @@ std::optional<double> converted(std::string_view number, double x, const Convers
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// What UDUNITS reads as another number within a unit ("mm 3"), as a date or as a logarithm is no unit here.
+/// Returns whether the text is a unit. Texts that UDUNITS reads as a unit with a second number ("mm 3"), as a date or
+/// as a logarithm are refused.
 bool sound_unit(std::string_view unit) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -248,7 +249,8 @@ bool sound_unit(std::string_view unit) {
     return true;
 }
 
-/// "; did you mean 'um'?" where one of the usual units that fit is near, else those that fit.
+/// Returns ", the nearest that fits is 'um'" if a usual unit of this dimension has a similar name, else some usual
+/// units of this dimension.
 std::string advice(const UnitDatabase& database, std::string_view unit, const ut_unit* place) {
     std::vector<std::string_view> fitting;
     for (const auto usual : usual_units) {

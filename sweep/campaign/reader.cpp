@@ -78,7 +78,7 @@ std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& fo
     return read_machine(file);
 }
 
-/// "powder": parameters from a powder file, under what the campaign gives itself.
+/// Reads "powder": parameters from a powder file. Values of the campaign itself have priority.
 void use_powder(const Cursor& place, const fs::path& folder, Campaign& campaign) {
     if (is_program(campaign.scene().name))
         place.refuse("a program has no powder of this kind; name the file in its \"files\"");

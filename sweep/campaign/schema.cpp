@@ -88,7 +88,7 @@ OrderedJson schema_of(const Key& key) {
     return schema;
 }
 
-/// An object with the keys of a table, its notes and nothing else.
+/// Returns the schema of an object that has only the keys of a table and notes.
 OrderedJson section(std::span<const Key> keys) {
     OrderedJson schema = {{"type", "object"}, {"properties", OrderedJson::object()}};
     OrderedJson required = OrderedJson::array();
@@ -102,7 +102,7 @@ OrderedJson section(std::span<const Key> keys) {
     return schema;
 }
 
-/// What one value of a parameter may be.
+/// Returns the schema of one value of a parameter.
 OrderedJson value_schema(const ParameterSpec& parameter) {
     OrderedJson schema;
     const bool dimensionless = parameter.unit.empty() || parameter.unit == "1";
@@ -123,7 +123,7 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
     return schema;
 }
 
-/// The figures of distributions; `value`: what a value of the parameter may be.
+/// Adds the figures of distributions. `value`: schema of one value of the parameter.
 void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
     const std::pair<const char*, std::span<const Key>> forms[] = {{"uniform", uniform_keys()},
                                                                   {"normal", normal_keys()},
@@ -187,7 +187,7 @@ OrderedJson accuracy_schema(const OrderedJson& offered, const OrderedJson& scala
     return schema;
 }
 
-/// If the campaign asks this scene, then its parameters, scalars and accuracy settings are these.
+/// Returns the rule for campaigns of this scene: names of parameters, scalars and accuracy settings.
 OrderedJson scene_rule(const SceneInfo& scene) {
     OrderedJson factors = OrderedJson::array();
     OrderedJson fixed = OrderedJson::object();
@@ -239,13 +239,13 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
     return schema;
 }
 
-/// Of a powder file: its properties are those that scenes have.
+/// Returns the properties of a powder file; scenes have parameters of the same names.
 OrderedJson properties_of_powder(std::span<const Key> keys) {
     OrderedJson schema = section(keys);
     for (const auto& key : keys) {
         auto& property = schema["properties"][std::string(key.name)];
         property.update(value_schema(powder_parameter(key.name)));
-        property.erase("default");  // what a powder file leaves out stays as the scene has it
+        property.erase("default");  // properties that a powder file lacks keep the scene's default
     }
     return schema;
 }
@@ -311,7 +311,7 @@ OrderedJson program_schema() {
     return schema;
 }
 
-/// Matches what the reader refuses: SQL folds the case of names.
+/// Returns a pattern of the names that the reader refuses, in upper and lower case as in SQL.
 std::string pattern_of_reserved_names() {
     const auto folded = [](std::string_view word) {
         std::string pattern;

@@ -66,12 +66,12 @@ std::int64_t block_by_default(const Convergence& convergence, const Campaign& ca
     std::int64_t points = 0;
     try {
         points = candidates_of(campaign);
-    } catch (const std::invalid_argument&) {  // unfolding the design says what is wrong with it
+    } catch (const std::invalid_argument&) {  // the error is reported when the design is unfolded
     }
     return default_block(points, sequences, least_block(convergence.traits(), sequences));
 }
 
-/// In a file 0 stands for what is not given.
+/// Reads a number; 0 in a file means that it is not given.
 template <class Number>
 std::optional<Number> unless_zero(Number number) {
     return number == 0 ? std::nullopt : std::optional(number);

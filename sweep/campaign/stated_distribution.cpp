@@ -25,7 +25,7 @@ std::string hash_of_columns(const stats::JointSample& sample) {
     return content_hash(text);
 }
 
-/// The words of a text as numbers, NaN where one is none.
+/// Returns the words of a text as numbers; NaN for a word that is no number.
 std::vector<double> numbers_in_words(std::string_view text) {
     std::vector<double> numbers;
     for (const char* at = text.data(); at != text.data() + text.size();) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t most_of_a_seed = std::uint64_t{1} << 53U;
 
-/// A document without a check of keys: a later reader may know other ones.
+/// Returns a document without checking its keys, because a later version may have other keys.
 Json document_in(std::string_view text) {
     return Json::parse(text, nullptr, false);
 }
@@ -106,7 +106,7 @@ nlohmann::ordered_json list_design(std::span<const std::vector<Value>> rows) {
     return {{"kind", "list"}, {"rows", list}};
 }
 
-/// What both files below have in common with the campaign that they ask further.
+/// Returns the start of both files below: the parts that they share with their campaign.
 nlohmann::ordered_json begun(const Json& document, std::string_view name, std::string_view notes) {
     nlohmann::ordered_json text;
     text["notes"] = notes;

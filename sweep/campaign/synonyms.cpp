@@ -13,8 +13,8 @@ constexpr std::string_view values = R"("levels": [...])";
 constexpr std::string_view distributions = R"("normal": {"mean": ..., "sd": ...})";
 
 struct Synonym {
-    std::string_view word;        ///< what is written elsewhere
-    std::string_view name;        ///< what it is called here
+    std::string_view word;        ///< name in other programs
+    std::string_view name;        ///< name in this program
     std::string_view shown = {};  ///< how the name is used, where it alone would mislead; empty: as it is
 };
 

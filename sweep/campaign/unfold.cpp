@@ -80,8 +80,8 @@ private:
     Inputs defaults_;
 };
 
-/// The questions of a campaign's points. What the points have in common is written once: of each point's canonical text
-/// only the lines of its factors and expressions are new.
+/// Cases of a campaign's points. The common part of their canonical texts is written once; only the lines of factors
+/// and expressions are written for each point.
 class PointQuestions final : public Questions {
 public:
     PointQuestions(const Campaign& campaign, designs::PointSet points)
@@ -96,7 +96,7 @@ public:
 
     [[nodiscard]] const designs::PointSet& points() const { return points_; }
 
-    /// Complete inputs; those that `inputs` has from another point are changed where they vary.
+    /// Completes `inputs`, which may have the values of another point; only varied ones are changed.
     void inputs(std::size_t point, Inputs& inputs) const {
         if (inputs.empty()) inputs = common_;
         for (const auto& one : asked_.varying)
@@ -110,7 +110,7 @@ public:
         check_expressions(space_, all);
     }
     [[nodiscard]] std::string text(std::size_t point) const { return text(point, asked_); }
-    /// `text`: that of the point.
+    /// Returns the seed. `text`: text of the point.
     [[nodiscard]] std::uint64_t seed(std::size_t point, const std::string& text, std::int64_t replicate) const {
         return campaign::case_seed(seed_, seeding_ ? this->text(point, *seeding_) : text, replicate);
     }

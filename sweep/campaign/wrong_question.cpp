@@ -40,7 +40,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return at(a.size(), b.size());
 }
 
-/// The only candidate of which `word` is one of the parts between underscores; empty where there is none or several.
+/// Returns the only candidate that has `word` as one of its parts between underscores; empty if there is none or
+/// several.
 std::string named_by_a_part(std::string_view word, const WordList& candidates) {
     std::string only;
     for (const auto candidate : candidates) {
@@ -52,7 +53,7 @@ std::string named_by_a_part(std::string_view word, const WordList& candidates) {
     return only;
 }
 
-/// Cut between two characters of UTF-8: what was given may be a whole file.
+/// Returns the beginning of a text, cut between two characters of UTF-8. The text may be a whole file.
 std::string_view beginning(std::string_view text) {
     if (text.size() <= longest_value) return text;
     std::size_t end = longest_value;

@@ -35,7 +35,7 @@ std::string name_part(const std::string& text) {
     return part;
 }
 
-/// The factors of the first points of the design that `where` keeps, one row each.
+/// Returns the factors of the design's first points within the `where` clause, one row each.
 std::vector<std::vector<Value>> first_points(const Campaign& campaign, std::int64_t count) {
     const auto cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
     std::vector<std::vector<Value>> rows;
@@ -61,7 +61,7 @@ bool is_free(const Campaign& campaign, const Inputs& stated, const std::string& 
     return !stated.contains(name);
 }
 
-/// What is fixed and does not come from the accuracy setting of the file.
+/// Returns the fixed inputs of the file without those of its accuracy setting.
 Inputs fixed_by_file(const Campaign& campaign) {
     Inputs stated = campaign.space.fixed;
     const auto setting = campaign.scene().accuracy.find(campaign.accuracy);
@@ -85,8 +85,8 @@ struct Move {
     Value value;
 };
 
-/// Inputs of the other settings, one by one, without those that make one of the settings; then a tenth and ten times
-/// the stiffness.
+/// Returns the moves: each input of the other settings alone, except moves that result in one of the settings; then a
+/// tenth of the stiffness, and ten times the stiffness.
 std::vector<Move> moves_of(const Campaign& campaign, const std::string& against) {
     const auto& scene = campaign.scene();
     const auto& measure = scene.accuracy.find(against)->second;

@@ -19,7 +19,7 @@ campaign::WrongQuestion not_adopted(const std::string& old, const std::string& w
     return campaign::wrong_question("--adopt", fmt::format("'{}'", old), why);
 }
 
-/// What differs beside the contents of files; empty: nothing.
+/// Returns the first difference apart from the contents of files; empty: none.
 std::string other_difference(const campaign::Program& before, const campaign::Program& now) {
     const auto names = [](const campaign::Program& program) {
         std::vector<std::pair<std::string, bool>> list;
@@ -38,7 +38,7 @@ std::string other_difference(const campaign::Program& before, const campaign::Pr
     return same ? "" : "the parameters or observables";
 }
 
-/// The case that asked the same of the old program.
+/// Returns the id of the same case under the old program.
 campaign::CaseId id_under(const campaign::Program& old_program, const campaign::Campaign& campaign,
                           const campaign::Case& question, std::int64_t replicate) {
     const auto& scene = campaign.scene();

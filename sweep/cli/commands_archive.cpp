@@ -1,4 +1,4 @@
-// status, explain, replay, query, dump: what is in the archive.
+// status, explain, replay, query, dump: contents of the archive.
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -35,7 +35,7 @@ struct Arguments {
 
 // ---- status -------------------------------------------------------------------------------------------------
 
-/// What the counts of a campaign do not say: whether it has converged by its rule.
+/// Whether a campaign has converged by its rule, which its counts do not show.
 struct Convergence {
     std::optional<bool> converged;  ///< none: no rule
     std::string verdict;

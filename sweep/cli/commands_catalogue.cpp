@@ -1,4 +1,4 @@
-// scenes, designs, schema: what exists, from the same tables that the reader checks against.
+// scenes, designs, schema: catalogues, from the tables that the reader of campaign files uses for its checks.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/installed_machines.hpp"
@@ -59,7 +59,8 @@ std::string_view word_of(Shape shape) {
     return shape == Shape::scalar ? "scalar" : shape == Shape::series ? "series" : "profile";
 }
 
-/// Columns: low, high and words hold what applies; an open end is marked in the text of the bound's cell.
+/// Returns the cells of the columns low, high and words, empty if they do not apply. An open end is marked in the text
+/// of the bound's cell.
 std::vector<Cell> bound_cells(const ParameterSpec& parameter) {
     if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
         return {Cell{}, Cell{}, alternatives(words->allowed) + (words->file_allowed ? " | a file" : "")};
@@ -83,7 +84,7 @@ store::Table parameters_of(const SceneInfo& scene) {
     return table;
 }
 
-/// What a value may be, in one cell: "0 to 2", "above 0", "sjkr | paper".
+/// Returns the allowed values as one text: "0 to 2", "above 0", "sjkr | paper".
 std::string allowed_text(const ParameterSpec& parameter) {
     if (std::holds_alternative<Words>(parameter.bounds)) return std::get<std::string>(bound_cells(parameter)[2]);
     const auto& bounds = std::get<Interval>(parameter.bounds);

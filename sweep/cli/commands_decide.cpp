@@ -1,4 +1,4 @@
-// predict, window: what the response models of a campaign say of settings that were not run.
+// predict, window: predictions of a campaign's response models for settings that were not run.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
@@ -46,7 +46,7 @@ std::vector<Setting> settings_of(const PredictRequest& request, const study::Mod
     return read_settings_file(request.points, cases.factors);
 }
 
-/// Outside of the box, and where the campaign's own condition leaves points out, there are no cases to learn from.
+/// Refuses settings outside of the box, and settings that the campaign's `where` clause excludes: no case is there.
 void refuse_extrapolation(const Store& store, const study::ModelCases& cases, const std::vector<Setting>& settings) {
     const auto admits = study::admission(store, cases);
     for (const auto& setting : settings) {
@@ -106,7 +106,7 @@ struct WindowArguments {
     study::WindowRequest request;
 };
 
-/// The campaign file of the next cases, written where nothing is yet.
+/// Writes the campaign file of the next cases. Returns the name of its campaign, which is new in the archive.
 std::string write_next(const Store& store, const study::ModelCases& cases, const study::Window& window,
                        const std::string& file) {
     if (window.next.empty()) throw campaign::wrong_question("--next-file", file, "there is no case to run next");

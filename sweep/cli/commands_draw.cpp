@@ -28,7 +28,7 @@ struct DrawRequest {
     std::int64_t frames = usual_pictures;
 };
 
-/// Defaults, and what is set.
+/// Returns the defaults, changed by `settings`.
 Inputs inputs_of(const SceneInfo& scene, const std::vector<std::string>& settings) {
     Inputs inputs = scene.defaults();
     for (const auto& setting : settings) {

@@ -1,4 +1,4 @@
-// completion, manual: what is generated from the tables for shells and for man(1).
+// completion, manual: texts for shells and for man(1), generated from the tables of commands.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/completion.hpp"

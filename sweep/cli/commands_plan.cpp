@@ -55,7 +55,7 @@ std::string option_text(const designs::OptionValue& value) {
     return option_json(value).text();
 }
 
-/// One row per placed case: where it stands, what it is, its factors.
+/// Returns the columns of the table of cases: place in the design, case, factors.
 std::vector<std::string> case_columns(const Campaign& campaign) {
     std::vector<std::string> columns = {"point", "sequence", "replicate", "case_id", "seed"};
     for (const auto& factor : campaign.space.factors) columns.push_back(factor.name);
@@ -88,21 +88,20 @@ std::int64_t points_kept(const Cases& cases) {
 
 constexpr double memory_worth_a_line = 1e9;  // bytes
 
-/// What a plan shows beside the campaign itself.
+/// Parts of a plan besides the campaign itself.
 struct Outlook {
     Cases cases;
     campaign::Forecast cost;
     std::int64_t candidates = 0;
     std::vector<std::string> warnings;
     std::string database;                         ///< that has the campaign already; empty: none
-    std::optional<store::CampaignRecord> stored;  ///< as it stands there, with what is asked now
+    std::optional<store::CampaignRecord> stored;  ///< stored campaign, with the present request
     std::int64_t finished = 0;                    ///< of the cases, in the database
     double left_seconds = 0;                      ///< of one plain core, for the others
     std::optional<Probe> probe;                   ///< measured; the predictions are scaled by it
 };
 
-/// The design and, where `archive` is there, what it has of it. Factors take the order in which they are stored, as
-/// they do in a run.
+/// Unfolds the design and, with an `archive`, finds its stored cases. Factors get their stored order, as in a run.
 Outlook outlook_of(Campaign& campaign, const store::Store* archive, bool probes) {
     store::check_campaign_name(campaign.name);
     study::check_features(campaign);
@@ -276,7 +275,7 @@ struct PlanRequest {
     bool probe = false;
 };
 
-/// Returns the seconds of all waves; 0 where the campaign is no calibration.
+/// Returns the seconds of all waves; 0 if the campaign is no calibration.
 double plan_one(const PlanRequest& request, std::string_view experiment, Format format) {
     const auto& config = request.config;
     auto database = request.database;

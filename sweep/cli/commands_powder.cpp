@@ -1,4 +1,4 @@
-// powder: imports measured sizes; shows what a powder file means.
+// powder: imports measured sizes; shows the meaning of a powder file.
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/powder_export.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -35,7 +35,7 @@ std::optional<std::string> stated(const std::string& word) {
     return word.empty() ? std::nullopt : std::optional(word);
 }
 
-/// Refuses a place where no table can be written, or one that would be lost.
+/// Refuses a path at which the table cannot be written, and the path of the export itself.
 void check_table_file(const PowderRequest& request) {
     if (request.output.empty())
         throw campaign::wrong_question("-o", "", "powder import needs -o: the file of sizes to write");

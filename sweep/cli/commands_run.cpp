@@ -1,4 +1,4 @@
-// run: a campaign file becomes an archive. worker: what run starts, as often as there are workers.
+// run: computes a campaign file into an archive. worker: the process that `run` starts once for each worker.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"

@@ -50,7 +50,7 @@ struct SolveRequest {
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
 };
 
-/// Puts NAME=VALUE in the place of what the file says, under the rules of the file.
+/// Replaces values of the file by NAME=VALUE, under the rules of the file.
 void apply(const std::vector<std::string>& settings, Campaign& campaign, const std::filesystem::path& folder) {
     const auto& scene = campaign.scene();
     std::vector<std::string> names;
@@ -109,7 +109,7 @@ void check_shares(const campaign::ParameterSpace& declared, const campaign::Para
         throw campaign::wrong_question("--set", "", fmt::format("{} do not add to one", campaign::listed(names)));
 }
 
-/// Percents on a terminal, nothing elsewhere.
+/// Shows the progress in percent if standard error is a terminal.
 bool show_progress(const Scene& scene) {
     static const bool terminal = ::isatty(STDERR_FILENO) == 1;
     if (terminal) std::fputs(fmt::format("\r{:3.0f} %", 100 * scene.progress()).c_str(), stderr);
@@ -223,7 +223,7 @@ Json answer_json(const campaign::Case& question, const CaseResult& result) {
                          {"phases", phases}}}});
 }
 
-/// Everything in one table: what it is (input, outcome, scalar, series, cost), its name, its place, its value.
+/// Returns all results in one table: kind (input, outcome, scalar, series, cost), name, place, value.
 store::Table table_of(const campaign::Case& question, const CaseResult& result) {
     store::Table table{{"kind", "name", "time", "bin", "value"}, {}};
     const auto add = [&table](const char* kind, const std::string& name, Cell value) {

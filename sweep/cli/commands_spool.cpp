@@ -1,4 +1,4 @@
-// work: a task of a campaign without a main program. collect: what such tasks have answered becomes an archive.
+// work: runs one task of a campaign without a main program. collect: stores the answers of such tasks in an archive.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"

@@ -1,4 +1,4 @@
-// converge, sensitivity, report: what the stored answers say.
+// converge, sensitivity, report: results from stored answers.
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"

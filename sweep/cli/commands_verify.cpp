@@ -1,4 +1,4 @@
-// verify: reads everything in an archive and names what is not as it was written.
+// verify: reads a whole archive and names all data that changed after they were written.
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
 

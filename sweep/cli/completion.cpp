@@ -18,12 +18,12 @@ namespace grainsweep::cli {
 
 namespace {
 
-/// What can stand for a value: words, files that end so, folders, or what a database on the command line answers.
+/// Possible values: words, files with one of these endings, folders, or the answer of a database on the command line.
 struct Values {
     std::vector<std::string> words = {};
     std::string ending = {};
     bool folder = false;
-    std::string sql = {};  ///< one column of words; @ stands for what is typed so far
+    std::string sql = {};  ///< query for one column of words; @ is replaced by the text typed so far
 };
 
 std::vector<std::string> design_names() {
@@ -46,7 +46,7 @@ std::vector<std::string> outcome_words() {
     return words;
 }
 
-/// By "COMMAND OPTION", by an option's name, by "COMMAND PLACE", by a place; what is not here is not completed.
+/// Values by "COMMAND OPTION", by an option's name, by "COMMAND PLACE", or by a place. Other values are not completed.
 struct Rule {
     std::string argument;
     Values values;

@@ -52,7 +52,8 @@ workers::PoolOptions pool_options(const campaign::Campaign& campaign, const Work
     options.workers = workers;
     options.hosts = execution.hosts;
     if (options.hosts) options.host_command = own_command("host", campaign, folders, path);
-    // A program has cores of its own; workers that a launcher starts one by one have what that gives each of them.
+    // A program uses cores of its own. Workers that a launcher starts one by one have the cores that it gives each of
+    // them.
     const bool apart = !options.launcher.empty() && !options.hosts;
     options.threads = execution.threads;
     if (campaign::is_program(campaign.scene().name) || (apart && !execution.threads)) options.threads = 1;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double grace_seconds = 0.5, longest = 1e9;
 
-// What a signal handler may read.
+// Returns the text that a signal handler writes.
 std::string& last_words() {
     static std::string words;
     return words;

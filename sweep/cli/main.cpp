@@ -1,4 +1,4 @@
-// The front door, and the only place where an exception ends.
+// Main function, and the only place that catches all exceptions.
 #include "stats/several_responses.hpp"
 #include "sweep/campaign/visible_stream.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -30,7 +30,8 @@ int complain(int code, const std::string& sentence) {
     return code;
 }
 
-/// What was printed must have arrived: a full disk is no success.
+/// Returns the exit code after flushing standard output; an error if the output could not be written, as on a full
+/// disk.
 int flushed(int code) {
     errno = 0;
     std::cout.flush();

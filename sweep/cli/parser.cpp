@@ -17,7 +17,7 @@
 namespace grainsweep::cli {
 namespace {
 
-/// Empty where the word obeys the rule, else the complaint.
+/// Returns the complaint about a word; empty if it obeys the rule.
 std::string complaint(const std::string& word, const WholeNumber& rule) {
     std::int64_t number = 0;
     const auto* end = word.data() + word.size();
@@ -93,7 +93,7 @@ void check_command(const std::vector<Command>& commands, const char* const* argv
                                    campaign::nearest_word(word, names));
 }
 
-/// A parse error in one sentence, with the nearest option where an unknown one was given.
+/// Returns a parse error as one sentence, with the nearest option if an option is unknown.
 std::string sentence_of(const CLI::ParseError& error, const CLI::App& app) {
     std::vector<std::string> known;
     std::vector<std::string> extras = app.remaining(true);

@@ -50,7 +50,7 @@ std::string factor_rules(const campaign::Factor& factor) {
     return fmt::format("{}", fmt::join(rules, ", "));
 }
 
-/// A column for what factors say beside their values, where one does.
+/// Adds a column for the rules of factors besides their values, if a factor has one.
 void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors) {
     if (std::ranges::all_of(factors, [](const auto& factor) { return factor_rules(factor).empty(); })) return;
     table.columns.emplace_back("rules");

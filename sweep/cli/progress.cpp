@@ -43,7 +43,7 @@ void show(std::string_view text) {
     (void)std::fflush(stderr);
 }
 
-/// What a worker wrote, fit for a line of a terminal: no control characters, and not longer than a few lines.
+/// Returns a worker's text for a terminal: without control characters, and at most a few lines long.
 std::string one_line(std::string text) {
     const bool cut = text.size() > note_bytes;
     if (cut) {

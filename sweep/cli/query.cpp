@@ -81,7 +81,7 @@ private:
     std::int64_t rows_ = 0;
 };
 
-/// The unit of a column that is named as a parameter or a scalar of the scenes, where all of them agree; else empty.
+/// Returns the unit of a column with the name of a parameter or a scalar, if all scenes agree; else empty.
 std::string unit_of(const std::vector<std::string>& scenes, const std::string& column) {
     if (column == "wall_seconds" || column == "cpu_seconds") return "s";
     std::optional<std::string> unit;
@@ -97,7 +97,7 @@ std::string unit_of(const std::vector<std::string>& scenes, const std::string& c
     return !unit || *unit == "1" ? std::string() : *unit;
 }
 
-/// What a reader of the workbook must know of its rows.
+/// Returns the origin of the rows for the reader of the workbook.
 Table provenance_of(const Store& archive, const QueryRequest& request, const Store::QueryLimits& limits) {
     Table table{{"what", "value"}, {}};
     const auto add = [&](std::string what, std::string value) {

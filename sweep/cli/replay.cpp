@@ -25,7 +25,8 @@ using report::Format;
 using store::Store;
 using store::Table;
 
-/// Same sources and instruction path; where the sources have changes of their own or are unknown, the same executable.
+/// Returns whether sources and instruction path are the same. If the sources are unknown or have changes of their own,
+/// the executable must be the same.
 bool gives_the_same_bits(const campaign::Computer& a, const campaign::Computer& b) {
     const bool known = a.commit != "unknown" && !a.commit.ends_with("-modified");
     return a.version == b.version && a.commit == b.commit && a.instruction_path == b.instruction_path &&
@@ -46,7 +47,7 @@ double at(const std::map<std::string, double, std::less<>>& scalars, const std::
     return found == scalars.end() ? std::nan("") : found->second;
 }
 
-/// Not a number where one of them alone is.
+/// Returns the largest relative difference of a series; NaN if lengths differ, or if only one of two values is NaN.
 double largest_difference(const auto& a, const auto& b, const std::string& name) {
     static const std::vector<Sample> none;
     const auto of = [&](const auto& series) -> const std::vector<Sample>& {
@@ -65,10 +66,10 @@ double largest_difference(const auto& a, const auto& b, const std::string& name)
     return worst;
 }
 
-/// What may be expected of a replay.
+/// Expected agreement of a replay.
 struct Expectation {
     double tolerance = 0;       ///< relative; 0: the same bits
-    bool everything = true;     ///< also what the archive does not know, and series
+    bool everything = true;     ///< also series, and values that the archive does not have
     std::string why_tolerated;  ///< in brackets behind the difference
 };
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t pilot_rounds = 2;  // points of each sequence
 
-/// A setting and what a case costs there, predicted: measured time would make the course depend on the machine.
+/// Setting and predicted cost of its cases. Measured time would make the course depend on the machine.
 struct CostedSetting {
     std::string name;
     double seconds = 0;
@@ -201,7 +201,7 @@ private:
     campaign::AccuracyGoal goal_;
     std::int64_t sequences_ = 1, most_ = 0, points_ = 0, pairs_ = 0, settled_ = 0;
     std::vector<CostedSetting> settings_;
-    std::string measure_;  ///< campaign of `reference` beside that of the goal
+    std::string measure_;  ///< campaign of `reference` beside the campaign of the goal
     bool passed_ = false;  ///< the check before
     bool alone_ = false;   ///< the pairs were given up for `reference` alone
     std::optional<RunReport> ended_;

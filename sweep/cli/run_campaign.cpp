@@ -58,7 +58,7 @@ struct Placement {
     [[nodiscard]] bool asks(std::size_t i) const { return asked.empty() || asked[i]; }
 };
 
-/// Of the places of a larger design those that are asked.
+/// Requested part of a larger design.
 class PartOfADesign final : public campaign::Questions {
 public:
     PartOfADesign(campaign::Cases asked, std::vector<std::uint32_t> numbers)
@@ -155,8 +155,8 @@ schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& r
             .workers = workers};
 }
 
-/// The lock is held: what dead processes left half written belongs to no run. A checkpoint is of no use once its case
-/// is settled; those of other builds and instruction paths are found by their contents alone.
+/// Removes half-written files of dead processes; the lock is held, so no other run owns them. Removes checkpoints of
+/// settled cases. Checkpoints of other builds and instruction paths are recognised only by their contents.
 void sweep(const files::ArtefactFolder& folder, const store::Store& store) {
     folder.sweep([&](std::string_view key) {
         const auto id = workers::checkpointed_case(key);
@@ -164,7 +164,7 @@ void sweep(const files::ArtefactFolder& folder, const store::Store& store) {
     });
 }
 
-/// What must be known before the first answer comes.
+/// Shows the information that the user needs before the first answer.
 void say_first(ProgressLine& line, const campaign::Campaign& campaign, const campaign::Forecast& forecast,
                const store::CampaignRecord& record) {
     for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
@@ -258,7 +258,8 @@ public:
     }
 
 private:
-    /// The design's points, those that follow from what is known included. Refuses impossible cases at first.
+    /// Unfolds the design, including the points that follow from stored answers. Refuses impossible cases when called
+    /// first.
     void unfold() {
         placed_ = campaign::asked_in(request_.config, [&] {
             store::check_campaign_name(campaign_.name);
@@ -292,7 +293,7 @@ private:
             request_.config, [&] { return make_judge(campaign_, *store_, placement.placed, placement.candidates); });
         questions_ = questions_of(campaign_, placement);
     }
-    /// Answers of the earlier program, then where the cases stand with them.
+    /// Adopts answers of the earlier program, then updates the states of the cases.
     void adopt() {
         for (const auto& changed : changed_files(*adopted_, *campaign::known_program(campaign_.scene().name)))
             line_->note("note: " + changed);

@@ -56,8 +56,7 @@ void write_beside(const std::filesystem::path& database, const std::string& name
     file.take_place();
 }
 
-/// Writes the posterior, and a powder where it is wanted, and adds the verdict, where the campaign is a calibration
-/// that has ended.
+/// For a calibration that has ended: writes the posterior, writes a powder if requested, and adds the verdict.
 void conclude(RunReport& report, bool powder) {
     const store::Store archive(report.database, store::Store::Mode::read);
     const auto records = archive.campaigns();

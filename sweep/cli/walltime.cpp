@@ -105,7 +105,7 @@ schedule::Walltime walltime_of(const campaign::Campaign& campaign) {
     };
     walltime.whole = given->whole - reserve;
     walltime.shortest_part = std::min(reserve, walltime.whole / 4);
-    // A program that answers a case begins anew: nothing of it is saved.
+    // A case of a program starts again from the beginning, because its state is not saved.
     walltime.cases_go_on = !campaign.scene().name.starts_with("program:");
     return walltime;
 }

@@ -35,7 +35,7 @@ std::optional<Batch> unfinished_batch(const Store& store, const std::string& cam
     return std::nullopt;
 }
 
-/// What the database says of the window now.
+/// State of the window in the database.
 struct Standing {
     std::string campaign;  ///< the name of the campaign that is asked about
     double half_width = std::numeric_limits<double>::infinity();

@@ -65,7 +65,7 @@ public:
     }
 
 private:
-    /// Puts the settings under every condition; false where an answer is not known yet.
+    /// Requests the settings under every condition. Returns false if an answer is still missing.
     bool ask(const std::vector<double>& settings) {
         const std::size_t rows = settings.size() / d_;
         const auto part = static_cast<std::uint32_t>(result_.waves.size());
@@ -91,7 +91,7 @@ private:
         const auto found = condition.find(request_.factors[j].name);
         return found == condition.end() ? 0 : found->second;
     }
-    /// Of the settings asked last.
+    /// Returns an answer of the settings requested last.
     [[nodiscard]] std::optional<double> answer(std::size_t target, std::size_t row) const {
         const auto known = request_.answers.find(result_.targets[target].answers_key());
         const std::size_t point = layout_.point(target, first_ + row);
@@ -197,7 +197,7 @@ private:
         return all;
     }
 
-    /// The next settings; none where the waves end. After a check that missed nothing but their number ends them.
+    /// Returns the next settings; none: the waves end. After a check without a miss only their number ends them.
     std::vector<double> next(std::int64_t wave, bool missed) {
         auto& now = result_.waves.back();
         if (const auto target = unanswered(); target && !modelled().empty()) {
@@ -273,8 +273,8 @@ private:
         const auto from = points.begin() + static_cast<std::ptrdiff_t>(i * d_);
         rows.insert(rows.end(), from, from + static_cast<std::ptrdiff_t>(d_));
     }
-    /// Settings among those kept, each the farthest from all chosen and from every setting asked before (greedy
-    /// maximin). Where hardly any is kept, the posterior tells where to look.
+    /// Returns kept settings, each the farthest from all chosen and all earlier ones (greedy maximin). If hardly any
+    /// setting is kept, candidates come from the posterior.
     [[nodiscard]] std::vector<double> spread(const Candidates& all, std::size_t wanted, std::int64_t wave) {
         std::vector<double> pool;
         const std::size_t step = std::max<std::size_t>(1, all.kept.size() / most_compared);
@@ -320,7 +320,7 @@ private:
         result_.posterior = posterior(0);
         result_.shape = stats::posterior_shape(result_.posterior->rows());
     }
-    /// Asks settings drawn from the posterior; false where an answer is not known yet.
+    /// Requests settings drawn from the posterior. Returns false if an answer is still missing.
     bool check() {
         result_.checked.clear();
         result_.check.clear();
@@ -344,7 +344,7 @@ private:
 
     const DesignRequest& request_;
     CalibrationLayout layout_;
-    std::size_t d_ = 0, asked_ = 0, first_ = 0;  ///< factors; settings so far; the first of those asked last
+    std::size_t d_ = 0, asked_ = 0, first_ = 0;  ///< factors; settings so far; the first of the last request
     std::vector<std::vector<double>> values_;    ///< of each target
     std::vector<bool> failed_;                   ///< of each setting; empty: too few to matter
     std::vector<double> best_;                   ///< settings of least implausibility

@@ -53,7 +53,7 @@ std::string_view bytes_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The key that a file says it is of.
+/// Returns the key that is written in a file.
 std::optional<std::string> key_in(const std::filesystem::path& file) {
     constexpr std::uint64_t longest_key = 1U << 20U;
     if (file.extension() != ".artefact") return std::nullopt;

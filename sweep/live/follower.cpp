@@ -30,7 +30,7 @@ double seconds_from(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
-constexpr double rest_after_whole = 100;  // times what reading all cases took
+constexpr double rest_after_whole = 100;  // times the duration of reading all cases
 
 /// Differs between two results of a case; never 0. Beginning an attempt leaves it as it is.
 std::uint32_t mark_of(std::string_view outcome, const store::Table::Cell& wall_seconds, std::int64_t failures) {

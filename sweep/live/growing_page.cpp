@@ -95,7 +95,7 @@ void GrowingPage::keep_up(const std::stop_token& stop) {
         std::shared_ptr<const PageData> made;
         try {
             made = make(version);
-        } catch (const std::exception& error) {  // the database is damaged, or gone: what is shown stays
+        } catch (const std::exception& error) {  // the database is damaged or gone: the page stays unchanged
             auto failed = std::make_shared<PageData>(*latest());
             failed->error = error.what();
             made = failed;

@@ -42,7 +42,7 @@ std::string on_one_line(std::string text) {
     return text;
 }
 
-/// A line of a running case, or nothing where it is no such line.
+/// Returns the running case of a line; empty if the line has another form.
 std::optional<RunningCase> running_of(std::string_view words) {
     RunningCase one;
     one.case_id = take(words, ' ');

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using campaign::JsonText;
 
-constexpr double least_pause = 0.4, rest_after_poll = 20;  // s; times what a poll took
+constexpr double least_pause = 0.4, rest_after_poll = 20;  // s; times the duration of a poll
 constexpr auto now_pause = std::chrono::seconds(1);
 constexpr std::size_t most_recent = 32U << 20U;  // bytes of events kept for readers that were away
 // A film takes as long as its case: SQL is still answered beside two of them.
@@ -40,7 +40,8 @@ std::string drawn_word(std::size_t bytes) {
     return word;
 }
 
-/// Takes as long for every text of that length, so that its time says nothing of how much is right.
+/// Compares in the same time for every text of this length, so that the time does not reveal how many characters are
+/// right.
 bool same_word(std::string_view given, std::string_view right) {
     if (given.size() != right.size()) return false;
     unsigned difference = 0;

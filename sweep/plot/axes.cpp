@@ -17,7 +17,7 @@ std::vector<Tick> words_of(const Axis& axis, std::size_t every) {
     return ticks;
 }
 
-/// Zero among them, where it is there.
+/// Returns every second tick; zero is kept if it is a tick.
 std::vector<Tick> every_second(const std::vector<Tick>& ticks) {
     std::vector<Tick> kept;
     const auto zero = std::ranges::find_if(ticks, [](const Tick& tick) { return std::abs(tick.at) < 1e-300; });
@@ -26,7 +26,7 @@ std::vector<Tick> every_second(const std::vector<Tick>& ticks) {
     return kept;
 }
 
-/// Whether neighbours keep a distance, `size(label)` being what a label takes along the axis.
+/// Returns whether neighbouring labels keep a distance. size(label): length of a label along the axis.
 template <class Size>
 bool stand_apart(const PlacedAxis& placed, const std::vector<Tick>& ticks, double distance, Size size) {
     for (std::size_t k = 1; k < ticks.size(); ++k) {

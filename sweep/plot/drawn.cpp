@@ -96,7 +96,8 @@ cairo_status_t collect_bytes(void* bytes, const unsigned char* data, unsigned in
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// A PNG says how many pixels a metre has (W3C, Portable Network Graphics, 11.3.5.3), so that it opens at its width.
+/// Adds the number of pixels per metre to a PNG (W3C, Portable Network Graphics, 11.3.5.3), so that it opens at its
+/// width.
 std::string with_resolution(const std::string& png) {
     constexpr std::size_t end_of_header = 33;  // signature and IHDR
     const auto big_endian = [](std::uint32_t word) {

@@ -22,7 +22,7 @@ struct Between {
         return std::pair(*a, *b);
     }
 
-    /// Joins the places, with a gap where there is none.
+    /// Joins the places; a place that cannot be drawn leaves a gap.
     void join(const std::vector<double>& xs, const std::vector<double>& ys) const {
         bool open = false;
         for (std::size_t k = 0; k < xs.size(); ++k) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double paper_edge = 1.5;  // nothing is drawn nearer to it
 constexpr double sign_width = 12, key_gap = 9, key_line = line_height * label_size;
 
-/// Where a key stands: its line from the top, and how far right.
+/// Position of a key: number of its line from the top, and distance from the left.
 struct KeyPlace {
     std::size_t line = 0;
     double left = 0;

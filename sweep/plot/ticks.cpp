@@ -21,8 +21,7 @@ std::string with_minus(const std::string& number) {
 std::string power_label(double x) {
     static constexpr std::array<std::string_view, 10> raised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     const double exponent = std::log10(x);
-    if (std::abs(exponent) < 3.5 || std::abs(exponent - std::round(exponent)) > slack)
-        return fmt::format("{:.6g}", x);
+    if (std::abs(exponent) < 3.5 || std::abs(exponent - std::round(exponent)) > slack) return fmt::format("{:.6g}", x);
     std::string text = exponent < 0 ? "10⁻" : "10";
     for (const char digit : std::to_string(std::abs(std::lround(exponent))))
         text += raised[static_cast<std::size_t>(digit - '0')];
@@ -61,7 +60,7 @@ std::vector<Tick> log_ticks(double low, double high, int most) {
     const double decades = std::log10(high / low);
     auto ticks = decades >= 1.7 ? multiples(low, high, {1}) : multiples(low, high, {1, 2, 5});
     if (decades < 0.8 || ticks.size() < 2) {
-        // Round numbers stand closer together towards the upper end: those that would crowd are left out.
+        // Round numbers are closer together towards the upper end; numbers without room are left out.
         ticks = round_ticks(low, high, most);
         std::erase_if(ticks, [&](const Tick& tick) { return tick.at < low * (1 - slack); });
     }

@@ -15,7 +15,8 @@ using namespace study;
 
 constexpr std::size_t most_dots = 1500;
 
-/// Variables of a figure with a choice: what the options name, else the response and the most influential factors.
+/// Chosen variables of a figure: the variables named by the options, else the response and the most influential
+/// factors.
 struct Chosen {
     Variable across, up;
     std::optional<Variable> colour;
@@ -41,7 +42,8 @@ Chosen chosen_for_cases(const FigureSubject& subject) {
     return variables;
 }
 
-/// Crosses where cases failed: at their place between two factors, else at the edge where the response has no value.
+/// Returns crosses for failed cases: at their place if both axes are factors, else at the edge, because the response
+/// has no value.
 std::optional<plot::Points> failed_marks(const FigureSubject& subject, const Variable& across, const Variable& up,
                                          const plot::Axis& x_axis, const plot::Axis& y_axis) {
     std::vector<double> x, y;

@@ -74,7 +74,7 @@ Json provisional_of(const History& history) {
         {"points", known.points}, {"values", known.count}, {"excluded", known.excluded}, {"statistics", statistics}};
 }
 
-/// An estimate with a model, marked where it is withdrawn.
+/// Returns the text of an estimate with a model, with a mark if it is withdrawn.
 std::string shown_estimate(const stats::AssistedStatistic& statistic, const stats::AssistedEstimate& estimate) {
     return (statistic.withdrawn ? "withdrawn: " : "") + with_error(estimate.value, estimate.half_width);
 }
@@ -83,7 +83,7 @@ std::string key(stats::Statistic statistic) {
     return std::string(stats::to_string(statistic));
 }
 
-/// Of which population both estimates are, where some cases have no value.
+/// Returns a sentence on the population of both estimates, if some cases have no value.
 std::string population_line(const Estimators& estimators) {
     return fmt::format(
         "{} of {} cases have no value: the estimates with a model are of the whole box, extrapolated into the settings "
@@ -91,15 +91,15 @@ std::string population_line(const Estimators& estimators) {
         estimators.without_value, estimators.without_value + estimators.assisted->cases);
 }
 
-/// A value with the digits that its error has, where six are too few.
+/// Returns a value with at least the digits of its error.
 Cell value_cell(double value, double error) {
     const double ratio = std::abs(value) / error;
     if (!(ratio > 1e5) || !std::isfinite(ratio)) return to_cell(value);
     return fmt::format("{:.{}g}", value, std::min(15, 2 + static_cast<int>(std::ceil(std::log10(ratio)))));
 }
 
-/// All settled points: value, 95 % error, what the rule compares with the tolerance, and whether it is a gate that
-/// holds the campaign back.
+/// Returns the statistics of all settled points: value, 95 % error, the measure that the rule compares with the
+/// tolerance, and whether this gate delays convergence.
 store::Table statistics_table(const History& history) {
     store::Table table{{"statistic", "value", "error", "measure", "gate"}, {}};
     for (const auto statistic : stats::statistics) {
@@ -122,7 +122,7 @@ store::Table provisional_table(const History& history) {
     return table;
 }
 
-/// Some 20 of the checks where there are more.
+/// Returns the checks, at most about 20 of them.
 store::Table checks_table(const History& history) {
     store::Table table{{"points", "mean", "sd", "skewness", "g1", "kurtosis", "excluded", "zeros", ""}, {}};
     const auto add = [&](const stats::Checkpoint& check, const std::string& remark) {
@@ -139,7 +139,8 @@ store::Table checks_table(const History& history) {
     return table;
 }
 
-/// Lattices of one family: moments and how far they moved since the coarser one, as a share of what a rule compares.
+/// Returns the moments of lattices of one family, with their changes from the coarser lattice relative to the measures
+/// of a rule.
 store::Table lattice_table(std::span<const LatticeStep> steps) {
     store::Table table{{"campaign", "points", "values"}, {}};
     for (const auto statistic : stats::statistics) {
@@ -157,7 +158,7 @@ store::Table lattice_table(std::span<const LatticeStep> steps) {
     return table;
 }
 
-/// The same for people: "2.679 (30 %)".
+/// Returns the same table for people: "2.679 (30 %)".
 store::Table lattice_lines(std::span<const LatticeStep> steps) {
     store::Table table{{"lattice", "points", "values"}, {}};
     for (const auto statistic : stats::statistics)
@@ -195,7 +196,7 @@ void say_history(Document& shown, const Responses& responses, const History& his
     shown.say(history.verdict).say_notes(history.warnings);
 }
 
-/// Both estimates of the moments, where the design allows the second one.
+/// Adds both estimates of the moments, if the design allows the second one.
 void say_estimators(Document& shown, const History& history, const Estimators& estimators) {
     shown.say();
     if (estimators.assisted)

@@ -22,7 +22,7 @@ double magnitude(const Vector& v) {
     return std::hypot(v[0], v[1], v[2]);
 }
 
-/// Columns that say what a sphere is, not how it fares.
+/// Returns whether a column is a fixed property of a sphere, not a part of its state.
 bool is_trait(std::string_view name) {
     return name == "id" || name == "mobile" || name == "diameter";
 }
@@ -33,7 +33,7 @@ bool same_shape(const WallSurface& a, const WallSurface& b) {
 
 }  // namespace
 
-/// Where each particle of the snapshot stands in the frames; `spheres_.size()` for those that are thinned out.
+/// Returns the place of each particle of the snapshot in the frames; `spheres_.size()` for a particle that is left out.
 std::vector<std::size_t> Film::places_of(const Snapshot& snapshot) {
     const std::size_t n = snapshot.positions.size();
     const auto ids = snapshot.scalars.find("id");

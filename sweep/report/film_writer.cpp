@@ -20,7 +20,7 @@ namespace {
 
 constexpr double finest = 65535;
 constexpr double colours = 254;           // levels of a colour that is defined
-constexpr double common_share = 0.995;    // of the values: beyond their quantile lies what is rare
+constexpr double common_share = 0.995;    // quantile of the values; values beyond it are rare
 constexpr double far_beyond = 1.5;        // times that quantile
 constexpr std::size_t sampled = 200'000;  // values that determine a quantile
 constexpr double bytes_per_sphere = 8.3;  // and frame, as text
@@ -93,7 +93,7 @@ private:
         return lengths_.size() - 1;
     }
 
-    /// Three columns, one after the other in each frame; where a particle is not, it stays as it is.
+    /// Writes three columns, one after the other in each frame. An absent particle keeps its last position.
     void write_positions() {
         constexpr double infinite = std::numeric_limits<double>::infinity();
         std::array<double, 3> low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite}, step{};
@@ -152,8 +152,8 @@ private:
         if (!all_mobile) header_.add("mobile", block(mobile, mobile.size()));
     }
 
-    /// Colours of mobile spheres; what frozen ones bear would hide how the powder fares. Velocity comes first, then
-    /// what takes least, so that most fits.
+    /// Writes the columns for the colours of mobile spheres; values of frozen spheres would hide the state of the
+    /// powder. Velocity comes first, then the smallest columns, so that as many as possible fit.
     void write_columns() {
         const std::size_t n = film_.spheres_.size();
         const double text = 4.0 / 3;  // base64

@@ -17,7 +17,7 @@ struct Measure {
     std::function<stats::SensitivityIndex(const FactorInfluence&)> of;
 };
 
-/// What a method measures of each factor; the last one orders them.
+/// Returns the measures of a method for each factor; the last one orders the factors.
 std::vector<Measure> measures_of(Influence::Method method) {
     const Measure first{"first order", [](const FactorInfluence& factor) { return factor.first; }};
     const Measure total{"total, with interactions", [](const FactorInfluence& factor) { return factor.total; }};

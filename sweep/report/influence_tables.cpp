@@ -33,7 +33,7 @@ namespace {
 
 using Cell = store::Table::Cell;
 
-/// What factors are ordered by: the most telling figure the method gives.
+/// Returns the figure that orders the factors, the most informative one of the method.
 double weight(const FactorInfluence& factor) {
     const double value = factor.effects                      ? factor.effects->mu_star
                          : std::isfinite(factor.total.value) ? factor.total.value
@@ -57,8 +57,8 @@ void for_each_pair(const ModelInfluence& influence, With with) {
         for (std::size_t k = j + 1; k < influence.factors.size(); ++k) with(j, k, influence.indices->pairs[place++]);
 }
 
-/// For programs: one row per factor, or group of factors, in the campaign's order; what the method does not give is
-/// absent.
+/// Returns the table for programs: one row per factor, or group of factors, in the campaign's order. Figures that the
+/// method lacks are absent.
 store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
     store::Table table{{"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli",
                         "first_saltelli_error", "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma",
@@ -198,7 +198,7 @@ store::Table model_influence_table(const ModelInfluence& influence) {
 
 namespace {
 
-/// What noise makes of the variance, and the control that reduces it most.
+/// Returns a line on the variance from noise factors, and on the control factor that reduces it most.
 std::string noise_line(const ModelInfluence& influence) {
     const auto& noise = *influence.indices->noise;
     const auto& best = noise.controls.front();

@@ -1,4 +1,4 @@
-// model, model-map: what a response model predicts between the cases.
+// model, model-map: predictions of a response model between the cases.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/figure_kinds.hpp"
 #include "sweep/report/model_page.hpp"
@@ -137,7 +137,7 @@ plot::Figure draw_model_map(const FigureSubject& subject, const PanelNames& pane
     return figure;
 }
 
-/// No model is learned to name its figures: drawing one that is refused says why.
+/// Returns the panels without fitting a model. If a model is refused, drawing its figure reports the reason.
 PanelNames model_panels(const FigureSubject& subject) {
     return has_values(subject) ? factor_panels(subject) : PanelNames{};
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t points_of_slice = 31, cells_of_map = 21;
 constexpr std::size_t points_averaged = 128, points_needed = 4;
 
-/// A response model and what its pictures are taken through.
+/// Response model, and the settings that its pictures pass through.
 struct Pictured {
     const ModelCases& cases;
     const ObservableModel& model;
@@ -33,7 +33,8 @@ struct Pictured {
         return (!admits || admits(setting)) && answers.expected(std::span(&setting, 1)).front();
     }
 
-    /// Mean over the other factors where those of `held` are as given; nothing where hardly any setting is admitted.
+    /// Returns the mean over the other factors for given values of the factors `held`; NaN if hardly any setting is
+    /// admitted.
     [[nodiscard]] std::vector<double> averaged(std::span<const std::size_t> held,
                                                std::span<const Setting> values) const {
         std::vector<Setting> settings;

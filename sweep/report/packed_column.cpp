@@ -23,7 +23,8 @@ void append(std::string& bytes, Word word) {
     for (std::size_t k = 0; k < sizeof word; ++k) bytes += static_cast<char>(word >> (8 * k) & 0xFFU);
 }
 
-/// Indices into the different values, in the order in which they occur; nothing where there are too many.
+/// Returns the different values in their order of occurrence, and an index into them for each value; empty if there are
+/// too many.
 template <class T>
 std::optional<std::pair<std::vector<T>, std::string>> dictionary(std::span<const T> values) {
     std::map<T, char> places;

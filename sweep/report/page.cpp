@@ -165,7 +165,7 @@ Json factors_of(const Responses& responses) {
     });
 }
 
-/// Every case: where it stands, what it is called, how it ended.
+/// Returns place, name and outcome of every case.
 Json cases_of(const Responses& responses) {
     std::vector<std::string> outcomes;
     for (const auto& outcome : responses.outcomes)
@@ -263,7 +263,7 @@ std::vector<const ResponseColumn*> shown_observables(const Responses& responses)
     return shown;
 }
 
-/// `measured`: names of scalars, to which those of this campaign are added.
+/// `measured`: names of scalars; the names of this campaign's scalars are added.
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
                  const PageModels& models, std::vector<std::string>& measured) {
     const auto responses = read_responses(store, record);

@@ -1,4 +1,4 @@
-// posterior: what a calibration has found.
+// posterior: result of a calibration.
 #include "sweep/report/figure_kinds.hpp"
 #include "sweep/study/calibration.hpp"
 

@@ -32,7 +32,7 @@ bool takes_prefix(std::string_view unit) {
            std::ranges::count(unit, '/') <= 1;
 }
 
-/// The levels as numbers; empty where one is a word.
+/// Returns the levels as numbers; empty if one is a word.
 std::vector<double> numbers_in(const std::vector<std::string>& levels) {
     std::vector<double> numbers;
     for (const auto& level : levels) {

@@ -71,7 +71,7 @@ plot::Panel moment_panel(const FigureSubject& subject, const History& history, s
     return panel;
 }
 
-/// Where the campaign stopped, else where its rule held first.
+/// Returns the points at which the campaign stopped, else those at which its rule was first satisfied.
 std::optional<std::int64_t> end_of(const FigureSubject& subject, const History& history) {
     if (subject.responses.campaign.stopped_at) return subject.responses.campaign.stopped_at;
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
@@ -122,7 +122,7 @@ plot::Panel effect_panel(const FactorColumn& factor, const std::vector<EffectBin
     return panel;
 }
 
-/// All factors share one scale, that of all of them, so that a panel alone compares with the others.
+/// All factors share one scale, so that a single panel can be compared with the others.
 plot::Figure draw_effects(const FigureSubject& subject, const PanelNames& panels) {
     const auto judged = subject.responses.judged(subject.response);
     const auto errors = effect_errors(subject.responses, subject.response);

@@ -25,7 +25,7 @@ bool continues(char c) {  // a character of UTF-8
     return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }
 
-/// Bytes at the beginning of the word that fit into the width, cut behind a sign where there is one.
+/// Returns the number of bytes at the beginning of the word that fit into the width, cut after a sign if there is one.
 std::size_t fitting(std::string_view word, std::size_t width) {
     constexpr std::string_view signs = "_/,-.:|";
     std::size_t end = 0, behind_sign = 0;
@@ -36,7 +36,7 @@ std::size_t fitting(std::string_view word, std::size_t width) {
     return end < word.size() && behind_sign > 0 ? behind_sign : end;
 }
 
-/// The words between spaces; a "±" and what follows it are one.
+/// Returns the words between spaces; "±" and the next word are one.
 std::vector<std::string> unbroken(std::string_view text) {
     std::vector<std::string> words;
     bool joined = false;

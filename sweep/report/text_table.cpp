@@ -61,7 +61,8 @@ std::string cell_with_digits(const store::Table::Cell& cell, int digits) {
     return real == nullptr ? cell_text(cell) : fmt::format("{:.{}g}", *real == 0 ? 0 : *real, digits);
 }
 
-/// Digits that tell each number of a column from the one above it, unless they differ by rounding alone.
+/// Returns the number of digits at which each number of a column differs from the one above it, unless they differ only
+/// by rounding.
 int digits_of(const store::Table& table, std::size_t column) {
     int digits = fewest_digits;
     const double* above = nullptr;

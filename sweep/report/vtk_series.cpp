@@ -37,7 +37,7 @@ std::string VtkSeries::file_of(std::string_view what, std::string_view extension
     return fmt::format("{}{}{}_{:04}{}", name_, what.empty() ? "" : "_", what, moments_, extension);
 }
 
-/// The files an older series of this name lists would lie between those of this one.
+/// Files of an older series of this name would be mixed with the files of this one.
 void VtkSeries::begin() {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);

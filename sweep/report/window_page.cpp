@@ -86,7 +86,7 @@ double variance_by(std::span<const Setting> settings, std::span<const double> va
     return variance;
 }
 
-/// Factors by how much they decide over the whole box whether the condition holds, those of a map first.
+/// Orders factors by their effect on the condition in the whole box; the factors of a map come first.
 void put_decisive_first(std::vector<std::size_t>& order, const ModelCases& cases, const WindowRequest& request,
                         const Window& window, const Admits& admits) {
     constexpr std::size_t most_points = 1024;  // of the searched ones, which are a Sobol sequence

@@ -48,7 +48,7 @@ std::string beginning(const std::string& text, std::int64_t most) {
 
 // Not in the namespace without a name: Parts, which has linkage, holds them.
 
-/// A file without a name, which goes when it is closed.
+/// File without a name, which disappears when it is closed.
 class WorkbookFile {
 public:
     WorkbookFile() : file_(std::tmpfile()) {

@@ -17,7 +17,7 @@ std::string percent(double share) {
     return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
-/// What the rule compares, by its name: "kurtosis" or "change of kurtosis".
+/// Returns the name of the measure that the rule compares: "kurtosis" or "change of kurtosis".
 std::string measure_name(stats::Statistic statistic, const stats::ConvergenceSettings& settings) {
     const auto name = stats::to_string(statistic);
     return settings.traits().of_sequences ? std::string(name) : fmt::format("change of {}", name);

@@ -9,8 +9,9 @@ namespace {
 
 using campaign::Outcome;
 
-// The end begins where what is left would take all workers so many times the longest case that is left. At 1 the others
-// would be done just when the longest is; 2 leaves room for predictions that are wrong by as much.
+// The end of a run begins when the remaining work, shared by all workers, takes this many times the longest remaining
+// case. At 1 all other cases would end together with the longest one; 2 allows for predictions that are wrong by a
+// factor of 2.
 constexpr double longest_cases_left = 2;
 
 // Less than this is no headway: a case that is given back must have come further than the last time.

@@ -34,7 +34,7 @@ Scheduler::Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, stor
       walltime_(std::move(walltime)) {}
 
 Ending Scheduler::run() {
-    judge_prefix(Judge::Models::awaited);  // what the archive already has may be enough
+    judge_prefix(Judge::Models::awaited);  // stored answers may be enough
     while (!at_once_) {
         hand_out();
         crew_.share_cores(plan_.waiting(), [this](const campaign::Attempt& one) { return plan_.seconds_left(one); });
@@ -140,7 +140,7 @@ void Scheduler::handle(workers::PoolEvent event) {
 }
 
 void Scheduler::handle_finished(workers::Finished& finished) {
-    // A worker that reports a crash or a time-out of what it started.
+    // The worker reports a crash or a time-out of its program.
     if (!settles(finished.result.outcome)) return handle_failure(std::move(finished.result));
     const auto& result = finished.result;
     time_left_.ended(result.attempt, result.cost.wall_seconds, seconds());
@@ -198,7 +198,7 @@ void Scheduler::judge_prefix(Judge::Models models) {
     for (auto& row : judge_->judge(plan_.settled_prefix(), models))
         recorder_.write(store::Recorder::Checked{campaign_, row});
     progress_.judgement = judge_->verdict();
-    // Also when interrupted: where the campaign stops must not depend on the time of the check.
+    // Also after an interruption, because the point of convergence must not depend on the time of the check.
     if (judge_->converged_at() && judge_->stops()) {
         plan_.close();
         early_ = Ending::converged;

@@ -71,8 +71,8 @@ TimeLeft::Seconds TimeLeft::estimate(double waiting, std::size_t workers, double
                                      const std::optional<std::vector<double>>& last) const {
     const double ratio = pace(now);
     Seconds seconds{taken_, ratio * waiting};
-    std::vector<double> ends(workers, 0);  // when each worker has done what it runs, from now on
-    std::vector<double> behind;            // what waits behind a case that runs
+    std::vector<double> ends(workers, 0);  // s from now until each worker has finished its running cases
+    std::vector<double> behind;            // s, of cases that wait behind a running case
     std::size_t busy = 0;
     const auto runs = [&](const Running& one, double begun) {
         seconds.done += now - begun;
@@ -80,7 +80,7 @@ TimeLeft::Seconds TimeLeft::estimate(double waiting, std::size_t workers, double
         seconds.to_go += left;
         ends[busy++ % workers] += left;
     };
-    // Of those that report nothing the oldest run, one per worker; the others wait behind them.
+    // Of the cases without reports the oldest ones count as running, one per free worker; the others wait behind them.
     std::vector<const Running*> silent;
     for (const auto& [id, one] : running_)
         if (one.last)

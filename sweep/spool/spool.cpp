@@ -44,7 +44,7 @@ struct Contents {
     std::string fault = {};  ///< why these are not the contents of a spool's file; empty: they are
 };
 
-/// Nothing where there is no such file.
+/// Returns the contents; empty if there is no such file.
 std::optional<Contents> contents_of_file(const fs::path& file) {
     const auto stream = opened(file, to_read);
     if (!stream.is_open()) {
@@ -98,7 +98,8 @@ std::optional<Asked> asked_of(std::string_view text) {
                  std::string(rest.substr(cases_end + 1))};
 }
 
-/// ns; nothing where the file is gone. Opened, so that a network file system asks its server.
+/// Returns the time of the last change, ns; empty if the file is gone. Opens the file, so that a network file system
+/// asks its server.
 std::optional<std::int64_t> modified(const fs::path& file) {
     const auto stream = opened(file, to_read);
     struct stat seen {};

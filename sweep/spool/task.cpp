@@ -160,7 +160,7 @@ bool Task::is_alive(const campaign::Attempt& attempt, const Claim& claim) {
     return file_.state_of(claim.task) != TaskFile::State::dead;
 }
 
-/// The attempt has ended. True where the case needs no other.
+/// Handles an ended attempt. Returns whether the case needs no other one.
 bool Task::pass_over(std::uint32_t place, const campaign::Attempt& attempt, const Entry& entry) {
     auto& known = known_[place];
     ++known.next;
@@ -184,7 +184,7 @@ void Task::settle(Outcome outcome) {
     if (outcome != Outcome::completed && outcome != Outcome::skipped) ++tally_.failed;
 }
 
-/// With nothing left of its own to begin: which of the others' cases are answered by now, which are free.
+/// Looks for cases of other tasks that are answered or free, when this task has no case of its own to begin.
 void Task::look_elsewhere() {
     const double now = running_time();
     if (!open_.empty() || elsewhere_.empty() || !waits_) return;
@@ -203,7 +203,7 @@ void Task::look_elsewhere() {
             open_.push_back(place);
         }
     }
-    // Tasks that live finish what they have; to wait for them would keep a node idle.
+    // Living tasks finish their own cases; waiting for them would keep a node idle.
     if (open_.empty() && all_renewed && running_.empty()) waits_ = false;
 }
 

@@ -15,7 +15,7 @@ double mean(std::span<const double> x) {
     double sum = 0;
     for (const double value : x) sum += value;
     const double first = sum / static_cast<double>(x.size());
-    double rest = 0;  // second pass: what rounding left over
+    double rest = 0;  // second pass: rounding error of the first
     for (const double value : x) rest += value - first;
     return first + rest / static_cast<double>(x.size());
 }

@@ -41,7 +41,7 @@ private:
     std::string text_;
 };
 
-/// What a view shows of a campaign.
+/// Contents of a campaign's view.
 struct Shown {
     std::string name, scene;
     std::int64_t key = 0, revision = 0;

@@ -46,7 +46,7 @@ class Follower {
 public:
     Follower(Rows rows, std::int64_t& strays) : rows_(std::move(rows)), strays_(&strays) { advance(); }
 
-    /// Visits the rows of this case; those of cases before it belong to none.
+    /// Visits the rows of this case. Remaining rows with a smaller key belong to no case and are counted.
     template <class Visit>
     void visit(std::int64_t key, Visit&& visit) {
         for (; there_ && key_ < key; advance()) ++*strays_;
@@ -105,7 +105,7 @@ void add_measured(const Rows& rows, const Names& names, MeasuredSum& sum) {
             rows.get<double>(4), rows.get<double>(5));
 }
 
-/// What the rows of one case say.
+/// Data in the rows of one case.
 struct Seen {
     Inputs inputs;
     bool unknown_input = false;

@@ -1,4 +1,4 @@
-// Values at one place along the curves of a campaign: what a measured curve is compared with.
+// Values at one place along the curves of a campaign: they are compared with a measured curve.
 #include "sweep/store/archive.hpp"
 
 #include <algorithm>

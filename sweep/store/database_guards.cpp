@@ -1,4 +1,5 @@
-// What bounds and widens the statements of a connection: an authorizer, limits of time, memory and length, aggregates.
+// Limits and extensions of the statements of a connection: an authorizer, limits of time, memory and length,
+// aggregates.
 #include "sweep/store/database.hpp"
 #include "sweep/store/database_errors.hpp"
 

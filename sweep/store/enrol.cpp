@@ -1,4 +1,4 @@
-// Enrolling: a campaign and its cases enter the archive, or meet what is there already.
+// Enrolling: enters a campaign and its cases in the archive, or joins them with stored ones.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/campaign_name.hpp"
@@ -17,7 +17,7 @@ using campaign::Campaign;
 
 namespace {
 
-/// A campaign's name becomes that of a view: no table, fixed view or index may have it.
+/// A campaign's name becomes the name of a view, so no table, fixed view or index may have it.
 void refuse_taken_name(const Connection& db, const Campaign& campaign) {
     const auto taken =
         db.value<std::string>("SELECT type FROM sqlite_schema WHERE name = ? COLLATE NOCASE", campaign.name);
@@ -26,7 +26,7 @@ void refuse_taken_name(const Connection& db, const Campaign& campaign) {
                                    fmt::format("the database has a {} of that name", *taken));
 }
 
-/// Declares what the scene takes and measures; returns its parameters sorted by name.
+/// Declares the parameters and observables of the scene; returns the parameters sorted by name.
 std::vector<DeclaredParameter> declare_scene(Store::Impl& archive, const SceneInfo& scene) {
     auto& db = archive.db;
     for (const auto& parameter : scene.parameters) {
@@ -54,7 +54,7 @@ std::vector<DeclaredParameter> declare_scene(Store::Impl& archive, const SceneIn
         parameters.push_back({rows.get<std::string>(0), rows.get<std::int64_t>(1), rows.value(2)});
         const auto* spec = scene.find_parameter(parameters.back().name);
         if (spec != nullptr && spec->default_value != parameters.back().default_value) {
-            // Ids leave out what is default: with another default the stored answers would be to another question.
+            // Ids do not include default values. With another default the stored answers would belong to other cases.
             throw campaign::wrong_question(
                 "$.scene", fmt::format("default {} = {}", spec->name, campaign::to_text(spec->default_value)),
                 fmt::format("'{}' holds revision {} of {} with default {}: a changed default needs a new revision",
@@ -175,7 +175,7 @@ void store_provenance(Store::Impl& archive, const Campaign& campaign, std::int64
     archive.provenance_campaign = key;
 }
 
-/// What the archive remembers of the file, put back where enrolling fails and is rolled back.
+/// Data about the file in memory, restored if enrolling fails and is rolled back.
 class Remembered {
 public:
     explicit Remembered(Store::Impl& archive)
@@ -208,7 +208,7 @@ void drop_damaged_verdicts(Store::Impl& archive, std::int64_t campaign_key) {
     forget_convergence(db, campaign_key);
 }
 
-/// Whether what is damaged is put right by enrolling this campaign.
+/// Returns whether enrolling this campaign repairs all damage.
 bool only_of(std::int64_t campaign_key, const std::vector<DamagedTable>& damaged) {
     return std::ranges::all_of(damaged, [&](const DamagedTable& one) { return one.part == campaign_key; });
 }

@@ -17,7 +17,7 @@ namespace grainsweep::store {
 
 namespace {
 
-// A condition is about one case: what needs more than this is a mistake, or no condition.
+// A condition is about one case. If it needs more than this, it is a mistake or no condition.
 constexpr int longest_value = 10'000;
 constexpr std::size_t longest_expression = 100'000;
 constexpr double longest_time = 1;  // s
@@ -66,7 +66,7 @@ std::string columns_of(std::span<const std::string> names) {
     return text;
 }
 
-/// SQL would compare the outcome of the first comparison, 0 or 1, with what stands in the next.
+/// Refuses a < b < c: SQL would compare the result of the first comparison, 0 or 1, with c.
 void refuse_chains(const Written& written) {
     const auto chain = chained_comparison(written.text);
     if (!chain) return;

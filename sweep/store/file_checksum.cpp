@@ -25,7 +25,7 @@ struct FileSum {
     bool operator==(const FileSum&) const = default;
 };
 
-/// None where the file is no whole number of pages.
+/// Returns the sum; empty if the file is no whole number of pages.
 std::optional<FileSum> sum_of_file(const Connection& db) {
     const auto page = static_cast<std::size_t>(db.value<std::int64_t>("PRAGMA page_size").value_or(0));
     const std::int64_t bytes = db.file_bytes();

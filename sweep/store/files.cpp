@@ -64,7 +64,7 @@ void Store::enter_files_of(const campaign::Case& question) const {
         const auto* word = std::get_if<std::string>(&value);
         const auto file = word == nullptr ? std::nullopt : file_word(*word);
         auto contents = file ? stored_contents(impl_->db, file->hash) : std::nullopt;
-        if (!contents) continue;  // an archive of before files were stored: what lies at the path is read
+        if (!contents) continue;  // an archive older than the storage of files: the file at the path is read
         if (campaign::content_hash(*contents) != file->hash)
             throw BrokenWorld(fmt::format("database '{}': damaged: the contents of '{}' are not as written",
                                           impl_->file.string(), file->path));

@@ -22,7 +22,8 @@ std::vector<StoredMachine> stored_machines(const Connection& db) {
     return all;
 }
 
-/// nullptr where the text is no definition or that of another scene, or a file is not as written; `why` says so.
+/// Returns nullptr, with the reason in `why`, if the text is no definition, if it is the definition of another scene,
+/// or if a file has changed.
 std::shared_ptr<const campaign::Machine> machine_of(const Connection& db, const StoredMachine& stored,
                                                     std::string& why) {
     const auto contents_of = [&](const std::string& hash) {

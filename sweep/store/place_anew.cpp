@@ -85,7 +85,7 @@ void refuse_a_part(const Store::Impl& archive, const Campaign& campaign, std::in
                     archive.file.string(), campaign.name, written, asked));
 }
 
-/// What is stored never leaves the campaign's view, and a list grows at its end.
+/// Refuses changes by which a stored case would leave the campaign's view. A list grows only at its end.
 void refuse_a_loss(const Store::Impl& archive, const Campaign& campaign, const std::vector<Place>& stored,
                    const std::vector<Place>& asked, const Place& moved) {
     const auto& design = designs::design_named(campaign.design);

@@ -1,4 +1,4 @@
-// Programs in the archive: definitions, the contents of files, what was said of attempts.
+// Programs in the archive: definitions, contents of files, messages on attempts.
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>

@@ -14,8 +14,9 @@ namespace grainsweep::store {
 
 namespace {
 
-/// What a question may do. ATTACH, BEGIN and most pragmas are read-only to SQLite, but no questions. Statements that
-/// write are found by sqlite3_stmt_readonly: table-valued functions (json_each) declare a table on the way.
+/// Returns whether a query may do this. ATTACH, BEGIN and most pragmas are read-only to SQLite, but are no queries.
+/// Statements that write are found by sqlite3_stmt_readonly: table-valued functions (json_each) declare a table on the
+/// way.
 bool may(SqlAction action, std::string_view name) {
     constexpr std::array pragmas = {"table_info", "table_xinfo",      "table_list",   "index_list",
                                     "index_info", "foreign_key_list", "function_list"};

@@ -1,4 +1,4 @@
-// What the archive is asked: by the scheduler, the statistics and the commands.
+// Queries of the archive by the scheduler, the statistics and the commands.
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
@@ -39,7 +39,7 @@ std::optional<std::int64_t> case_key(const Connection& db, std::string_view case
     return db.value<std::int64_t>("SELECT case_key FROM sim_case WHERE case_id = ?", case_id);
 }
 
-/// The tables, not the view `inputs`: what a database has under that name is its own affair.
+/// Reads the tables, not the view `inputs`, because a database may have another view of this name.
 Inputs inputs_of(const Connection& db, std::string_view case_id) {
     Inputs inputs;
     auto rows = db.ask(

@@ -11,7 +11,7 @@ namespace {
 
 using campaign::Overloaded;
 
-// A group is as large as what arrived while the last one was being synced, within these bounds.
+// A group has all answers that arrived while the last group was synced, within these bounds.
 constexpr std::size_t group_rows = 256;
 constexpr auto idle_look = std::chrono::seconds(1);
 constexpr auto group_wait = std::chrono::milliseconds(10);

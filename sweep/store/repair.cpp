@@ -1,4 +1,4 @@
-// Damage met while a campaign is enrolled: a damaged answer is not believed, its case is asked again.
+// Damage found while a campaign is enrolled: a damaged answer is discarded, and its case runs again.
 #include "sweep/store/archive.hpp"
 #include "sweep/store/soundness.hpp"
 
@@ -12,7 +12,7 @@ namespace grainsweep::store {
 
 namespace {
 
-/// Puts scene, revision, seed and inputs back to what the campaign asks under this id.
+/// Restores scene, revision, seed and inputs of this id from the campaign.
 void restore_question(Connection& db, std::int64_t key, const campaign::Case& question,
                       const std::vector<DeclaredParameter>& parameters) {
     db.run("UPDATE sim_case SET scene = ?, revision = ?, seed = ? WHERE case_key = ?", question.scene,
@@ -44,7 +44,7 @@ void recount(Connection& db, std::int64_t key) {
         key);
 }
 
-/// The answer goes; its attempt says why.
+/// Deletes an answer; its attempt gets the reason.
 void forget_answer(Connection& db, const DamagedCase& damage) {
     const auto number = standing_attempt(db, damage.key);
     db.run("DELETE FROM observation WHERE case_key = ?", damage.key);

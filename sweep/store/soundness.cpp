@@ -12,7 +12,7 @@ namespace grainsweep::store {
 
 namespace {
 
-// Every statement says NOT INDEXED: what is checked are the tables themselves, as `dump` reads them.
+// Every statement has NOT INDEXED, so that the tables themselves are checked, as `dump` reads them.
 
 struct Summed {
     std::string_view name;
@@ -39,7 +39,7 @@ constexpr std::array summed_tables = {
         "attempt_computer",
         "SELECT computer_id, version, \"commit\", build, instruction_path, processor, host FROM attempt_computer NOT "
         "INDEXED"},
-    // Our own: what a user adds is no damage.
+    // Only the program's own; additions of a user are no damage.
     Summed{views,
            "SELECT name, sql FROM sqlite_schema WHERE type = 'view' AND (name IN ('series', 'inputs', "
            "'convergence_history') OR name IN (SELECT name FROM campaign NOT INDEXED))"},

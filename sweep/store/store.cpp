@@ -142,7 +142,7 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     if (unprotected && seen > 0) refuse_impossible(db, file);
     for (const auto migration : migrations.subspan(seen)) db.execute(migration);
     db.execute(schema_views());
-    // A migration that changes what has a checksum renews it itself: here damage would become the truth.
+    // A migration that changes data with a checksum renews the checksum itself. Renewing it here would hide damage.
     if (unprotected)
         renew_everything(db);
     else if (views_as_written)
@@ -367,7 +367,7 @@ void Store::group(const std::function<void()>& writes) {
     transaction.commit();
     impl_->sound = false;
     membership.committed = true;
-    impl_->require_in_place();  // else what was written is not where it will be looked for
+    impl_->require_in_place();  // else the data were written to another file than the one read later
 }
 
 }  // namespace grainsweep::store

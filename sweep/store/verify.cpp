@@ -1,4 +1,4 @@
-// What is damaged: in words for the user, and before anything is read as data.
+// Reports damage: as text for the user, and before any data are used.
 #include "sweep/store/archive.hpp"
 #include "sweep/store/file_checksum.hpp"
 #include "sweep/store/soundness.hpp"

@@ -1,4 +1,4 @@
-// What is written while a campaign runs: attempts, answers, verdicts. Inside a group.
+// Data written while a campaign runs, inside a group: attempts, answers, verdicts.
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/moment.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// False where it has an outcome already.
+/// Returns false if the attempt has an outcome already.
 bool close_attempt(Connection& db, const OpenAttempt& open, const campaign::CaseResult& result) {
     const auto phases = campaign::phases_text(result.cost.phases);
     AttemptRow row{.key = open.key,
@@ -39,7 +39,7 @@ bool close_attempt(Connection& db, const OpenAttempt& open, const campaign::Case
     return closed == 1;
 }
 
-/// Stores what a case measured.
+/// Stores the observables of a case.
 MeasuredSum enter_observations(Store::Impl& archive, const OpenAttempt& open, const Observations& observations) {
     MeasuredSum measured;
     constexpr std::string_view insert =

@@ -80,7 +80,7 @@ double largest_part(const stats::TwoLevelCheck& check, double stats::TwoLevelMom
     return found;
 }
 
-/// The campaign and those of the same design at other settings, as SQL texts.
+/// Returns the names of the campaign and of the campaigns of the same design at other settings, as SQL texts.
 std::string campaigns_of_goal(const store::Store& store, const store::CampaignRecord& campaign) {
     std::string names;
     for (const auto& other : store.campaigns()) {

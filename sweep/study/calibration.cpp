@@ -142,7 +142,7 @@ std::size_t followed_points(const designs::Calibration& found, const Responses& 
     return followed;
 }
 
-/// What a user must know before quoting the posterior.
+/// Returns notes for users who quote the posterior.
 std::vector<std::string> notes_of(const CalibrationReport& report) {
     std::vector<std::string> notes;
     const auto& found = report.found;

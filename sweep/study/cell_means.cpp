@@ -39,7 +39,7 @@ std::vector<double> edges_of(const FactorColumn& factor, const std::vector<std::
     return edges;
 }
 
-/// The cell of a value; those at the ends include what rounding puts beyond.
+/// Returns the cell of a value; the cells at the ends include values that rounding puts beyond.
 std::size_t cell_of(const std::vector<double>& edges, double x) {
     const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, x);
     return static_cast<std::size_t>(above - edges.begin()) - 1;

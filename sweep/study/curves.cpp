@@ -22,7 +22,7 @@ using Series = std::map<std::string, std::vector<Sampled>, std::less<>>;
 
 Series series_of(const store::Store& store, const std::string& case_id) {
     Series all;
-    // Of the tables: what a database has under the name of the view `series` is its own affair.
+    // Reads the tables, because a database may have another view named `series`.
     const auto table = store.query(
         fmt::format("SELECT b.name, o.time, o.bin, o.value FROM sim_case AS c "
                     "JOIN observable AS b ON b.scene = c.scene AND b.revision = c.revision AND b.shape <> 'scalar' "

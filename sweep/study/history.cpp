@@ -154,7 +154,7 @@ void warn_of_powers(History& history, std::span<const double> values) {
     }
 }
 
-/// What the values of a sample do not show yet.
+/// Warns if a sample is still too small for its statistics.
 void warn_of_few(History& history, const Responses& responses) {
     if (!responses.ordered_sample()) return;
     if (history.all.all_equal)

@@ -190,7 +190,7 @@ std::function<bool(const Setting&)> admission(const store::Store& store, const M
     campaign::Filter filter;
     try {
         filter = store::make_filter(cases.campaign.condition, names);
-    } catch (const campaign::WrongQuestion&) {  // an older program took what is refused today
+    } catch (const campaign::WrongQuestion&) {  // an older version accepted a setting that is refused now
         return by_shares;
     }
     return [complete, filter, shares_fit](const Setting& setting) {

@@ -136,7 +136,7 @@ std::vector<Judgement> next_of(const WindowQuestion& question, const WindowReque
     return chosen;
 }
 
-/// What the failed cases mean for the window and the chosen setting.
+/// Adds notes on failed cases for the window and the chosen setting.
 void say_what_failed(Window& window, const ModelCases& cases) {
     if (cases.failed.empty()) return;
     window.notes.push_back(

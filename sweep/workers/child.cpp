@@ -98,7 +98,7 @@ public:
             pipe->close(ignored);
         }
     }
-    /// Including what stands in the pipe.
+    /// Returns the log, including the unread part in the pipe.
     [[nodiscard]] const std::string& log() override {
         for (std::size_t rest = 16 * kept_log_bytes; rest > 0 && !closed_;) {
             const auto length = ::read(err_.native_handle(), log_piece_.data(), log_piece_.size());

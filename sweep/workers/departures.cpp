@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 // Seconds.
 constexpr double grace_before_kill = 2;
 constexpr double place_kept = 5;
-constexpr auto time_to_end = 5s;  // of a worker that has nothing left to do, and of what launched it
+constexpr auto time_to_end = 5s;  // of a worker without work, and of its launcher
 
 }  // namespace
 

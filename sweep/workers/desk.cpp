@@ -27,7 +27,7 @@ namespace {
 constexpr int main_program_is_gone = 3;
 constexpr int nonsense_was_written = 2;
 
-/// What no main program writes ends the worker: what it would compute is not known to be what was asked.
+/// Ends the worker after an invalid message, because its answers might belong to other cases than the requested ones.
 [[noreturn]] void refuse(std::string_view line, std::string_view why) {
     const std::string sentence = fmt::format("grainsweep worker: standard input is not the main program's: {} ({})\n",
                                              shortened(line, 200), why);

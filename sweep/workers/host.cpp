@@ -83,7 +83,7 @@ public:
 private:
     // ---- threads beside the loop -----------------------------------------------------------------------------
 
-    /// A piece is taken before the next is read, so that what is not taken yet has a bound.
+    /// A piece is processed before the next is read, so that the unprocessed data are limited.
     void read() {
         std::array<char, 65536> piece{};
         while (true) {
@@ -190,7 +190,7 @@ private:
         });
     }
 
-    /// Those that are still there learn by end of file that nothing is expected of them.
+    /// Ends the remaining workers: first by closing their standard input, then by SIGKILL.
     void end_workers() {
         for (const auto& [number, child] : workers_) child->close();
         wait_while([this] { return std::ranges::any_of(workers_, [](auto& one) { return one.second->runs(); }); },

@@ -10,7 +10,7 @@ namespace grainsweep::workers {
 namespace {
 
 constexpr auto time_to_end_workers = std::chrono::seconds(5);
-constexpr int most_unsound = 10;     // hosts lost to changed frames: what lies between changes every answer of a case
+constexpr int most_unsound = 10;     // hosts lost to changed frames; beyond this the connection itself changes data
 constexpr double time_to_kill = 10;  // s; a worker that cannot be ended would keep its place for ever
 
 std::vector<std::string> with_host_number(std::vector<std::string> argv, std::size_t number) {

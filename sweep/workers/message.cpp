@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-// What each message holds: `it` writes or reads the members, which are sorted by name.
+// Members of each message, sorted by name; `it` writes or reads them.
 namespace grainsweep::workers::json_line {
 
 template <class T, class Message>
@@ -90,7 +90,7 @@ void describe(auto& it, Of<Done> auto& done) {
 namespace grainsweep::workers {
 namespace {
 
-/// What stands behind the word of a message.
+/// Contents of a message after its word.
 template <class Message>
 auto& body(Message& message) {
     if constexpr (requires { message.set; })

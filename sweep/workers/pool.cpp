@@ -78,7 +78,7 @@ struct Pool::Impl {
     // ---- reading -----------------------------------------------------------------------------------------
 
     void interrupt(int signal) {
-        // What ends a job may signal every process of it, and the job's script pass the signal on besides.
+        // The system that ends a job may signal every process of it, and the job's script may pass on the signal, too.
         const bool repeated = signal != SIGINT && clock.now() - interrupted < one_request;
         if (!repeated) events.emplace_back(Interrupted{interruptions++ > 0, signal != SIGINT});
         interrupted = clock.now();
@@ -109,7 +109,7 @@ struct Pool::Impl {
             pass_on(*worker, std::move(*beat));
         } else if (auto* back = std::get_if<GivenBack>(&meaning)) {
             events.emplace_back(std::move(*back));
-            send_stop(worker);  // it is leaving: no more cases, and it gives back what it has left
+            send_stop(worker);  // it is leaving: it gets no more cases and gives back the remaining ones
         } else if (const auto* banner = std::get_if<WorkerState::Banner>(&meaning)) {
             remark_on_banner(banner->line);
         } else if (auto* complaint = std::get_if<WorkerState::Complaint>(&meaning)) {
@@ -186,7 +186,7 @@ struct Pool::Impl {
 
     // ---- doing -------------------------------------------------------------------------------------------
 
-    /// False where none can be had now.
+    /// Returns false if no worker can be started now.
     bool launch() {
         std::error_code error;
         std::shared_ptr<Process> child;
@@ -322,7 +322,7 @@ void Pool::share_cores(std::size_t waiting, const SecondsLeft& left) {
 }
 
 std::optional<Place> Pool::place_for(double predicted_seconds) {
-    if (!impl_->events.empty()) return std::nullopt;  // what is known already may end the run
+    if (!impl_->events.empty()) return std::nullopt;  // an event that is known already may end the run
     const auto& workers = impl_->workers;
     const std::size_t none = workers.size();
     std::size_t best = none;

@@ -81,7 +81,7 @@ private:
     double next_look_ = first_size_look;
 };
 
-/// What a reply says, as the outcome of a case.
+/// Converts a reply to the outcome of a case.
 void take(ProgramReply&& reply, CaseResult& result) {
     const auto outcome = reply.kind == ProgramReply::Kind::measured   ? Outcome::completed
                          : reply.kind == ProgramReply::Kind::unstable ? Outcome::unstable
@@ -225,7 +225,7 @@ std::optional<CaseResult> ProgramAnswerer::by_lines(const campaign::Case& questi
         try {
             take(results_in(lines_->line(), question.id, *program_), result);
             return result;
-        } catch (const std::invalid_argument& why) {  // what it says next cannot be told from this
+        } catch (const std::invalid_argument& why) {  // its next message could not be distinguished from this one
             close_result(result, Outcome::rejected, why.what());
         }
     } else if (heard == Heard::too_long) {

@@ -34,7 +34,7 @@ struct CloseDir {
 };
 using Entries = std::unique_ptr<DIR, CloseDir>;
 
-/// A folder within another, no link; empty where it cannot be opened.
+/// Returns the entries of a folder within another, no link; empty if it cannot be opened.
 Entries entries_of(int parent, const char* name) {
     Descriptor at(::openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     Entries entries(at.is_open() ? ::fdopendir(at.number()) : nullptr);
@@ -94,7 +94,7 @@ void clear_away(const fs::path& folder) {
     if (error) take_down(folder);
 }
 
-/// What lies in a folder, up to `most` bytes. Beyond the deepest folder that a case may have nothing is looked at.
+/// Adds the size of a folder's contents, up to `most` bytes. Folders deeper than a case may have are ignored.
 void measure(const Entries& entries, int depth, std::int64_t most, ProgramFolder::Size& total) {
     constexpr int deepest = 100;
     if (!entries) return;

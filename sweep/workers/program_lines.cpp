@@ -87,7 +87,7 @@ bool ProgramLines::take_line() {
     return true;
 }
 
-/// Writes what the pipe takes, reads what it has.
+/// Writes as much as the pipe accepts, and reads all that it contains.
 std::optional<ProgramLines::Heard> ProgramLines::exchange(std::string_view& rest, int milliseconds) {
     std::array<pollfd, 2> ends = {pollfd{out_.number(), POLLIN, 0},
                                   pollfd{rest.empty() ? -1 : in_.number(), POLLOUT, 0}};

@@ -90,7 +90,8 @@ void ProgramProcess::end(const std::function<bool()>& hurry) {
     reap(0);
 }
 
-/// What the program left behind: members of its group, and orphans, which are now children of this process.
+/// Ends the processes that the program left behind: members of its group, and orphans, which are now children of this
+/// process.
 void ProgramProcess::end_stragglers() {
     ::kill(-id_, SIGKILL);
     constexpr int most_looks = 200;

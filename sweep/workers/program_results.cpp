@@ -26,7 +26,7 @@ using Kind = ProgramReply::Kind;
 
 constexpr std::size_t largest_json = std::size_t{16} << 20U;
 
-/// A value that is not there or not to be used: what the case is rejected for.
+/// Error for a value that is missing or unusable, for which the case is rejected.
 using Unusable = std::invalid_argument;
 
 double number_in(const Json& value, const std::string& place) {

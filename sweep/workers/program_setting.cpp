@@ -1,4 +1,4 @@
-// What a program finds: its command, environment and files for a case; and how workers find the program itself.
+// Surroundings of a program: its command, environment and files for a case. Also how workers find the program itself.
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/files/broken_world.hpp"

@@ -92,8 +92,8 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
     }
 }
 
-/// Whatever the bytes were: every index leads to something, every column has its length, and positions are where the
-/// cells reach. What moves too fast or overlaps too much, the steps find out.
+/// Refuses impossible states, for any bytes: every index must be valid, every column must have its length, and
+/// positions must be within the cells. Too fast particles and too large overlaps are found later, by the steps.
 void ClearEngine::require_possible() const {
     constexpr auto require = ByteReader::require;
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;

@@ -62,7 +62,7 @@ using namespace geometry;
     return t;
 }
 
-/// Where laws reach beyond touch: completes what is near if it is a contact, else ends its memory.
+/// For laws that reach beyond touch: completes a near pair if it is a contact, else ends its memory.
 template <class T>
 bool ClearEngine::begins(const AnyContact& laws, T& t, double* memory) const {
     if (!laws.begin(t, memory)) std::fill_n(memory, memories(), 0.0);
@@ -149,7 +149,7 @@ void ClearEngine::pair_contacts(bool advance) {
     largest_overlap_ = largest;
 }
 
-/// The places where a wall is touched now; a contact keeps its memory, and takes it along.
+/// Finds the places where a wall is touched now. A contact keeps its memory if its place moves.
 void ClearEngine::find_touches(Contacts& contacts) {
     touched_before_.swap(contacts.touches);
     contacts.wall.find(contacts.near, p_.position, radii(), beyond_wall_, contacts.touches);

@@ -1,4 +1,4 @@
-// Checks of the clear engine: states beyond the limits are reported with what, where and when (limits.hpp).
+// Checks of the clear engine: states beyond the limits are reported with kind, place and time (limits.hpp).
 #include "solver/dem/clear/engine.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/shaking.hpp"
@@ -12,7 +12,8 @@ namespace grainsweep::dem::clear {
 
 using namespace geometry;
 
-/// Every position is a number, every speed within what the case can produce. Reports and repairs otherwise.
+/// Returns whether every position is a number and every speed is possible in this case. Else reports and repairs the
+/// state.
 bool ClearEngine::sound() {
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
@@ -80,8 +81,8 @@ void ClearEngine::judge_wall_speeds() {
     }
 }
 
-/// A wall without an inside pushes on what has passed it. A centre that did so in this step is no farther from it than
-/// they moved.
+/// Reports centres that have passed a wall without an inside. A centre that passed in this step is no farther from the
+/// wall than both moved.
 void ClearEngine::judge_passages(const Contacts& contacts) {
     const auto& wall = contacts.wall;
     const double way_of_wall = time_step_ * wall.fastest_surface();

@@ -228,7 +228,7 @@ void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     ++work_.rebuilds;
 }
 
-/// Where memories outlive a separation, those of pairs that do not touch at the rebuild end here.
+/// Ends the memories of pairs that do not touch at the rebuild, for laws whose memories outlive a separation.
 void ClearEngine::forget_separated() {
     for (std::size_t i = 0; i < p_.size(); ++i)
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {

@@ -54,7 +54,7 @@ ContactReader::Memory ContactReader::memory(const float* const* column, std::int
     return m;
 }
 
-/// Completes a touch whose geometry is known and asks the laws; motion_in(motions) is its relative motion.
+/// Completes a touch whose geometry is known and applies the laws; motion_in(motions) is its relative motion.
 template <Partner partner, class MotionIn>
 ContactForce ContactReader::read(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second,
                                  const Memory& memory, MotionIn&& motion_in) const {
@@ -67,7 +67,7 @@ ContactForce ContactReader::read(const AnyContact& laws, Touch<partner> t, std::
 bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const {
     const Record &a = field_.records[i], &b = field_.records[j];
     Vec3 branch{};
-    for (std::size_t axis = 0; axis < 3; ++axis)  // the difference of two positions is that of the nearest images
+    for (std::size_t axis = 0; axis < 3; ++axis)  // the difference is between the nearest images
         branch[axis] = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[axis]) -
                                                  static_cast<std::uint32_t>(b.position[axis])) *
                        space_.scale.unit[axis];
@@ -114,7 +114,7 @@ ContactReader::Memory ContactReader::memory(const ParkedContact& contact) const 
     return memory(column, 0);
 }
 
-/// Adds what depends on the masses.
+/// Adds the values that depend on the masses.
 void ContactReader::complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
     t.reduced_mass = 1 / (1 / mass(i) + 1 / mass(j));
     t.rolling_inertia =

@@ -112,8 +112,8 @@ void MixedEngine::save(std::vector<std::byte>& into) const {
     pass(*this, writer);
 }
 
-/// Whatever the bytes were: every index leads to something, every count is that of its column. What moves too fast or
-/// overlaps too much, the steps find out.
+/// Refuses impossible states, for any bytes: every index must be valid, and every count must agree with its column. Too
+/// fast particles and too large overlaps are found later, by the steps.
 void MixedEngine::require_possible() const {
     constexpr auto require = ByteReader::require;
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;

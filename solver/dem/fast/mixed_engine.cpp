@@ -45,7 +45,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     if (densities_.empty()) densities_ = {setup.material.density};
     field_.constants = make_constants(setup, space_.scale, needs_);
     for (const Material& m : table_.pairs()) laws_.push_back(make_contact(needs_.combination, m));
-    // A pair must not meet across both ends of a period. What adhesion reaches is within the shortest period allowed.
+    // A pair must not meet across both ends of a period. The reach of adhesion is within the shortest period allowed.
     const double apart = laws_.front()->traits().acts_apart ? static_cast<double>(field_.constants.beyond) : 0;
     for (std::size_t a = 0; a < 3; ++a)
         if (setup.domain.periodic[a]) {
@@ -79,7 +79,7 @@ float MixedEngine::single_radius(const Sphere& sphere) const {
     return static_cast<float>(needs_.unequal ? sphere.radius / space_.scale.length : 0.5);
 }
 
-/// Over that of Scale::mass.
+/// Returns the density relative to the density of Scale::mass.
 double MixedEngine::relative_density(const Sphere& sphere) const {
     return densities_[sphere.kind] / densities_.front();
 }

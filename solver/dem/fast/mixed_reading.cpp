@@ -10,7 +10,7 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-/// Indices in order of id. Ids are dense but for those of particles gone, so that counting beats sorting.
+/// Returns the indices in order of id. Ids have gaps only for removed particles, so counting is faster than sorting.
 std::vector<std::int32_t> by_id(std::span<const std::int32_t> ids) {
     constexpr std::int32_t none = -1;
     const auto last = std::ranges::max_element(ids);

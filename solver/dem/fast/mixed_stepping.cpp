@@ -84,7 +84,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 drift_.steps, parts);
         touches_.reorder(field_, columns_);
         touches_.list(field_, walls_, space_.scale, static_cast<double>(space_.skin), parts);
-        parts.run_shares(field_.count, [this](Range range) {  // what was carried over belongs to the old order
+        parts.run_shares(field_.count, [this](Range range) {  // carried data belong to the old order
             for (std::int32_t i = range.begin; i < range.end; ++i) field_.forces[i] = cleared(field_.forces[i]);
         });
         if (field_.count < before) watch_.restart_balance();
@@ -145,7 +145,7 @@ void MixedEngine::sweep_pairs(bool goes_on, bool advance, bool keep_histories) {
     if (!keep_histories) columns_.swap_histories(field_);
 }
 
-/// Lets the walls stand where they are now.
+/// Sets the walls to their present places.
 void MixedEngine::stand_walls() {
     walls_.place(wall_time());
     field_.walls = walls_.placed();

@@ -1,5 +1,5 @@
-// The kernels compiled for what every processor this program runs on has: x86-64-v2, or NEON of AArch64.
-// Nothing with external linkage but the one function at the end may come into being here.
+// Kernels compiled for every supported processor: x86-64-v2, or NEON of AArch64. Only the function at the end may have
+// external linkage.
 #include "solver/dem/fast/pair_lanes.hpp"
 
 #include "solver/dem/fast/compiled_laws.hpp"

@@ -149,7 +149,8 @@ std::int32_t find_owners(const Field& f, Columns& c, const Kernels& kernels, con
     return before.back();
 }
 
-/// Appends the parked contacts to the live ones, of which they may become part, and decides anew what rests.
+/// Appends the parked contacts to the live ones, because they may become live again, and decides anew which particles
+/// rest.
 void update_resting(Field& f, Columns& c, const ListSpace& space, Resting& resting, std::int32_t contacts) {
     auto at = static_cast<std::size_t>(contacts);
     for (int a = 0; a < c.histories; ++a) c.history[a].hold(at + resting.parked().size() + spare);

@@ -17,7 +17,8 @@ namespace {
 constexpr std::int64_t quiet_time = 256;
 /// Net force, of the weight, above which a particle is advanced again.
 constexpr double imbalance = 0.5;
-/// Impacts of what is faster than the rest speed by this factor reach so many layers behind those in reach.
+/// Impacts of particles that are faster than the rest speed by this factor reach so many layers behind the particles in
+/// reach.
 constexpr double impact_factor = 30;
 constexpr int layers = 2;
 
@@ -40,7 +41,7 @@ void stop(Field& f, std::int32_t i) {
     leave_over(f, i, residual);
 }
 
-/// The same contact with its particles exchanged.
+/// Exchanges the particles of a contact.
 void exchange(ParkedContact& p, const float* factors) {
     for (int a = 0; a < histories_at_most; ++a) p.history[a] *= factors[a];
     for (float& force : p.force) force = -force;

@@ -89,7 +89,7 @@ Needs make_needs(const Setup& setup, bool resting) {
         return !n.unequal || facts.columns != dem::Columns::equal;
     });
     n.several = ContactTable(setup).kinds() > 1;
-    // what is compiled for any spheres computes with each particle's own radius
+    // kernels for any spheres compute with each particle's own radius
     n.unequal = n.unequal || facts_of(n.combination).columns == dem::Columns::any;
     n.skips = n.resting || (n.frozen && !n.unequal && facts_of(n.combination).spin);
     return n;

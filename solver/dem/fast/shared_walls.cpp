@@ -26,7 +26,7 @@ bool SharedWalls::is_shared(const Field& f, std::int32_t wall, const Kernels& ke
     return parts > 1 && vectors >= vectors_worth_sharing * parts && (f.kinds <= 1 || f.walls[wall].summed == 0);
 }
 
-/// Where the kernel's tiles begin and end.
+/// Finds the beginnings and ends of the kernel's tiles.
 void SharedWalls::find_tiles(const Field& f, std::int32_t wall, const Kernels& kernels, const Parts& parts) {
     const auto [begin, end] = f.segments[wall];
     const std::int32_t width = kernels.width, vectors = (end - begin) / width;

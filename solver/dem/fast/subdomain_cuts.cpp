@@ -10,14 +10,14 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-// What a sweep costs, relative to one another: a particle that is advanced, a contact, a pair that is only listed.
-// Of a pair of another subdomain's rows also its particles, which come out of order and are waited for.
+// Relative costs in a sweep of an advanced particle, a contact, and a pair that is only listed. A pair with a row of
+// another subdomain has an additional cost: its particles are read out of order.
 constexpr double cost_of_particle = 4, cost_of_contact = 5, cost_of_pair = 0.3, cost_of_waiting = 1.5;
 
-// Fewer say more of chance than of cores.
+// Timings of fewer sweeps show chance rather than the speed of cores.
 constexpr int sweeps_that_tell = 64;
 
-// Most of the first cut's time goes into taking memory.
+// Most of the time of the first cut is spent on allocating memory.
 constexpr double share_without_memory = 0.2;
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-/// Met nothing yet.
+/// Returns the tally before any contact.
 Tally neutral_tally() {
     Tally t{};
     std::ranges::fill(t.velocity_high, -std::numeric_limits<float>::infinity());
@@ -198,7 +198,7 @@ void Subdomains::find_what_to_send(int part) const {
 void Subdomains::receive(const Field& whole, int part) const {
     const auto to = static_cast<std::size_t>(part);
     const Subdomain& d = *subdomains_[to];
-    const std::int32_t* met = d.met.data();  // ascending: those of the first subdomain, of the second ...
+    const std::int32_t* met = d.met.data();  // ascending: rows of the first subdomain, of the second ...
     for (const auto& from : subdomains_)
         for (std::int32_t k = from->sending_to[to]; k < from->sending_to[to + 1]; ++k) {
             const Kinematics& moved = from->sent[turn_].data()[k];

@@ -117,7 +117,7 @@ std::int32_t WallTouches::settle(const Search& s, Range entries, std::size_t old
     return at;
 }
 
-/// Puts the contacts that the parts found one after the other, from `at` on; returns where they end.
+/// Moves the contacts of all parts together, from `at` on; returns their end.
 std::int32_t WallTouches::close_gaps(Columns& c, std::int32_t at, const Parts& parts) {
     if (parts.count() == 1) return scratch_.front().found.end;
     std::vector<std::int32_t> to{at};

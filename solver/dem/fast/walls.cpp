@@ -15,7 +15,7 @@ using namespace geometry;
 
 namespace {
 
-/// Gives a wall the numbers of its shape and what they are relative to.
+/// Gives a wall the numbers of its shape and their reference.
 template <class S>
 void write_shape(const S& shape, const Pose& pose, const Scale& scale, PlacedWall& w) {
     static_assert(Vectorised<S> || Pieced<S>);

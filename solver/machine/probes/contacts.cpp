@@ -1,4 +1,4 @@
-// What contacts say of a bed: the mean number of partners, and the deepest overlap.
+// Contacts of a bed: the mean number of partners, and the deepest overlap.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 

@@ -1,5 +1,5 @@
-// What a camera sees that looks along the axis of a drum with light behind it: the cells whose centres a particle
-// hides. Area, angle and outline are those of the mean image over all frames so far.
+// View of a camera along the axis of a drum with light behind it: the cells whose centres a particle hides. Area, angle
+// and outline are computed from the mean image of all frames so far.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/probes/section.hpp"
 

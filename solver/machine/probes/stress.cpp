@@ -49,7 +49,7 @@ struct Tensor {
     }
 };
 
-/// What a region or a slab holds.
+/// Sums of a region or a slab.
 struct Held {
     Tensor contacts, flux;
     double mass = 0;

@@ -1,4 +1,4 @@
-// What the powder does to walls: force, torque, work, and the pressure of the normal component.
+// Loads of the powder on walls: force, torque, work, and the pressure of the normal component.
 //
 // Of several walls together. Work: work of the walls' forces on the powder since the start. It does not include the
 // work of moments against rolling resistance.

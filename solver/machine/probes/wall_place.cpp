@@ -1,4 +1,5 @@
-// Where walls are: how far a point of one has moved along a direction, and by which angle it has turned.
+// Places of walls: the distance that a point of a wall has moved along a direction, and the angle by which the wall has
+// turned.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 using geometry::dot;
 using geometry::operator-;
 
-/// The first of the walls; none: this case is without it.
+/// Returns the first of the walls; nullptr: this case has none of them.
 const dem::Wall* wall_of(const std::vector<std::size_t>& numbers, const Sight& sight) {
     return numbers.empty() ? nullptr : &sight.engine.wall(numbers.front());
 }

@@ -36,7 +36,7 @@ dem::Material Powder::material(const Inputs& inputs) const {
     material.rolling_friction = rolling_friction(inputs);
     material.rolling_law = rolling_law(inputs);
     material.cohesion_law = cohesion_law(inputs);
-    // what belongs to the other kind of law has no effect
+    // the parameter of the other kind of law has no effect
     (dem::acts_by_surface_energy(material.cohesion_law) ? material.surface_energy : material.cohesion) =
         (dem::acts_by_surface_energy(material.cohesion_law) ? surface_energy : cohesion)(inputs);
     return material;

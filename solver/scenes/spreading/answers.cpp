@@ -13,7 +13,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t blocks = 10;     // of the measured flux, 5 mm of travel each by default
 constexpr double relief_pitch = 0.25;  // in diameters
 constexpr double patch_side = 5;       // in diameters
-constexpr double most_bare = 0.5;      // share of the base beyond which what lies on it is no layer
+constexpr double most_bare = 0.5;      // share of bare base beyond which the powder is no layer
 constexpr double densest = 0.64;       // random close packing of equal spheres (Scott & Kilgour 1969)
 constexpr double densest_of_unequal = 1 - (1 - densest) * (1 - densest);  // small ones in the pores (Furnas 1931)
 

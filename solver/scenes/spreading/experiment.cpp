@@ -64,7 +64,7 @@ void Experiment::supply(const dem::State& bed) {
     profile_ = observables::VelocityProfile(profile_layers);
 }
 
-/// Between two layers: what was learnt is noted, and what lies beside the platform is taken away.
+/// Records the results of a layer, and removes the powder beside the platform.
 void Experiment::next_layer() {
     layers_.push_back(layer_answer());
     earlier_particle_steps_ = particle_steps();
@@ -157,7 +157,7 @@ void Experiment::sample() {
     count_left(edge);
     behind_.push_back(observables::sum_behind(state_, volume_, edge) + left_behind_);
     under_.push_back(observables::sum_under(state_, volume_, rear, edge, level + study_.gap));
-    const double below = layer_ > 0 ? level : -0.49 * d;  // above what is glued to the base
+    const double below = layer_ > 0 ? level : -0.49 * d;  // above the particles glued to the base
     solid_.push_back(
         observables::solid_volume(state_, rear - behind_to * d, rear - behind_from * d, below, level + study_.gap) /
         ((behind_to - behind_from) * d * study_.width * study_.gap));
@@ -174,7 +174,7 @@ dem::State Experiment::powder() const {
     dem::State state;
     engine_->state(state);
     if (study_.base == Base::smooth) return state;
-    const auto all = state.id.size();  // what is glued comes last
+    const auto all = state.id.size();  // glued particles come last
     const auto kept = all - static_cast<std::size_t>(std::ranges::count(state.mobile, char{0}));
     state.id.resize(kept);
     state.position.resize(kept);

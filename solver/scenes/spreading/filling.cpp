@@ -34,7 +34,7 @@ double height_of_base(const Study& s) {
     return s.base == Base::rough ? -s.diameter / 2 : 0.0;
 }
 
-/// Draws until the volume is as near to that of the layer as it gets.
+/// Draws radii until their volume is as near as possible to the volume of the layer.
 std::vector<double> radii_of(const Study& s, std::uint64_t seed) {
     const stats::Stream size(seed, size_stream);
     const double wanted = s.layer_area * s.width / particles::sphere_volume(s.diameter);

@@ -1,4 +1,4 @@
-// The tool of an STL file: checked against what a tool can be, fitted to the layer's width.
+// Tool of an STL file: checks that it can be a tool, and fits it to the layer's width.
 #include "solver/geometry/loose_parts.hpp"
 #include "solver/scenes/kit/stl_wall.hpp"
 #include "solver/scenes/spreading/question.hpp"

@@ -106,7 +106,7 @@ void warn_of_needles(std::vector<Warning>& warnings, const Study& s) {
                          needle->length, needle->width, needle->tip[1])});
 }
 
-/// What lies above the gap is pushed ahead and slopes at about 30 degrees: h^2/(2 tan 30) = (layer - gap) travel.
+/// Powder above the gap is pushed ahead and slopes at about 30 degrees: h^2/(2 tan 30) = (layer - gap) travel.
 void warn_of_height(std::vector<Warning>& warnings, const Study& s, double layer) {
     const double heap = layer + std::sqrt(2 * std::numbers::inv_sqrt3 * std::max(layer - s.gap, 0.0) * s.travel);
     const double top = s.gap + s.surface.high()[2];

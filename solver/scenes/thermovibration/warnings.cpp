@@ -13,7 +13,7 @@ using kit::sentence;
 
 constexpr double boussinesq = 0.1;       // largest relative change of density the approximation is made for
 constexpr double densest = 0.6;          // share of the cube that spheres can fill
-constexpr double dilute_mass = 0.1;      // mass of particles over that of the fluid that it does not feel
+constexpr double dilute_mass = 0.1;      // mass of particles relative to the fluid up to which one-way coupling holds
 constexpr double fewest_periods = 10;    // to speak of a mean over periods
 constexpr double fewest_per_cell = 0.1;  // particles per sampling cell
 

@@ -16,7 +16,7 @@ constexpr double quiet_time = 1.5;    // t*
 constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_share = 1e-3;  // of the powder in the cell may move faster, and leave
 constexpr int bins_per_decade = 20;
-constexpr double least_overlap = 1e-6, least_force = 1e-3;  // what is less counts as this
+constexpr double least_overlap = 1e-6, least_force = 1e-3;  // smaller values count as this
 
 }  // namespace
 

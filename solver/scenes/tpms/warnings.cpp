@@ -33,7 +33,7 @@ double outlet_share(geometry::TpmsCell cell, int side, int k) {
     static std::mutex guard;
     const std::lock_guard lock(guard);
     const auto [found, fresh] = known.try_emplace({cell, side, k}, 0);
-    const double thickness = std::clamp(k / shares, 1e-3, 0.499);  // what a shell may be
+    const double thickness = std::clamp(k / shares, 1e-3, 0.499);  // allowed thickness of a shell
     if (fresh) found->second = geometry::outlet_diameter(geometry::TpmsShell(cell, side, 1, thickness));
     return found->second;
 }
