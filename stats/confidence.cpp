@@ -3,6 +3,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -11,12 +12,20 @@
 namespace grainsweep::stats {
 namespace {
 
-/// Sum of squared deviations from the mean; NaN where any value is.
-double squared_deviations(std::span<const double> values) {
+/// A power of two in which squares of the values neither overflow nor vanish; 1 where they do neither.
+double unit_of(std::span<const double> values) {
+    double largest = 0;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    const bool sound = largest == 0 || !std::isfinite(largest) || (largest > 1e-140 && largest < 1e150);
+    return sound ? 1 : std::exp2(std::ilogb(largest));
+}
+
+/// Sum of squared deviations from the mean, in squares of the unit; NaN where any value is.
+double squared_deviations(std::span<const double> values, double unit) {
     double mean = 0;
-    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (const double value : values) mean += value / unit / static_cast<double>(values.size());
     double sum = 0;
-    for (const double value : values) sum += (value - mean) * (value - mean);
+    for (const double value : values) sum += (value / unit - mean) * (value / unit - mean);
     return sum;
 }
 
@@ -46,7 +55,9 @@ double normal_cdf(double quantile) {
 double student_half_width(std::span<const double> values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(values.size());
-    return student_factor(std::ssize(values) - 1) * std::sqrt(squared_deviations(values) / (n * (n - 1)));
+    const double unit = unit_of(values);
+    return unit *
+           (student_factor(std::ssize(values) - 1) * std::sqrt(squared_deviations(values, unit) / (n * (n - 1))));
 }
 
 double largest_unseen_share(std::int64_t count) {
@@ -56,7 +67,9 @@ double largest_unseen_share(std::int64_t count) {
 double jackknife_half_width(std::span<const double> leave_one_out) {
     if (leave_one_out.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(leave_one_out.size());
-    return student_factor(std::ssize(leave_one_out) - 1) * std::sqrt((n - 1) / n * squared_deviations(leave_one_out));
+    const double unit = unit_of(leave_one_out);
+    return unit * (student_factor(std::ssize(leave_one_out) - 1) *
+                   std::sqrt((n - 1) / n * squared_deviations(leave_one_out, unit)));
 }
 
 }  // namespace grainsweep::stats

@@ -209,8 +209,8 @@ void Convergence::find_errors(Checkpoint& now) {
         const auto parts = stretches_.leave_one_out();
         summaries.assign(parts.begin(), parts.end());
     }
-    // Of fewer values the spread and the shape are all but given by their number (the kurtosis of two is 1), and say
-    // nothing of an error.
+    // With fewer values, spread and shape depend almost only on their number (the kurtosis of two values is 1), and
+    // give no error.
     const bool too_few =
         !sequences_.empty() && std::ranges::any_of(summaries, [](const Summary& x) { return x.count < fewest_values; });
     std::vector<double> repetitions(summaries.size());

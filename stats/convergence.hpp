@@ -78,8 +78,8 @@ struct Checkpoint {
     bool passes = false;                 ///< the gates are below the tolerance at this check
     bool converged = false;              ///< passes, and for `replicates` also at the check before
     std::optional<Statistic> held_back;  ///< if the check does not pass: the gate that decides
-    /// Points at which it will probably converge, from the observed decay of the measures; empty if a gate is
-    /// undefined.
+    /// Number of points at which the campaign will probably converge, from the observed decay of the measures; empty if
+    /// a gate is undefined.
     std::optional<std::int64_t> points_needed;
     /// Rule `assisted`: why a model was refused, withdrawn or not used; else empty.
     std::string remark;

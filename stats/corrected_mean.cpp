@@ -17,13 +17,13 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array predictor_words = {"none", "difference", "slope", "factors", "model"};
+constexpr std::array predictor_words = {"none", "difference", "slope", "factors", "squares", "model"};
 
-/// The points with a cheap value, those with both first in `pairs`.
+/// Points with a cheap value. `pairs`: rows of the points that have an expensive value, too.
 struct Sample {
     std::size_t sequences = 1, dimensions = 0;
     std::vector<std::size_t> sequence;  ///< of each row
-    Eigen::VectorXd cheap, expensive;   ///< NaN where there is no pair
+    Eigen::VectorXd cheap, expensive;   ///< NaN: no pair
     Eigen::MatrixXd factors;
     std::vector<Eigen::Index> pairs;
 
@@ -53,19 +53,18 @@ Sample sample_of(const PairedValues& values) {
     return sample;
 }
 
-/// g at every row, fitted without the sequence of the row.
+/// Values of g at every row, fitted without the sequence of the row.
 struct PairPrediction {
     PairPredictor by = PairPredictor::none;
     Eigen::VectorXd g;
     Eigen::Index coefficients = 0;
 };
 
-/// 1, then the cheap value, then the factors.
+/// Returns the first `count` columns of: 1, the cheap value, the factors, their squares.
 Eigen::MatrixXd terms_of(const Sample& sample, Eigen::Index count) {
-    Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(sample.size(), count);
-    if (count > 1) terms.col(1) = sample.cheap;
-    if (count > 2) terms.rightCols(count - 2) = sample.factors;
-    return terms;
+    Eigen::MatrixXd terms(sample.size(), 2 + 2 * sample.factors.cols());
+    terms << Eigen::VectorXd::Ones(sample.size()), sample.cheap, sample.factors, sample.factors.cwiseAbs2();
+    return terms.leftCols(count);
 }
 
 PairPrediction regression(const Sample& sample, PairPredictor by, Eigen::Index count) {
@@ -82,7 +81,8 @@ PairPrediction regression(const Sample& sample, PairPredictor by, Eigen::Index c
     return found;
 }
 
-/// The sequences of one parity, by a model with hyperparameters of the others.
+/// Predicts the sequences of one parity by a model whose hyperparameters are fitted to the other sequences. Returns
+/// false if no model can be fitted.
 bool add_model(const Sample& sample, const Eigen::VectorXd& z, std::size_t parity, Eigen::VectorXd& model_of_z) {
     constexpr std::size_t starts = 2, most = 200;
     std::vector<Eigen::Index> teachers;
@@ -118,7 +118,7 @@ std::optional<PairPrediction> model_of_difference(const Sample& sample) {
     return found;
 }
 
-/// t sd/sqrt(n) of residuals whose trend had so many coefficients.
+/// Returns t sd/sqrt(n) of the residuals from a trend with `coefficients` coefficients.
 double corrected_half_width(const Eigen::VectorXd& residuals, Eigen::Index coefficients) {
     const auto n = static_cast<double>(residuals.size());
     const double freedom = n - static_cast<double>(std::max<Eigen::Index>(coefficients, 1));
@@ -139,6 +139,7 @@ std::vector<PairPrediction> predictions_of(const Sample& sample) {
     if (pairs >= pairs_each * 2) all.push_back(regression(sample, PairPredictor::slope, 2));
     if (width == 0) return all;
     if (pairs >= pairs_each * (2 + width)) all.push_back(regression(sample, PairPredictor::factors, 2 + width));
+    if (pairs >= pairs_each * (2 + 2 * width)) all.push_back(regression(sample, PairPredictor::squares, 2 + 2 * width));
     if (pairs >= model_from && pairs <= model_to)
         if (auto model = model_of_difference(sample)) all.push_back(*std::move(model));
     return all;
@@ -152,7 +153,7 @@ PairPrediction best_prediction(const Sample& sample) {
     });
 }
 
-/// Means of the sequences over some rows.
+/// Returns the mean of `of` in each sequence, from the given rows.
 std::vector<double> corrected_by_sequence(const Sample& sample, std::span<const Eigen::Index> rows,
                                           const Eigen::VectorXd& of) {
     std::vector<double> sums(sample.sequences, 0), counts(sample.sequences, 0);
@@ -164,21 +165,21 @@ std::vector<double> corrected_by_sequence(const Sample& sample, std::span<const 
     return sums;
 }
 
-/// Undefined where all repetitions are equal: then their scatter is unknown.
+/// Returns Student's half-width; undefined if all repetitions are equal, because their scatter is then unknown.
 double over_sequences(std::span<const double> repetitions) {
     const double half_width = student_half_width(repetitions);
     return half_width > 0 ? half_width : not_known;
 }
 
-/// Of two estimates of one half-width: the larger one while pairs are few, then the root of the mean of the squares
-/// (as in stats/assisted_moments.hpp).
+/// Combines two estimates of a half-width: the larger one if there are few pairs, else the root mean square (as in
+/// stats/assisted_moments.hpp).
 double both(double a, double b, std::ptrdiff_t pairs) {
     constexpr std::ptrdiff_t fewest_averaged = 200;
     if (std::isnan(a) || std::isnan(b)) return not_known;
     return pairs < fewest_averaged ? std::max(a, b) : std::hypot(a, b) / std::sqrt(2.0);
 }
 
-/// What a linear trend over the factors leaves of g, as a half-width of its mean.
+/// Returns the half-width of the mean of g from the residuals of a linear trend over the factors.
 double corrected_scatter(const Sample& sample, const Eigen::VectorXd& g) {
     const auto width = static_cast<Eigen::Index>(sample.dimensions);
     Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(sample.size(), 1 + width);

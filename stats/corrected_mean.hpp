@@ -2,14 +2,15 @@
 //
 //   T = S + D,   S = mean over all points of g(x, c),   D = mean over the pairs of e - g(x, c)
 //
-// with the cheap value c and the expensive value e at the point x. T has no bias, whatever the predictor g is: g is
-// fitted without the sequence that it is applied to (cross-fitting as in stats/assisted_moments.hpp). Predictors:
+// with the cheap value c and the expensive value e at the point x. T has no bias for any predictor g, because g is
+// fitted without the sequence that it predicts (cross-fitting as in stats/assisted_moments.hpp). Predictors:
 //   difference  g = c                        two-level Monte Carlo (Giles 2015, Acta Numerica 24, 259)
 //   slope       g = b0 + b c                 control variate (Lavenberg & Welch 1981, Management Science 27, 322)
 //   factors     g = b0 + b c + sum_j b_j x_j regression, from four pairs a coefficient on
+//   squares     the same + sum_j a_j x_j^2
 //   model       g = c + GP(x)                the response model of the difference, from 24 to 500 pairs
-// The one with the least rms residual of left-out sequences, times its Student factor, is taken. Where runs scatter by
-// themselves b tends to 0 and T to the mean of the expensive values alone.
+// The predictor with the smallest rms residual on left-out sequences, times its Student factor, is used. If single runs
+// scatter strongly, b tends to 0 and T to the mean of the expensive values alone.
 //
 // 95 % half-widths:
 //   statistics  of S: Student's t over the R sequences, which know that the points are spread evenly
@@ -28,12 +29,12 @@
 
 namespace grainsweep::stats {
 
-enum class PairPredictor { none, difference, slope, factors, model };
+enum class PairPredictor { none, difference, slope, factors, squares, model };
 
 [[nodiscard]] std::string_view to_string(PairPredictor predictor);
 
-/// Values by point, NaN where there is none. Point p belongs to sequence p mod `sequences`. `expensive` is a beginning;
-/// empty: the cheap response is the one wanted. `points`: factors of each point, 0 to 1; empty: unknown.
+/// Values by point; NaN: no value. Point p belongs to sequence p mod `sequences`. `expensive` contains the first points
+/// only; empty: T is the mean of the cheap response. `points`: factors of each point, 0 to 1; empty: unknown.
 struct PairedValues {
     std::span<const double> cheap, expensive;
     std::size_t sequences = 8;
@@ -45,7 +46,8 @@ struct CorrectedMean {
     double numerics = std::numeric_limits<double>::quiet_NaN();    ///< 0 without `expensive`
     double statistics = std::numeric_limits<double>::quiet_NaN();  ///< NaN: fewer than two sequences, or equal ones
     double together = std::numeric_limits<double>::quiet_NaN();
-    /// Of S as if the trend over the factors were integrated without error: what many evenly spread points come to.
+    /// Half-width of S without the linear trend over the factors, as if the points integrated the trend exactly; many
+    /// evenly spread points approach this.
     double scatter = std::numeric_limits<double>::quiet_NaN();
     PairPredictor by = PairPredictor::none;
 };

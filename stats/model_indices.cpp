@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t scramblings = 8, points_each = 1024, base_points = scramblings * points_each, stretches = 8;
 
-/// A seed of the responses: other campaigns are integrated over other points, so that no one error of integration is in
-/// the indices of all of them.
+/// Seed from the responses: each campaign is integrated over other points, so that indices of different campaigns do
+/// not share an error of integration.
 std::uint64_t seed_of(const Eigen::VectorXd& values) {
     std::uint64_t seed = 0x696e6469636573;
     for (const double value : values) seed = splitmix64(seed ^ std::bit_cast<std::uint64_t>(value));

@@ -6,8 +6,8 @@
 //   V (T_j-S_j) =  E[(f(A_j) - f(A) + f(B_j) - f(B))^2]/4                               interactions; T_j: total
 //   V S_jk      =  E[(f(A_jk) - f(A_j) - f(A_k) + f(A)) (f(B_jk) - f(B_j) - f(B_k) + f(B))]/4   of two factors
 //
-// For all noise factors N together, in the whole box, and with a control factor in one eighth of its range (or at one
-// of its levels), the variance from noise if the factor is set there:
+// The variance from all noise factors N together is computed for the whole box, and with a control factor set in one
+// eighth of its range, or at one of its levels:
 //
 //   V T_N       =  E[(f(A_N) - f(A))^2]/2
 //

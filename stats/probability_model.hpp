@@ -1,5 +1,5 @@
-// Model of a probability as a function of the factors, fitted to cases with outcome 0 or 1: whether a case has an
-// answer, whether an observable is defined, or an observable such as `jammed`.
+// Model of a probability as a function of the factors, fitted to cases with outcome 0 or 1. The outcome is, for
+// example, whether a case has an answer, whether an observable is defined, or an observable such as `jammed`.
 //
 //   P(1 at x) = Phi(f(x)),   f a Gaussian process of constant mean, Matern 5/2, one length per feature
 //

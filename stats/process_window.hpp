@@ -14,8 +14,8 @@
 //
 //   A(x) = P(x) [ (m - m*) Phi(u) + s phi(u) ] (1 - g/sqrt(s^2 + g^2)),   u = (m - m*)/s
 //
-// m, s, g: mean of the objective (maximised), its error, and the scatter of one run. m*: mean at the effective best,
-// the setting with the largest m - s among the settings where the condition holds with P > 1/2.
+// m, s, g: mean of the objective (maximised), its error, and the scatter of one run. m*: mean at the effective best.
+// This is the setting with the largest m - s among the settings where the condition holds with P > 1/2.
 #pragma once
 
 #include "stats/response_model.hpp"

@@ -3,6 +3,7 @@
 #include "stats/confidence.hpp"
 #include "stats/response/fit.hpp"
 #include "stats/response/state.hpp"
+#include "stats/spread.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,8 @@ std::optional<Refusal> reason_to_refuse(Rows points, std::span<const double> val
     if (n < least)
         return Refusal{"no response model: too few cases, " + std::to_string(n) + " with a value where " +
                        std::to_string(points.dimensions) + " features need at least " + std::to_string(least)};
+    if (const auto reason = reason_against_powers(values, 2); !reason.empty())
+        return Refusal{"no response model: " + reason};
     std::map<double, std::size_t> counts;
     for (const std::size_t i : used) ++counts[values[i]];
     const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
@@ -113,8 +116,8 @@ std::optional<response::Hyperparameters> search(const Eigen::MatrixXd& x, const 
                                           {options.starts, options.cases_in_fit, options.map});
 }
 
-/// Leave-one-out error, in the unit of the response over its sd: of a response with a long tail few cases decide it, so
-/// that more of them are asked than decide the hyperparameters.
+/// Returns the leave-one-out error divided by the sd of the response. For a response with a long tail few cases decide
+/// the error, so it uses more cases than the search for the hyperparameters.
 double error_left_out(const response::Hyperparameters& h, const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                       bool logarithm) {
     ResponseModel::State state;

@@ -7,7 +7,8 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr double margin = 0.9;  // of the tolerance: the half-widths of the next check scatter, too
+constexpr double margin = 0.9;  // share of the tolerance that is aimed at, because the half-widths of the next check
+                                // scatter
 constexpr double no_moment = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> squared_from(std::span<const double> values, double centre) {
@@ -27,12 +28,12 @@ struct Sizes {
     double points = 0, pairs = 0;
 };
 
-/// Half-width^2 n of both parts.
+/// Half-width^2 n of the two parts of the error.
 struct Variances {
     double points = 0, pairs = 0;
 };
 
-/// Sizes at which statistics^2 + numerics^2 is `target`^2 at least cost, with no more points than there are.
+/// Returns the cheapest sizes at which statistics^2 + numerics^2 = `target`^2, within the points of the design.
 Sizes optimal(const Variances& v, double target, const TwoLevelRule& rule) {
     const double squared = target * target, root = std::sqrt(rule.cost_ratio);
     const double mixed = std::sqrt(v.points * v.pairs);
@@ -44,7 +45,7 @@ Sizes optimal(const Variances& v, double target, const TwoLevelRule& rule) {
     return {std::max(sizes.points, sizes.pairs), sizes.pairs};
 }
 
-/// The sizes that all gates need; NaN where one is unknown.
+/// Returns the sizes that are enough for all gates; NaN if they are unknown for a gate.
 Sizes needed(const TwoLevelRule& rule, const TwoLevelCheck& check) {
     Sizes sizes;
     for (const auto& moment : check.moments) {
@@ -77,21 +78,30 @@ void propose(const TwoLevelRule& rule, std::int64_t sequences, TwoLevelCheck& ch
     check.next_pairs = check.pairs == 0 ? 0 : whole_sequences(next.pairs, sequences, check.next_points);
 }
 
-double predicted_pairs_cost(const TwoLevelRule& rule, const Pilot& pilot, const PilotLevel& level) {
-    const auto n = std::ssize(level.values), sequences = static_cast<std::int64_t>(pilot.sequences);
-    auto here = rule;
-    here.cost_ratio = pilot.levels.back().cost / level.cost;
-    TwoLevelCheck check{.points = n, .pairs = n, .moments = {}};
+/// Returns the cost of the values and pairs that are still to run, in units of a cheap value; infinite if it is
+/// unknown.
+double further_cost_of_pairs(const TwoLevelRule& rule, const PairedValues& values) {
+    TwoLevelCheck check{.points = std::ssize(values.cheap), .pairs = std::ssize(values.expensive), .moments = {}};
     for (const auto gate : rule.gates) {
-        auto& moment = check.moments.emplace_back(
-            two_level_moment(gate, {level.values, pilot.levels.back().values, pilot.sequences, pilot.points}));
+        auto& moment = check.moments.emplace_back(two_level_moment(gate, values));
         moment.statistics = moment.scatter;
     }
-    const auto first = first_sizes(sequences, true);
-    const auto sizes = needed(here, check);
-    const double pairs = std::max(sizes.pairs, static_cast<double>(first.pairs));
-    const double points = std::max(sizes.points, static_cast<double>(first.points));
-    return (points - static_cast<double>(n)) * level.cost + (pairs - static_cast<double>(n)) * pilot.levels.back().cost;
+    const auto first = first_sizes(static_cast<std::int64_t>(values.sequences), true);
+    const auto sizes = needed(rule, check);
+    if (std::isnan(sizes.points)) return std::numeric_limits<double>::infinity();
+    const auto missing = [](double wanted, std::int64_t least, std::int64_t present) {
+        return std::max({wanted, static_cast<double>(least), static_cast<double>(present)}) -
+               static_cast<double>(present);
+    };
+    return missing(sizes.points, first.points, check.points) +
+           missing(sizes.pairs, first.pairs, check.pairs) * rule.cost_ratio;
+}
+
+/// Returns the further cost of the expensive response alone, in the same unit; infinite if it is unknown.
+double further_cost_alone(const TwoLevelRule& rule, const PairedValues& values) {
+    const auto n = static_cast<double>(values.expensive.size());
+    const double cases = cases_alone(rule, {values.expensive, {}, values.sequences, values.points});
+    return std::isnan(cases) ? std::numeric_limits<double>::infinity() : std::max(0.0, cases - n) * rule.cost_ratio;
 }
 
 }  // namespace
@@ -149,15 +159,21 @@ double cases_alone(const TwoLevelRule& rule, const PairedValues& expensive) {
     return most;
 }
 
+bool alone_costs_less(const TwoLevelRule& rule, const PairedValues& values) {
+    return further_cost_alone(rule, values) < further_cost_of_pairs(rule, values);
+}
+
 std::size_t cheapest_level(const TwoLevelRule& rule, const Pilot& pilot) {
     const auto& measure = pilot.levels.back();
-    const auto n = static_cast<double>(measure.values.size());
     std::size_t best = pilot.levels.size() - 1;
-    double least = (cases_alone(rule, {measure.values, {}, pilot.sequences, pilot.points}) - n) * measure.cost;
-    if (std::isnan(least)) least = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k + 1 < pilot.levels.size(); ++k) {
-        const double cost = predicted_pairs_cost(rule, pilot, pilot.levels[k]);
-        if (!(cost < least)) continue;
+        const auto& level = pilot.levels[k];
+        auto here = rule;
+        here.cost_ratio = measure.cost / level.cost;
+        const PairedValues values{level.values, measure.values, pilot.sequences, pilot.points};
+        const double cost = further_cost_of_pairs(here, values) * level.cost;
+        if (!(cost < least) || !(cost < further_cost_alone(here, values) * level.cost)) continue;
         least = cost;
         best = k;
     }

@@ -3,7 +3,8 @@
 //   mean  T of the values (corrected_mean.hpp)
 //   sd    sqrt(T2), T2 = T of the squares (e - T)^2 and (c - mean c)^2; half-widths divided by 2 sd
 //
-// Undefined is what is unknown: a sequence without a pair, R equal repetitions, or pairs that are all equal.
+// A value is undefined if it is unknown: with a sequence without a pair, with R equal repetitions, or if both values
+// are equal in every pair.
 #pragma once
 
 #include "stats/corrected_mean.hpp"
@@ -24,15 +25,15 @@ struct TwoLevelMoment {
     double scatter = 0;  ///< CorrectedMean::scatter
     PairPredictor by = PairPredictor::none;
 
-    /// One of the half-widths divided by |value|.
+    /// Returns one of the half-widths divided by |value|.
     [[nodiscard]] double relative(double half_width) const;
 };
 
 /// Returns mean or sd of the expensive response. NaN: undefined.
 [[nodiscard]] TwoLevelMoment two_level_moment(Statistic statistic, const PairedValues& values);
 
-/// Points and pairs of the first check: two pairs of each sequence, which the pilot has; eight points, or four where
-/// the expensive response runs alone.
+/// Numbers of points and pairs. At the first check each sequence has two pairs (those of the pilot) and eight points,
+/// or four points if the expensive response runs alone.
 struct TwoLevelSizes {
     std::int64_t points = 0, pairs = 0;
 };
@@ -49,34 +50,40 @@ struct TwoLevelCheck {
     std::int64_t points = 0, pairs = 0;
     std::vector<TwoLevelMoment> moments;  ///< of the gates
     bool passes = false;                  ///< every gate is within the tolerance
-    /// Sizes of the next check; the present ones where the design has no more.
+    /// Sizes of the next check; equal to the present ones if the design has no more points.
     std::int64_t next_points = 0, next_pairs = 0;
 
     [[nodiscard]] bool last() const { return next_points == points && next_pairs == pairs; }
 };
 
-/// Judges a pair of sizes and proposes the next. Where a gate is not within the tolerance, the sizes that would bring
-/// it there at least cost, n2/n1 = sqrt(V2 c1 / (V1 c2)) with V = half-width^2 n, but at most twice the present ones.
-/// Where all are, an eighth more, which may confirm it; no more pairs where half the tolerance holds the numerics.
+/// Judges the present sizes and proposes the next ones. If a gate is not within the tolerance, these are the cheapest
+/// sizes that would be enough: n2/n1 = sqrt(V2 c1 / (V1 c2)) with V = half-width^2 n, but at most twice the present
+/// ones. If all gates are within it, the sizes grow by an eighth to confirm this. The number of pairs then stays the
+/// same if the half-width of the numerics is at most half the tolerance.
 [[nodiscard]] TwoLevelCheck two_level_check(const TwoLevelRule& rule, const PairedValues& values);
 
-/// A setting at the points of a pilot.
+/// Values and cost of one setting at the points of a pilot.
 struct PilotLevel {
     std::span<const double> values;
-    double cost = 0;  ///< of a value
+    double cost = 0;  ///< cost of one value
 };
 struct Pilot {
-    std::vector<PilotLevel> levels;  ///< the last is the measure
+    std::vector<PilotLevel> levels;  ///< the last one is the standard
     std::size_t sequences = 8;
     Rows points = {};  ///< PairedValues::points
 };
-/// Returns the setting whose many values, corrected by pairs with the last, are predicted to meet the tolerance of
-/// every gate at least cost; the last without pairs. V of the cheap values is from what a trend over the factors
-/// leaves, for evenly spread points integrate the trend. What the pilot has run costs nothing more.
+/// Returns the setting that is predicted to meet the tolerance of every gate at least cost, with many values and pairs
+/// with the last setting. Returns the last setting if it alone is cheaper. V of the cheap values is computed from their
+/// scatter about a trend over the factors, because evenly spread points integrate the trend. Runs of the pilot add no
+/// cost.
 [[nodiscard]] std::size_t cheapest_level(const TwoLevelRule& rule, const Pilot& pilot);
 
-/// Returns how many values of the expensive response alone would bring every gate within the tolerance, no fewer than
-/// the first check has.
+/// Returns whether the expensive response alone is predicted to meet the tolerance at less further cost than more
+/// values and pairs. Expensive values of the present pairs count for both.
+[[nodiscard]] bool alone_costs_less(const TwoLevelRule& rule, const PairedValues& values);
+
+/// Returns the number of values of the expensive response alone that would bring every gate within the tolerance; at
+/// least the number at the first check. NaN: unknown.
 [[nodiscard]] double cases_alone(const TwoLevelRule& rule, const PairedValues& expensive);
 
 }  // namespace grainsweep::stats

@@ -250,9 +250,9 @@ SplitParts parts_of(const Sums& sums, const Columns& columns, bool all_points) {
     return parts;
 }
 
-/// Half-widths of a lattice's shares for normal scatter: the sums of squares of main effects, of the other means and of
-/// the replicates are independent multiples of (noncentral) chi-squared variables, whose variance is 2 (freedom) +
-/// 4 (noncentrality); to first order, a share is linear in them.
+/// Computes half-widths of a lattice's shares for normal scatter. The sums of squares of main effects, of the other
+/// means and of the replicates are independent multiples of (noncentral) chi-squared variables. Their variance is 2
+/// (freedom) + 4 (noncentrality). To first order, a share is linear in the sums.
 void normal_errors(VarianceSplit& split, const SplitParts& parts, const Sums& sums) {
     if (!(sums.error_freedom > 0)) return;
     const double n = sums.points, p = parts.coefficients;

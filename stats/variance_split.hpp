@@ -15,9 +15,10 @@
 // factors (Legendre polynomials up to a total degree of 3 to 10, limited by three points per coefficient). It gives the
 // interactions of two factors. The remainder is scatter, higher interactions and the error of the products.
 //
-// Half-widths of a sample, in quadrature: jackknife, and the change of a share if the models have half of the pieces
-// and two degrees less, as an estimate for finer models. Shares with interactions get share times p/P in addition,
-// because on points more even than random ones the coefficients take less than p/P of RSS.
+// Half-widths of a sample are the sum in quadrature of two parts: the jackknife, and the change of a share if the
+// models have half of the pieces and two degrees less, an estimate of the change by finer models. Shares with
+// interactions get share times p/P in addition, because on points more even than random ones the coefficients take less
+// than p/P of RSS.
 #pragma once
 
 #include "stats/sensitivity.hpp"

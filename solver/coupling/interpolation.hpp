@@ -11,11 +11,12 @@
 // beside a wall, the factor along the own axis is linear and the factors across are constant. The interpolation is of
 // second order; the spline smooths by h^2/8 u''.
 //
-// Closer than h/2 to a no-slip wall, trilinear interpolation has the right shear but is not free of divergence;
-// solenoidal interpolation conserves volume but slips (both in closed form in tests/unit/coupling_interpolation.cpp).
-// The difference matters for particles whose centres touch walls. Example: thermovibration run 21 (uniform 40^3,
-// W/Omega = 0.45 h), t = 0.32, four clouds with scatter 0.006. K on 10^3 cells is 0.249 trilinear and 0.264 solenoidal.
-// A normal velocity quadratic in the wall's cell, with the right shear and volume within h/2, gives 0.259 (six clouds).
+// Closer than h/2 to a no-slip wall, trilinear interpolation has the right shear but is not free of divergence.
+// Solenoidal interpolation conserves volume but slips. Both are in closed form in
+// tests/unit/coupling_interpolation.cpp. The difference matters for particles whose centres touch walls. Example:
+// thermovibration run 21 (uniform 40^3, W/Omega = 0.45 h), t = 0.32, four clouds with scatter 0.006. K on 10^3 cells is
+// 0.249 trilinear and 0.264 solenoidal. A normal velocity quadratic in the wall's cell, with the right shear and volume
+// within h/2, gives 0.259 (six clouds).
 #pragma once
 
 #include "solver/coupling/spreading.hpp"

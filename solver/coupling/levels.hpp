@@ -7,7 +7,7 @@
 // hydrostatic part. With F the sum of drag, added mass and pressure-gradient force, the particle's equation of motion
 // gives F = v_p [xi dV/dt - (xi - 1) gamma s e], so
 //     s_m = -sum k v_p [ xi dV_p/dt - (xi - 1) gamma s(t) e ]
-// with k the kernel of spreading.hpp (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756). For a
+// with the kernel k of spreading.hpp. (Point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756.) For a
 // Boussinesq fluid it includes the vibrational buoyancy of the cloud, which dominates. This form has no stiffness,
 // unlike the drag law: the large term is exact, and dV_p/dt comes from the step before. The dV_p/dt term is a share xi
 // phi_p of the whole and lags by a step to a step and a half. So the error of the force is of first order in the step,

@@ -13,9 +13,9 @@
 
 namespace grainsweep::coupling {
 
-/// Advances the particles in `order`. locate(p) returns the Stencil in the middle of the step, gather(p, stencil) the
-/// Surroundings; moved(p, velocity before) is called after the step of particle p. vibration: s(t) in the middle of the
-/// step. Threads share the blocks, so these functions may access only data of particle p.
+/// Advances the particles in `order`. locate(p) returns the Stencil in the middle of the step, and gather(p, stencil)
+/// the Surroundings. moved(p, velocity before) is called after the step of particle p. vibration: s(t) in the middle of
+/// the step. Threads share the blocks, so these functions may access only data of particle p.
 template <class Drag, class Order, class Locate, class Gather, class Moved>
 void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Order& order, Locate locate, Gather gather,
            Moved moved, const Slabs& slabs = {}) {

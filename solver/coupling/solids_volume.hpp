@@ -31,8 +31,8 @@ public:
     void start(std::span<const Vec3> positions);
     /// Computes phi_p of the same particles at `positions`; carry() uses the last call.
     void place(std::span<const Vec3> positions);
-    /// Computes j of the particles for their motion in dt from the positions of start() or of the last carry() to the
-    /// present ones (the shortest way along periodic axes).
+    /// Computes j of the particles for their motion in dt: from the positions at start(), or at the last carry(), to
+    /// the present ones. Along periodic axes the way is the shortest one.
     void carry(double dt);
     /// Computes the mean of a particle property in each cell, weighted like phi_p: sum v_p w q / sum v_p w; 0 without
     /// particles. Ghosts have zero gradient.

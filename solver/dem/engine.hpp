@@ -184,9 +184,9 @@ public:
     /// only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
     /// Lists the same contacts with the forces of the last step, which use the velocities of the half step before. The
-    /// powers times the time step are the loss of the step: kinetic energy at half steps changes by this loss, the work
-    /// of the walls and the work of body forces. This is exact to rounding in double precision, and to 3e-3 in mixed
-    /// precision, which decides anew whether springs yield. Valid only after a step.
+    /// powers times the time step are the loss of the step. The kinetic energy at half steps changes by this loss, the
+    /// work of the walls and the work of body forces. This is exact to rounding in double precision, and to 3e-3 in
+    /// mixed precision, which decides anew whether springs yield. Valid only after a step.
     virtual void step_contacts(std::vector<ContactForce>& into) const = 0;
     /// Returns the wall with this number, with travel and speed of its free motions.
     [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;

@@ -21,8 +21,8 @@ struct Row {
     double viscosity;
 };
 
-// Momentum flux of the clear fluid less that of the shared one, through the low side of the control volume of
-// component D at i; s: stride along D, e: stride along E, gap: 1/distance of values along E, own: the same along D.
+// Returns the momentum flux of the clear fluid minus that of the shared one, through the low side of the control volume
+// of component D at i. s, e: strides along D and E; gap, own: 1/distance of values along E and D.
 template <int D, int E>
 [[gnu::always_inline]] inline double flux_difference(const Row& r, std::ptrdiff_t i, std::ptrdiff_t s, std::ptrdiff_t e,
                                                      double lower, double upper, double gap, double own) {
@@ -158,8 +158,8 @@ void SharedSpace::prepare(int d, FluxRows& rows) const {
     rows.z_low.resize(length * (at(cells_[1]) + 2));  // a plane of rows
 }
 
-// Each flux is found once: a row's high side along y and z is the next row's low side; of a
-// slab of planes the first low sides along z are found as the high sides of the slab below are.
+// Each flux is computed once: the high side of a row along y and z is the low side of the next row. Only at the first
+// plane of a slab are the low sides along z computed again.
 void SharedSpace::add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration,
                                 const Planes& planes, FluxRows& rows_of_slab) const {
     const auto m = at(d);
@@ -205,9 +205,9 @@ void SharedSpace::add_excess_of(int d, const FaceVectors& mixture, const Field& 
             find(along_y, j + 1, k, cells_[0], y_high.data());
             find(along_z, j, k + 1, cells_[0], z_high.data());
             double* const below = &z_low[at(j) * length];
-            balance_row(acceleration.data() + shape.index(0, j, k), x_low.data(), w.inverse_width[0].data(), y_low.data(),
-                        y_high.data(), w.inverse_width[1][at(j)], below, z_high.data(), w.inverse_width[2][at(k)],
-                        w.first[0], cells_[0]);
+            balance_row(acceleration.data() + shape.index(0, j, k), x_low.data(), w.inverse_width[0].data(),
+                        y_low.data(), y_high.data(), w.inverse_width[1][at(j)], below, z_high.data(),
+                        w.inverse_width[2][at(k)], w.first[0], cells_[0]);
             std::swap(y_low, y_high);
             std::copy(z_high.begin(), z_high.end(), below);
         }

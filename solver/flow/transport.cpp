@@ -43,8 +43,8 @@ struct MomentumRow {
     double viscosity;
 };
 
-// Everything a row's loop needs by value, and its outputs as restricted parameters: reread through a reference, a
-// weight would have to be loaded again after every store and the loop could not be vectorised.
+// All inputs of a row's loop by value, and its outputs as restricted parameters. Through a reference, a weight would be
+// loaded again after every store, and the loop could not be vectorised.
 struct Across {
     std::ptrdiff_t step;
     double inverse_width, low, high;

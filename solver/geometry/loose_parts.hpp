@@ -29,8 +29,8 @@ struct LooseTriangles {
     double beyond = 0;  ///< distance beyond all other parts, m
 };
 
-/// Returns the first of the loose parts that extend beyond all other parts at an end, if such parts together have at
-/// most `share` of the area. width: axis along which profiles are open at their ends and lips run.
+/// Finds the loose parts that extend beyond all other parts at an end. Returns the first of them if together they have
+/// at most `share` of the area. width: axis along which profiles are open at their ends and lips run.
 [[nodiscard]] std::optional<LooseTriangles> loose_triangles(const Mesh& mesh, std::size_t width,
                                                             std::span<const End> ends, double share);
 

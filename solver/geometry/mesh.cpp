@@ -41,8 +41,9 @@ std::optional<std::size_t> only_face(std::span<const Triangle> triangles, double
     return face;
 }
 
-/// The one of some triangles that a centre is above, where each other one within the reach is nearest on a side that
-/// lies on that one: the only contact by steps 2 and 3, told by planes. Nothing: look closely.
+/// Returns the triangle below a centre if the nearest point of every other triangle within the reach lies on a side
+/// shared with it. It is then the only contact, by steps 2 and 3. Uses only planes. Empty: the general search is
+/// needed.
 std::optional<std::uint32_t> face_beside_sides(std::span<const Triangle> triangles, const auto& prisms,
                                                double tolerance, const Vec3& x, double reach,
                                                std::span<const std::uint32_t> of) {
@@ -212,8 +213,8 @@ void Mesh::touching(const Vec3& x, double reach, std::vector<Closest>& into) con
         std::ranges::for_each(found, add);
         return;
     }
-    // The planes are off by rounding, far below the tolerance: what they leave out is farther than the reach, and what
-    // they find within its sides is.
+    // Rounding errors of the planes are far below the tolerance: excluded triangles are farther than the reach, and a
+    // foot found inside the sides is inside.
     const double beyond = (1 + 1e-9) * reach + tolerance();
     std::array<std::uint32_t, 16> few{};
     std::size_t count = 0;

@@ -22,8 +22,8 @@
 // A mesh is immutable; copies share their triangles.
 //
 // Triangles need no connectivity: a point lies on a triangle if it is nearer than `tolerance` to it. So three cases
-// need no special rule: an edge that ends on the side of another triangle (a T-junction), more than two triangles at an
-// edge, and the seam between a mesh and its periodic image.
+// need no special rule: an edge that ends on the side of another triangle (a T-junction), an edge with more than two
+// triangles, and the seam between a mesh and its periodic image.
 #pragma once
 
 #include "solver/geometry/closest.hpp"

@@ -98,8 +98,9 @@ double momentum_along(const Flight& m, const Pose& pose, std::size_t axis) {
     return dot(pose.turn(m.axes[axis]), m.angular_momentum);
 }
 
-/// Turns a body without moments for `span`: free turns about one axis of inertia after the other, which keep the
-/// angular momentum; of second order and reversible (Dullweber, Leimkuhler & McLachlan 1997, doi 10.1063/1.474310).
+/// Rotates a body without moments for `span`, by free rotations about one axis of inertia after the other. It conserves
+/// angular momentum, is of second order, and is reversible (Dullweber, Leimkuhler & McLachlan 1997, doi
+/// 10.1063/1.474310).
 void turn_freely(Flight& m, double span) {
     constexpr std::array<std::size_t, 5> order = {0, 1, 2, 1, 0};
     constexpr std::array<double, 5> shares = {0.5, 0.5, 1, 0.5, 0.5};

@@ -63,7 +63,7 @@ struct Press {
     double mass = 1;                                                  ///< kg
     double fastest = 0;                                               ///< m/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
-    double number = 0;                                                ///< that tells it from others of the body
+    double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< m, m/s
 
     static void fields(auto& m, auto&& visit) {
@@ -80,7 +80,7 @@ struct Drive {
     double inertia = 1;                                               ///< kg m2, about the axis
     double fastest = 0;                                               ///< rad/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
-    double number = 0;                                                ///< that tells it from others of the body
+    double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< rad, rad/s
 
     static void fields(auto& m, auto&& visit) {
@@ -101,7 +101,7 @@ struct Flight {
     double fastest = 0;                                               ///< m/s, of the centre
     double fastest_turn = 0;                                          ///< rad/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
-    double number = 0;                                                ///< that tells it from others of the body
+    double number = 0;                                                ///< unique among free motions of the body
     Vec3 way{}, velocity{};                                           ///< of the centre, m, m/s
     std::array<double, 4> turned{1, 0, 0, 0};                         ///< unit quaternion
     Vec3 angular_momentum{};                                          ///< about the centre, kg m2/s

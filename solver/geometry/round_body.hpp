@@ -1,5 +1,5 @@
-// Closest point of a body of revolution with a straight meridian and two flat ends: the frustum of a cone or a cylinder
-// from outside, or a bore of this shape in a plate.
+// Closest point of a body of revolution with a straight meridian and two flat ends. The body is the frustum of a cone,
+// or a cylinder, touched from outside, or a bore of this shape in a plate.
 //
 // Coordinates: rho, the distance from the axis, and s, the position along it. The solid is { g (rho - r(s)) >= 0, 0 <=
 // s <= length }, g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point x the solid is convex;

@@ -20,8 +20,8 @@ Box box_of(const Triangle& t) {
     return box;
 }
 
-/// Twice the mean distance between the middles of triangles, were they spread over their area evenly: a few triangles
-/// in a cell of a fine surface.
+/// Twice the mean distance between the middles of evenly spread triangles, so that a cell of a fine surface has a few
+/// triangles.
 double natural_edge(std::span<const Triangle> triangles) {
     double area = 0;
     for (const Triangle& t : triangles) area += norm(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0])) / 2;

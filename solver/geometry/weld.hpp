@@ -2,7 +2,7 @@
 //
 // Corners are welded if they are equal, or nearer than weld_tolerance times the extent (the diagonal of the box around
 // all corners). The reason is the rounding in a binary STL file, 6e-8 of a coordinate. Chains of near corners become
-// the first of them in the order of x, y, z, so the result depends neither on the order of the triangles nor on the
+// their first corner in the order of x, y, z. So the result depends neither on the order of the triangles nor on the
 // order of their corners. A triangle with a height below this distance has no area and is removed.
 #pragma once
 

@@ -19,8 +19,8 @@ class Feeder {
 public:
     Feeder(const Spec& spec, std::size_t feed, std::uint64_t seed);
 
-    /// Throws std::invalid_argument with one sentence if its largest particle has no place in the region, because of
-    /// the domain or of walls that do not move in any phase of the feed.
+    /// Throws std::invalid_argument with one sentence if its largest particle has no place in the region. Considered
+    /// are the domain and the walls that never move and are present in all phases of the feed.
     void require_room() const;
     /// Adds `seconds` times its rate to the target mass; negative if a phase ends before its time.
     void owe(double seconds) { owed_ += feed().rate * seconds; }

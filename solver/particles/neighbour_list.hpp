@@ -1,9 +1,9 @@
 // Verlet's half list: for each particle i, in cell order, the partners j > i whose surfaces are nearer than the skin:
 // |x_i - x_j| < R_i + R_j + skin. (Verlet 1967, Phys. Rev. 159, 98)
 //
-// Every contact is in the list as long as no particle has moved farther than skin/2 since it was built, because two
-// surfaces approach by at most the sum of two displacements. An entry has j and its periodic image, 27 + 5 bits; the
-// branch vector is x_i - (x_j + image shift).
+// Every contact is in the list as long as no particle has moved farther than skin/2 since it was built: two surfaces
+// approach by at most the sum of two displacements. An entry has j and its periodic image, 27 + 5 bits; the branch
+// vector is x_i - (x_j + image shift).
 #pragma once
 
 #include "solver/particles/cells.hpp"

@@ -42,8 +42,8 @@ std::optional<std::array<double, 3>> three_numbers(std::string_view line) {
     return x;
 }
 
-/// Equal spheres fill at most 0.7405 of space (Hales 2005); refuses more of them than the cube about their centres has
-/// room for, before their pairs are listed.
+/// Refuses more spheres than fit into the cube around their centres, before pairs are listed: equal spheres fill at
+/// most 0.7405 of space (Hales 2005).
 void require_room(std::span<const std::array<double, 3>> positions) {
     constexpr std::size_t few = 1000;  // the first pair that overlaps is named
     if (positions.size() <= few) return;

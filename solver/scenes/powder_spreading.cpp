@@ -1,9 +1,9 @@
-// Powder spreading: a blade, a roller or another tool sweeps a settled layer of powder over a base or over the layers
-// below, and the flux under it and the layer behind it are measured.
+// Powder spreading: a blade, a roller or another tool spreads a settled layer of powder over a base or over earlier
+// layers. The flux under the tool and the layer behind it are measured.
 //
 // Scene, observables and default values after Wu (2020), "Parametric analysis of particle spreading with discrete
-// element method", MSc thesis, Embry-Riddle Aeronautical University; the layer is flat and gated instead of a free
-// pile, which runs out before the blade arrives. spreading/study.hpp has the geometry, solver/dem the mechanics.
+// element method", MSc thesis, Embry-Riddle Aeronautical University. The layer is flat between gates, because a free
+// pile would spread before the blade arrives. Geometry: spreading/study.hpp; mechanics: solver/dem.
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/kit/pace.hpp"
@@ -63,14 +63,16 @@ SceneInfo powder_spreading_scene() {
     const auto numerics = [](double fraction, double width, const char* precision) {
         return Inputs{{"time_step_fraction", fraction}, {"width", width}, {"precision", std::string(precision)}};
     };
-    // Survey: moments of the mean response over a whole range, from cases of a sixth of the cost whose scatter is
-    // larger and whose bias is below what 2,400 cases show: tests/bench/accuracy_levels, figures in docs/cost.md.
+    // Survey: for moments of the mean response over a whole range. A case costs a sixth and scatters more; its bias is
+    // too small to be seen in 2,400 cases (tests/bench/accuracy_levels, numbers in docs/cost.md).
     Inputs survey = numerics(0.4, 5, "mixed");
     survey["settle_time"] = 0.08;
     info.accuracy = {{"survey", survey},
                      {"fast", numerics(0.3, 5, "mixed")},
                      {"balanced", numerics(0.2, 10, "mixed")},
+                     {"fine", numerics(0.05, 20, "mixed")},
                      {"reference", numerics(0.05, 20, "double")}};
+    info.stiffness = "youngs_modulus";
     info.parameters = spreading::question::parameters();
     info.observables = spreading::record::observables();
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,

@@ -94,8 +94,10 @@ struct SceneInfo {
     int revision = 1;        ///< part of every case id; raised whenever results or defaults change on purpose
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
-    /// Named sets of numerical inputs: "fast", "balanced", "reference". Empty: the scene offers none.
+    /// Named sets of numerical inputs: "fast", "balanced", "fine" (`reference` in mixed precision), "reference". Empty:
+    /// the scene offers none.
     std::map<std::string, Inputs, std::less<>> accuracy;
+    std::string stiffness = {};  ///< parameter that the stiffness of contacts is proportional to; empty: none
 
     /// Function that make() calls.
     std::function<std::unique_ptr<Scene>(const Inputs&, std::uint64_t seed, Artefacts&, const Files&)> maker;

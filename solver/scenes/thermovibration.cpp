@@ -188,10 +188,10 @@ std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts&
 // Of fields with their scratch, and of particles with their lists.
 constexpr double bytes_per_cell = 600, bytes_per_particle = 800;
 
-// Measured in campaigns at 16^3 and 28^3 with 500 and 3150 particles, one case on each core, with AVX-512. At 40^3: 2.9
-// ms per fluid step, half of that on half the grid; 0.64 ms per sweep of the particles; 1.3 ms to spread their force on
-// the fluid; for their volume and contacts 1.2 ms more per 3150 particles, and 7 ms (ddpm) or 4 ms (cfd_dem) on the
-// grid.
+// Measured in campaigns at 16^3 and 28^3 with 500 and 3150 particles, one case on each core, with AVX-512. At 40^3 a
+// fluid step takes 2.9 ms, on half the grid half of this. A step of the particles takes 0.64 ms, and spreading their
+// force on the fluid 1.3 ms. Their volume and contacts take 1.2 ms more per 3150 particles, and 7 ms (ddpm) or 4 ms
+// (cfd_dem) on the grid.
 double seconds_of_vibration(const Question& question) {
     const double size = static_cast<double>(question.cells) / 40;
     const double cube = size * size * size * (0.7 + 0.3 * size);

@@ -5,13 +5,12 @@
 // the kept side start at rest, the rest is deleted (geometry/tpms.hpp). At t = 0 gravity acts. All six faces are
 // open; a sphere whose centre is more than two diameters outside the cell is gone. The answer is the retention:
 // mobile centres in the cell over those at the start. Times are in t* = sqrt(2 L/g), speeds in sqrt(2 g L).
-// The frame is that of the cell, also of a vibrating one: places and speeds are those in the cell, in which the powder
-// starts at rest.
+// All positions and speeds are in the frame of the cell, also if it vibrates; in this frame the powder starts at rest.
 //
-// Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
-// a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
-// when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
-// one sphere in a thousand of those left (or one) moved at a time, and the count changed by no more. Those few may
+// Unnecessary work is avoided. Frozen spheres that no mobile one can touch, while overlaps stay below a tenth of a
+// diameter, are removed (particles/reach.hpp); a larger overlap at any step is reported as unstable. A case ends when
+// no mobile sphere is left and, with the rule "quiet", when the powder has come to rest. Rest means that for 1.5 t* at
+// most one sphere in a thousand of the rest (or one) moved at a time, and the count changed by no more. Those few may
 // still leave; beyond them the rule presumes that what rests stays at rest.
 #include "solver/geometry/level_surface.hpp"
 #include "solver/geometry/tpms_outlet.hpp"
@@ -337,11 +336,13 @@ SceneInfo tpms_discharge_scene() {
     info.revision = 4;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_record::observables();
-    // Twice the study's step, for 0.6 of the cost: retention at 1 t* differs by -0.1 +- 0.07 %, of a jammed cell at 3
-    // t* by -0.5 +- 1.4 %; but that comes to rest later, and at 3 us it never does (solver/dem/README.md).
+    // Twice the study's step has 0.6 of the cost. It changes the retention at 1 t* by -0.1 +- 0.07 %, and the retention
+    // of a jammed cell at 3 t* by -0.5 +- 1.4 %. But such a cell comes to rest later, and with a step of 3 us never
+    // (solver/dem/README.md).
     info.accuracy["fast"] = {{"precision", std::string("mixed")}, {"time_step", 2e-6}};
     info.accuracy["balanced"] = {{"precision", std::string("mixed")}};
     info.accuracy["reference"] = {{"precision", std::string("double")}};
+    info.stiffness = "youngs_modulus";
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
                     const Files& files) -> std::unique_ptr<Scene> {
         const TpmsQuestion question(inputs, seed);

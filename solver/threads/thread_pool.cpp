@@ -11,8 +11,8 @@ namespace grainsweep {
 
 namespace {
 
-// Looks at a condition while awake: half a millisecond or more, longer than the serial part of most steps takes. Giving
-// the core away instead would cost the rest of a time slice wherever something else wants it; a thread that slept is
+// Looks at a condition while awake: half a millisecond or more, longer than the serial part of most steps takes.
+// Yielding the core instead would cost the rest of a time slice if another program uses it; a thread that slept is
 // resumed at once.
 constexpr int patience = 20000;
 constexpr int moment = 100;  ///< looks; a few microseconds
@@ -60,8 +60,8 @@ void ThreadPool::publish() noexcept {
     wake();
 }
 
-/// Each begins with its own part, and looks for others' only where the round does not end soon: to look costs every
-/// thread a message from each of the others.
+/// Each thread begins with its own part, and searches for other parts only if the round does not end soon, because a
+/// search costs messages between all cores.
 void ThreadPool::work_on_parts(int first, unsigned round) noexcept {
     const auto over = [&] { return first == 0 ? all_ended() : round_.load() != round; };
     work_on(first, first, round);
@@ -69,8 +69,8 @@ void ThreadPool::work_on_parts(int first, unsigned round) noexcept {
     for (int k = 1; k < size_ && !over(); ++k) work_on((first + k) % size_, first, round);
 }
 
-/// A part is begun by the thread that moves it from the round before to this one. All parts of a round are begun
-/// before the round ends: a thread that comes too late, with the number of an old round, finds none.
+/// A part is begun by the thread that moves it from the round before to this one. All parts of a round are begun before
+/// the round ends, so a late thread with the number of an old round finds none.
 void ThreadPool::work_on(int part, int thread, unsigned round) noexcept {
     auto& begun = parts_[static_cast<std::size_t>(part)].begun;
     unsigned before = round - 1;

@@ -1,5 +1,5 @@
-// What the answer of a campaign may be off by, numerics and statistics together: "accuracy" as an object. It is no part
-// of what the campaign is.
+// Error goal of a campaign, for numerics and statistics together: "accuracy" as an object. It is no part of the
+// campaign's identity.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ namespace grainsweep::campaign {
 struct AccuracyGoal {
     std::string observable;
     std::vector<std::string> gates = {"mean", "sd"};
-    double tolerance = 0.01;             ///< relative, with 95 %
-    std::optional<std::string> setting;  ///< of most cases; none: a pilot chooses it
+    double tolerance = 0.01;             ///< relative, for the 95 % half-width
+    std::optional<std::string> setting;  ///< setting of most cases; empty: a pilot chooses it
 
-    /// The setting whose answers are the measure.
+    /// Setting whose answers are the standard.
     static constexpr std::string_view measure = "reference";
 };
 

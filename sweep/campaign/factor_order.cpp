@@ -1,5 +1,5 @@
-// The order in which a campaign file lists its factors fixes the dimensions of the design and says nothing about what
-// is asked: a stored campaign keeps the order it began with.
+// The order of the factors in a campaign file determines the dimensions of the design, but is no part of the campaign's
+// identity. A stored campaign keeps its first order.
 #include "sweep/campaign/campaign.hpp"
 
 #include <algorithm>

@@ -65,8 +65,7 @@ std::size_t last_before(std::string_view text, std::size_t end) {
     return text.substr(0, end).find_last_not_of(" \t\r\n");
 }
 
-/// What is written in other dialects of JSON and not in JSON, found where the parser stopped: where it begins, the
-/// characters, and what to write instead.
+/// Construct of other dialects of JSON at which the parser stopped: its beginning, its characters, and the right form.
 struct Dialect {
     std::size_t byte = 0;
     std::string word;

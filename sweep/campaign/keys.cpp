@@ -17,7 +17,7 @@ constexpr Interval not_negative{0, std::numeric_limits<double>::infinity(), fals
 constexpr Interval counts{1, 1e6};
 constexpr Interval measurable{-1e100, 1e100};  // squares of it, and sums of them, are numbers
 
-constexpr std::array<std::string_view, 4> accuracy_words = {"survey", "fast", "balanced", "reference"};
+constexpr std::array<std::string_view, 5> accuracy_words = {"survey", "fast", "balanced", "fine", "reference"};
 constexpr std::array<std::string_view, 2> goal_words = {"mean", "sd"};
 constexpr std::array<std::string_view, 2> scale_words = {"linear", "log"};
 constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
@@ -83,8 +83,8 @@ std::span<const Key> campaign_keys() {
          "[]"},
         {"convergence", Kind::object, "when the statistics are good enough"},
         {"accuracy", Kind::value,
-         "a named set of numerical inputs of the scene: survey, fast, balanced or reference; or an object with the "
-         "error that the answer may have"},
+         "a named set of numerical inputs of the scene: survey, fast, balanced, fine or reference; or an object "
+         "with the error that the answer may have"},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
         {"program", Kind::object, "with \"scene\": \"program\": the command that answers a case"},
         {"machine", Kind::value, "with \"scene\": \"machine\": a machine file beside the campaign file, or its object"},

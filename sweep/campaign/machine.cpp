@@ -151,6 +151,7 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     for (const auto& [parameter, contents] : files)
         reading.chosen.emplace(std::get<std::string>(inputs.find(parameter)->second), contents);
     reading.particles_scale = input_number(inputs, "particles_scale");
+    reading.stiffness_scale = input_number(inputs, stiffness_parameter);
     reading.spec.gravity = gravity_of(top, reading.scope);
     read_phase_names(top, reading);
     read_materials(top, reading);

@@ -1,6 +1,7 @@
 // Machine as a scene: the text of a machine file, and the scene for plans, databases and reports. The name of the scene
-// is "machine:" and a hash of everything that changes an answer: the text without notes, meanings, bounds, the
-// machine's own name and names of files; and the contents of the files. The machine's own name is shown to users.
+// is "machine:" and a hash of everything that changes an answer: the contents of the files, and the text. Notes,
+// meanings, bounds, the machine's own name and names of files are not included. The machine's own name is shown to
+// users.
 #pragma once
 
 #include "solver/scenes/scene.hpp"

@@ -68,8 +68,8 @@ std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading)
     throw wrong_question(wall.path(), "", "key 'material' is missing: several materials could be meant");
 }
 
-/// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes of a wall or
-/// of a motion. Within it the counter "as" is known.
+/// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes. Within it the
+/// counter "as" is known.
 template <class Read>
 void for_every_one(const Section& section, MachineReading& reading, Read read) {
     const auto repeat = section.find("repeat"), as = section.find("as");
@@ -98,8 +98,9 @@ void read_materials(const Section& top, MachineReading& reading) {
         require_name(place, name);
         const Section section(place, machine_keys::material());
         reading.materials.push_back(name);
-        reading.elasticities.push_back({reading.scope.number(section.at("youngs_modulus"), "Pa", {1e3, 1e13}),
-                                        reading.scope.number(section, "poisson_ratio", "1", 0.3, {0, 0.49})});
+        const double modulus = reading.scope.number(section.at("youngs_modulus"), "Pa", {1e3, 1e13});
+        reading.elasticities.push_back(
+            {modulus * reading.stiffness_scale, reading.scope.number(section, "poisson_ratio", "1", 0.3, {0, 0.49})});
         reading.densities.push_back(reading.scope.number(section, "density", "kg/m3", 0, positive_number));
     }
 }
@@ -141,6 +142,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
             if (contact.surface_tension > 0 && contact.cohesion_law != dem::CohesionLaw::capillary)
                 throw wrong_question(top.find("contacts")->path(), "",
                                      "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
+            contact.stiffness *= reading.stiffness_scale;
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;
             if (reading.elasticities[a] != reading.elasticities[b]) contact.partner = reading.elasticities[b];

@@ -159,6 +159,12 @@ ParameterSpec number_parameter(const Section& section, ParameterSpec spec) {
 void add_common(std::vector<ParameterSpec>& all) {
     all.push_back(
         {"particles_scale", "1", "diameters times this: fewer, coarser particles", 1.0, Interval{0.1, 100}, {}});
+    all.push_back({std::string(stiffness_parameter),
+                   "1",
+                   "Young's moduli and the stiffness of the linear law times this: softer particles take longer steps",
+                   1.0,
+                   Interval{1e-3, 1e3},
+                   {}});
     all.push_back({"time_step", "s", "time step; 0: time_step_fraction of the limits", 0.0, Interval{0, 1e-3}, {}});
     all.push_back({"time_step_fraction",
                    "1",

@@ -7,9 +7,13 @@
 
 #include "solver/machine/spec.hpp"
 
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::campaign {
+
+/// Parameter of every machine that multiplies the stiffness of all contacts.
+inline constexpr std::string_view stiffness_parameter = "stiffness_scale";
 
 /// Returns the parameters of the machine, and the parameters of every machine.
 [[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);

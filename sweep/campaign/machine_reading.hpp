@@ -24,7 +24,7 @@ struct MachineReading {
     std::map<std::string, std::string_view, std::less<>> chosen;  ///< contents of parameters that are files, by value
                                                                   ///< of the parameter
     MachineScope scope;
-    double particles_scale = 1;
+    double particles_scale = 1, stiffness_scale = 1;
 
     machine::Spec spec;
     std::vector<std::string> materials;                ///< all materials, including those of walls

@@ -1,5 +1,6 @@
 // The scenes of machines, as far as this process has met them.
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include "solver/machine/plan.hpp"
@@ -48,7 +49,9 @@ SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::s
     };
     scene.accuracy = {{"fast", numerics(0.35, "mixed")},
                       {"balanced", numerics(0.2, "mixed")},
+                      {"fine", numerics(0.05, "mixed")},
                       {"reference", numerics(0.05, "double")}};
+    scene.stiffness = stiffness_parameter;
     scene.maker = [machine](const Inputs& inputs, std::uint64_t seed, Artefacts&,
                             const Files& files) -> std::unique_ptr<Scene> {
         return std::make_unique<machine::Run>(possible_spec(*machine, inputs, files), seed);

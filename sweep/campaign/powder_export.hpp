@@ -1,8 +1,13 @@
 // Import of powder sizes from exports of instruments and sieve sheets, as a table for scenes.
 //
-// Recognised: UTF-8, UTF-16 and Latin-1 text; semicolons, tabs, commas or blanks between the columns; decimal points
-// and commas; any lines before and behind the table; rows of falling size; classes "20-45", "<20" and the pan of a
-// sieve tower; repeated groups of columns. Information that the file does not contain must be given as a choice; the
+// Recognised forms:
+//
+//   text      UTF-8, UTF-16 and Latin-1; any lines before and behind the table
+//   columns   separated by semicolons, tabs, commas or blanks; repeated groups of columns
+//   numbers   decimal points and commas
+//   rows      also of falling size; classes "20-45", "<20" and the pan of a sieve tower
+//
+// Information that the file does not contain must be given as a choice; the
 // refusal names the missing choice.
 #pragma once
 

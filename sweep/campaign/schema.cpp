@@ -390,8 +390,8 @@ std::string campaign_schema(int indentation) {
     scenes.push_back(program_word);
     schema["allOf"].push_back(defined_scene_rule(program_word, false));
     scenes.push_back(machine_word);
-    schema["allOf"].push_back(
-        defined_scene_rule(machine_word, accuracy_schema(OrderedJson::array({"fast", "balanced", "reference"}), {})));
+    schema["allOf"].push_back(defined_scene_rule(
+        machine_word, accuracy_schema(OrderedJson::array({"fast", "balanced", "fine", "reference"}), {})));
     properties["machine"]["type"] = {"string", "object"};
     properties["scene"]["enum"] = scenes;
     return schema.dump(indentation);

@@ -111,7 +111,7 @@ nlohmann::ordered_json begun(const Json& document, std::string_view name, std::s
     nlohmann::ordered_json text;
     text["notes"] = notes;
     text["campaign"] = name;
-    for (const char* key : {"scene", "program", "machine", "factors", "simplex", "fixed", "where", "accuracy",
+    for (const char* key : {"scene", "program", "machine", "powder", "factors", "simplex", "fixed", "where", "accuracy",
                             "common_random_numbers", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
     // Of a goal the setting alone: it needs a design of its own.

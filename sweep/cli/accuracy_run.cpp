@@ -75,6 +75,40 @@ std::string value_words(const Value& value) {
     return campaign::identity_text(value);
 }
 
+bool is_setting(const SceneInfo& scene, const Inputs& inputs) {
+    return std::ranges::any_of(scene.accuracy, [&](const auto& setting) { return setting.second == inputs; });
+}
+
+/// One numerical input beside `against`.
+struct Move {
+    std::string name;
+    Value value;
+};
+
+/// Inputs of the other settings, one by one, without those that make one of the settings; then a tenth and ten times
+/// the stiffness.
+std::vector<Move> moves_of(const Campaign& campaign, const std::string& against) {
+    const auto& scene = campaign.scene();
+    const auto& measure = scene.accuracy.find(against)->second;
+    const Inputs stated = fixed_by_file(campaign);
+    std::vector<Move> moves;
+    std::set<std::pair<std::string, std::string>> known;
+    for (const auto& [setting, inputs] : scene.accuracy)
+        for (const auto& [name, value] : inputs) {
+            Inputs moved = measure;
+            moved.insert_or_assign(name, value);
+            if (is_setting(scene, moved) || !is_free(campaign, stated, name)) continue;
+            if (known.emplace(name, value_words(value)).second) moves.push_back({name, value});
+        }
+    const auto* stiffness = scene.find_parameter(scene.stiffness);
+    if (stiffness == nullptr || !is_free(campaign, {}, scene.stiffness)) return moves;
+    const auto held = campaign.space.fixed.find(scene.stiffness);
+    const double value = std::get<double>(held == campaign.space.fixed.end() ? stiffness->default_value : held->second);
+    for (const double moved : {value / 10, value * 10})
+        if (std::get<Interval>(stiffness->bounds).contains(moved)) moves.push_back({scene.stiffness, moved});
+    return moves;
+}
+
 }  // namespace
 
 std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& against, std::int64_t points) {
@@ -93,8 +127,8 @@ std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& a
         throw campaign::wrong_question("CONFIG", campaign.design,
                                        "the points of this design depend on results; give a design that does not");
     const auto rows = first_points(campaign, points);
-    const Inputs stated = fixed_by_file(campaign);
     std::set<std::string> numerical;
+    if (!scene.stiffness.empty()) numerical.insert(scene.stiffness);
     for (const auto& [level, inputs] : scene.accuracy)
         for (const auto& [name, value] : inputs) numerical.insert(name);
     const std::vector<std::string> common(numerical.begin(), numerical.end());
@@ -106,15 +140,9 @@ std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& a
     };
     for (const auto& level : offered)
         if (level != against) add(fmt::format("{}_{}", campaign.name, level), level, level, {});
-    std::set<std::pair<std::string, std::string>> moved;
-    for (const auto& [level, inputs] : scene.accuracy)
-        for (const auto& [name, value] : inputs) {
-            const auto standard = reference->second.find(name);
-            if (level == against || (standard != reference->second.end() && standard->second == value)) continue;
-            if (!is_free(campaign, stated, name) || !moved.emplace(name, value_words(value)).second) continue;
-            add(fmt::format("{}_{}_{}_{}", campaign.name, against, name, name_part(value_words(value))),
-                fmt::format("{} with {} = {}", against, name, value_words(value)), against, {{name, value}});
-        }
+    for (const auto& [name, value] : moves_of(campaign, against))
+        add(fmt::format("{}_{}_{}_{}", campaign.name, against, name, name_part(value_words(value))),
+            fmt::format("{} with {} = {}", against, name, value_words(value)), against, {{name, value}});
     add(fmt::format("{}_{}", campaign.name, against), against, against, {});
     return all;
 }

@@ -39,7 +39,7 @@ struct AccuracyRun {
 struct AccuracyEnd {
     std::string campaign;
     std::vector<study::NumericsCost> costs;  ///< the last is `against`
-    int exit_code = 0;                       ///< 0, or that of the run that was interrupted
+    int exit_code = 0;                       ///< 0, or the exit code of an interrupted run
 };
 
 [[nodiscard]] AccuracyEnd run_accuracy(const AccuracyRun& run);

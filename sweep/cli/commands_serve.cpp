@@ -1,4 +1,5 @@
 // serve: the report's page in the browser while its databases grow.
+#include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/files/broken_world.hpp"
@@ -64,6 +65,34 @@ std::vector<fs::path> require_databases(const fs::path& place) {
     return found;
 }
 
+bool is_campaign(const fs::path& file) {
+    try {
+        (void)campaign::read_campaign(file);
+        return true;
+    } catch (const campaign::WrongQuestion&) {
+        return false;
+    } catch (const BrokenWorld&) {
+        return false;
+    }
+}
+
+/// The file, or every campaign file of the folder, by name.
+std::vector<fs::path> campaign_files_at(const fs::path& place) {
+    if (fs::is_regular_file(place)) return {place};
+    if (!fs::is_directory(place))
+        throw campaign::wrong_question("--control", place.string(), "there is no such file or folder");
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(place, error))
+        if (entry.is_regular_file(error) && entry.path().extension() == ".json" && is_campaign(entry.path()))
+            found.push_back(entry.path());
+    if (found.empty())
+        throw campaign::wrong_question("--control", place.string(),
+                                       "the folder holds no campaign file that can be read (*.json)");
+    std::ranges::sort(found);
+    return found;
+}
+
 void open_browser(const std::string& address) {
     const auto opener = workers::find_program("xdg-open");
     std::error_code error;
@@ -75,11 +104,7 @@ int serve(const ServeRequest& request, report::Format) {
     const fs::path place = request.place;
     auto databases = require_databases(place);
     std::optional<live::Control> control;
-    if (!request.control.empty()) {
-        if (!fs::is_regular_file(request.control))
-            throw campaign::wrong_question("--control", request.control, "there is no such file");
-        control = live::Control{request.control};
-    }
+    if (!request.control.empty()) control = live::Control{campaign_files_at(request.control)};
     const auto token = live::new_token();
     std::unique_ptr<live::Served> served;
     live::HttpServer server(static_cast<std::uint16_t>(request.port),
@@ -117,8 +142,8 @@ void declare_serve(Parser& parser, ServeRequest& request) {
         ->check(whole_number(0, 65535))
         ->capture_default_str();
     parser.add_flag("--open", request.open, "opens the page in a browser");
-    parser.add_option("--control CONFIG", request.control,
-                      "lets the page stop a run and start this campaign file again");
+    parser.add_option("--control FILE", request.control,
+                      "lets the page stop a run and start this campaign file, or any of this folder");
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ int flushed(int code) {
     return code;
 }
 
-/// A descriptor from 0 to 2 that is closed would be given to the next file opened, the database perhaps, which every
-/// message would then be written into. Opened the wrong way round, so that using it is still an error.
+/// The next opened file, perhaps the database, would get a closed descriptor from 0 to 2, and every message would be
+/// written into this file. Opened the wrong way round, so that using it is still an error.
 void occupy_standard_descriptors() {
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
         if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;

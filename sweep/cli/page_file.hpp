@@ -12,8 +12,9 @@ struct FileKind {
 };
 inline constexpr FileKind html_page{"page", "<!doctype html>"};
 
-/// Throws WrongQuestion with the option if the page cannot be written: a folder, no such folder, no permission, a file
-/// of the database (empty: none), or an existing file of another kind, such as a campaign file.
+/// Throws WrongQuestion with the option if the page cannot be written: the output is a folder, its folder is missing,
+/// or there is no permission. Files of `database` (empty: none) and existing files of another kind, such as a campaign
+/// file, are refused, too.
 void check_page_file(std::string_view option, const std::string& output, const std::string& database,
                      const FileKind& kind = html_page);
 

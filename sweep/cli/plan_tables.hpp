@@ -8,8 +8,8 @@ namespace grainsweep::cli {
 
 [[nodiscard]] store::Table factors_of(const campaign::Campaign& campaign);
 
-/// Returns, for factors with a distribution, quantiles, the density as a row of characters along the range, and the
-/// share cut off by the bounds of the parameter; no rows if there are none.
+/// Returns one row for each factor with a distribution: quantiles, the density as a row of characters along the range,
+/// and the share outside the bounds of the parameter.
 [[nodiscard]] store::Table distributions_of(const campaign::Campaign& campaign);
 
 }  // namespace grainsweep::cli

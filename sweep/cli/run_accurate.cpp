@@ -36,14 +36,17 @@ public:
         if (request_.database.empty()) request_.database = asked_.name + ".db";
         sequences_ = designs::independent_sequences(asked_.design, asked_.request);
         most_ = campaign::candidates_of(asked_);
+        measure_ = study::name_at(asked_.name, measure());
     }
 
     RunReport operator()() {
         campaign::asked_in(request_.config, [&] { find_settings(); });
         if (!goal_.setting) goal_.setting = stored_setting();
         if (!goal_.setting && !choose()) return std::move(*ended_);
+        forget_earlier_checks();
         while (advance()) {
         }
+        ended_->campaign = asked_.name;
         if (!ended_->finished) return std::move(*ended_);
         const store::Store store(request_.database, store::Store::Mode::read);
         const auto records = store.campaigns();
@@ -71,7 +74,7 @@ private:
             const auto cost = campaign::forecast(at.scene(), cases);
             settings_.push_back({name, cost.total_seconds / static_cast<double>(cost.questions), cases.hash(0)});
         };
-        add(std::string(campaign::AccuracyGoal::measure));
+        add(measure());
         for (const auto& [name, inputs] : asked_.scene().accuracy) {
             if (name == campaign::AccuracyGoal::measure) continue;
             add(name);
@@ -97,8 +100,7 @@ private:
             if (!compute(text_at(setting.name, points, false))) return false;
         const store::Store store(request_.database, store::Store::Mode::read);
         std::vector<std::vector<double>> values;
-        const auto measure = study::name_at(asked_.name, campaign::AccuracyGoal::measure);
-        const auto factors = study::first_factors(store, measure, points);
+        const auto factors = study::first_factors(store, measure_, points);
         stats::Pilot pilot{{}, static_cast<std::size_t>(sequences_), factors.view()};
         for (const auto& setting : settings_)
             values.push_back(
@@ -108,36 +110,63 @@ private:
         say(fmt::format("most cases run at {}", *goal_.setting));
         return true;
     }
+    /// Their tolerance may have been another. The checks are judged again from stored values.
+    void forget_earlier_checks() const {
+        if (!fs::exists(request_.database)) return;
+        auto store = open_store();
+        store.group([&] {
+            for (const auto& record : store.campaigns())
+                if (record.name == asked_.name || record.name == measure_) store.forget_checks(record.name);
+        });
+        store.remember_file();
+    }
     /// Runs the cases of the next check and judges them. False: there is no more to do, or they did not end.
     bool advance() {
-        const std::string measure(campaign::AccuracyGoal::measure);
         if (points_ == 0) {
-            const auto first = stats::first_sizes(sequences_, goal_.setting != measure);
+            const auto first = stats::first_sizes(sequences_, goal_.setting != campaign::AccuracyGoal::measure);
             points_ = std::min(first.points, most_);
             pairs_ = first.pairs;
         }
-        if (pairs_ > 0 && !compute(text_at(measure, pairs_, false))) return false;
-        if (!compute(text_at(*goal_.setting, points_, true))) return false;
-        store::Store store(request_.database, store::Store::Mode::create,
-                           request_.network_disk ? store::Store::Disk::network : store::Store::Disk::found_out);
-        const auto cheap = study::first_values(store, asked_.name, goal_.observable, points_);
+        if (pairs_ > 0 && !compute(text_at(measure(), pairs_, false))) return false;
+        const auto& judged = alone_ ? measure_ : asked_.name;
+        if (!compute(alone_ ? text_at(measure(), points_, false) : text_at(*goal_.setting, points_, true)))
+            return false;
+        auto store = open_store();
+        const auto first = study::first_values(store, judged, goal_.observable, points_);
         std::vector<double> expensive;
-        if (pairs_ > 0)
-            expensive =
-                study::first_values(store, study::name_at(asked_.name, measure), goal_.observable, pairs_).values;
-        const auto factors = study::first_factors(store, asked_.name, points_);
-        const auto check = stats::two_level_check(
-            rule(), {cheap.values, expensive, static_cast<std::size_t>(sequences_), factors.view()});
+        if (pairs_ > 0) expensive = study::first_values(store, measure_, goal_.observable, pairs_).values;
+        const auto factors = study::first_factors(store, judged, points_);
+        const stats::PairedValues values{first.values, expensive, static_cast<std::size_t>(sequences_), factors.view()};
+        const auto check = stats::two_level_check(rule(), values);
         const bool within = passed_ && check.passes;
-        store.group([&] { store.record(asked_.name, study::row_of(check, goal_, cheap.without_value, within)); });
+        store.group([&] { store.record(judged, study::row_of(check, goal_, first.without_value, within)); });
         store.remember_file();
         if (within || check.last()) return false;
         passed_ = check.passes;
-        points_ = check.next_points;
-        pairs_ = check.next_pairs;
-        say(fmt::format("next check at {} cases and {} pairs", points_, pairs_));
+        if (pairs_ > 0 && stats::alone_costs_less(rule(), values))
+            go_on_alone(values);
+        else
+            go_on(check.next_points, check.next_pairs);
         return true;
     }
+    void go_on(std::int64_t points, std::int64_t pairs) {
+        points_ = points;
+        pairs_ = pairs;
+        say(fmt::format("next check at {} cases and {} pairs", points_, pairs_));
+    }
+    /// With `reference`, of which the pairs so far are the first cases.
+    void go_on_alone(const stats::PairedValues& values) {
+        alone_ = true;
+        passed_ = false;
+        const auto own = stats::two_level_check(rule(), {values.expensive, {}, values.sequences, values.points});
+        say(fmt::format("{} alone costs less than further pairs", measure()));
+        go_on(std::min(most_, std::max(own.next_points, stats::first_sizes(sequences_, false).points)), 0);
+    }
+    [[nodiscard]] store::Store open_store() const {
+        return {request_.database, store::Store::Mode::create,
+                request_.network_disk ? store::Store::Disk::network : store::Store::Disk::found_out};
+    }
+    [[nodiscard]] static std::string measure() { return std::string(campaign::AccuracyGoal::measure); }
     [[nodiscard]] stats::TwoLevelRule rule() const {
         return {study::gates_of(goal_), goal_.tolerance, most_, goal_.setting ? cost_ratio() : 1};
     }
@@ -172,7 +201,9 @@ private:
     campaign::AccuracyGoal goal_;
     std::int64_t sequences_ = 1, most_ = 0, points_ = 0, pairs_ = 0, settled_ = 0;
     std::vector<CostedSetting> settings_;
+    std::string measure_;  ///< campaign of `reference` beside that of the goal
     bool passed_ = false;  ///< the check before
+    bool alone_ = false;   ///< the pairs were given up for `reference` alone
     std::optional<RunReport> ended_;
 };
 

@@ -46,8 +46,8 @@ using schedule::Ending;
 // Places of a campaign that are in the archive before its first case is handed out: a fraction of a second.
 constexpr std::size_t entered_first = 16'384;
 
-/// What the statistics of a campaign are over: every place that is stored. Where the run asks for a part of them, the
-/// others are there too, by the id of their question alone, and not to be computed.
+/// Places for the statistics of a campaign: every stored place. If the run requests only a part of them, the others are
+/// included by the ids of their cases and are not computed.
 struct Placement {
     campaign::Cases placed;
     std::vector<store::CaseState> states;

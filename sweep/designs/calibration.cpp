@@ -248,8 +248,8 @@ private:
             if (std::ranges::none_of(values_[t], [](double x) { return std::isfinite(x); })) return t;
         return std::nullopt;
     }
-    /// The settings of least implausibility, for the chains to begin at; where none of these is expected to answer, the
-    /// least implausible among those that are.
+    /// Returns the settings of smallest implausibility as starts of the chains. If none of them is expected to have an
+    /// answer, returns the least implausible ones with an expected answer.
     [[nodiscard]] std::vector<double> starts(const Candidates& all) const {
         std::vector<std::size_t> order(all.implausibility.size());
         std::iota(order.begin(), order.end(), std::size_t{0});

@@ -3,9 +3,9 @@
 // Bayesian history matching (Vernon, Goldstein & Bower 2010, Bayesian Analysis 5, 619). The first wave fills the box of
 // the factors. After each wave, a response model of each target is fitted to all cases so far. A setting is kept if the
 // deviation of every target is at most 3 standard deviations of model, measurement, discrepancy and scatter together
-// (stats/calibration.hpp). The next wave fills the kept settings. The waves end after the last one; when the error of
-// the models is below all other errors at every kept setting; or when a wave has ruled out less than a share `shrink`
-// of the kept settings. Then settings drawn from the posterior are run as the predictive check.
+// (stats/calibration.hpp). The next wave fills the kept settings. The waves end after the last one. They end earlier in
+// two cases: the error of the models is below all other errors at every kept setting, or a wave has ruled out less than
+// a share `shrink` of the kept settings. Then settings drawn from the posterior are run as the predictive check.
 //
 // If more than 5 % of the settings have no answer for some target, a setting is also ruled out if most of its five
 // nearest neighbours failed.

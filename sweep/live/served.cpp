@@ -222,10 +222,13 @@ HttpReply Served::answer(const HttpQuestion& question) {
 
 HttpReply Served::page() const {
     std::ostringstream stream;
+    JsonText configs;  // null: nobody steers
+    if (control_)
+        configs = JsonText::list(control_->configs, [](const fs::path& file) { return file.filename().string(); });
     const auto policy =
         report::write_live_page(stream, fmt::format("{},\"event\":\"{}-{}\",\"steerable\":{}}}",
                                                     page_.latest()->json.substr(0, page_.latest()->json.size() - 1),
-                                                    run_, page_.latest()->covered, control_.has_value()));
+                                                    run_, page_.latest()->covered, configs.text()));
     return HttpAnswer{.type = "text/html; charset=utf-8",
                       .body = std::make_shared<const std::string>(std::move(stream).str()),
                       .policy = policy};
@@ -258,6 +261,13 @@ const Follower* Served::asked(const HttpQuestion& question) const {
     for (const auto& follower : followers_)
         if (follower.file().filename().string() == name) return &follower;
     return name.empty() && followers_.size() == 1 ? &followers_.front() : nullptr;
+}
+
+const fs::path* Served::config_of(const HttpQuestion& question) const {
+    const auto name = argument(question, "config");
+    for (const auto& file : control_->configs)
+        if (file.filename().string() == name) return &file;
+    return name.empty() && control_->configs.size() == 1 ? &control_->configs.front() : nullptr;
 }
 
 HttpReply Served::start_query(const HttpQuestion& question) {
@@ -306,7 +316,7 @@ HttpReply Served::job(const HttpQuestion& question) {
 }
 
 HttpReply Served::steer(const HttpQuestion& question) {
-    if (!control_) return refused(403, "`grainsweep serve --control CONFIG` allows this");
+    if (!control_) return refused(403, "`grainsweep serve --control FILE` allows this");
     const auto* follower = asked(question);
     if (follower == nullptr) return refused(404, "there is no such database");
     const auto file = fs::absolute(follower->file());
@@ -319,7 +329,9 @@ HttpReply Served::steer(const HttpQuestion& question) {
         return json({{"stopping", true}});
     }
     if (now || work_->runner.running()) return refused(409, "a run is under way; stop it first");
-    std::vector<std::string> arguments = {"run", fs::absolute(control_->config).string(), "--db", file.string()};
+    const auto* config = config_of(question);
+    if (config == nullptr) return refused(404, "there is no such campaign file");
+    std::vector<std::string> arguments = {"run", fs::absolute(*config).string(), "--db", file.string()};
     if (question.path == "/again") {
         const auto outcome = argument(question, "outcome");
         if (!campaign::outcome_named(outcome)) return refused(400, "there is no such outcome");

@@ -9,7 +9,8 @@
 //   POST /film?token=T&database=NAME&case=ID          -> {"job": n}, or {"film": address} where it is there already
 //   GET  /job?token=T&number=n        {"running": true} | {"code", "out", "err"}
 //   GET  /film?token=T&database=NAME&case=ID          the page of a film
-//   POST /stop | /run | /again?... | /more?points=N   as on the command line; only if the user has allowed it
+//   POST /stop | /run | /again?... | /more?points=N   as on the command line; only if the user has allowed it;
+//                                     with config=NAME if there are several campaign files
 //
 // Every request needs the printed token, and a Host field of this machine, so that pages of other sites cannot send
 // requests, even by DNS rebinding.
@@ -37,7 +38,7 @@ namespace grainsweep::live {
 
 /// Permitted control of the campaign by the reader of the page.
 struct Control {
-    std::filesystem::path config;  ///< campaign file for further runs
+    std::vector<std::filesystem::path> configs;  ///< campaign files, with different names
 };
 
 /// Work that a page has started. It continues when a database is added to the server.
@@ -73,6 +74,8 @@ private:
     [[nodiscard]] HttpReply film(const HttpQuestion& question) const;
     [[nodiscard]] HttpReply job(const HttpQuestion& question);
     [[nodiscard]] HttpReply steer(const HttpQuestion& question);
+    /// Returns the campaign file that the request names, or the only one.
+    [[nodiscard]] const std::filesystem::path* config_of(const HttpQuestion& question) const;
     /// Returns the database that the request names, or the only one.
     [[nodiscard]] const Follower* asked(const HttpQuestion& question) const;
     [[nodiscard]] std::string event(std::string_view kind, std::string_view data, std::int64_t number) const;

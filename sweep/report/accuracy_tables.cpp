@@ -41,8 +41,8 @@ store::Table text_table(std::span<const NumericsCost> costs, const std::string& 
     return table;
 }
 
-/// Points at which the bias of a setting would be known to be within the tolerance, if it is as found; of the cheapest
-/// setting that can be.
+/// Returns a text with the number of points that would be enough: with them the bias of the cheapest suitable setting,
+/// if it is as found, is within the tolerance, its error included.
 std::string points_text(std::span<const NumericsCost> costs, std::span<const std::string> observables,
                         double tolerance) {
     const NumericsCost* cheapest = nullptr;

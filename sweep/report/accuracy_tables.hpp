@@ -1,4 +1,4 @@
-// `accuracy` in every form: what each setting costs, its bias, and which is the cheapest within a tolerance.
+// Output of `accuracy` in all forms: cost and bias of each setting, and the cheapest setting within a tolerance.
 #pragma once
 
 #include "sweep/report/document.hpp"
@@ -10,7 +10,7 @@
 
 namespace grainsweep::report {
 
-/// `observables`: the judged ones, shown as text; empty: all. Rows and value have all.
+/// Returns the document. `observables`: the judged ones, shown in the text; empty: all. Rows and JSON always have all.
 [[nodiscard]] Document accuracy_document(std::string_view campaign, std::span<const study::NumericsCost> costs,
                                          std::span<const std::string> observables, double tolerance);
 

@@ -91,6 +91,13 @@ std::string population_line(const Estimators& estimators) {
         estimators.without_value, estimators.without_value + estimators.assisted->cases);
 }
 
+/// A value with the digits that its error has, where six are too few.
+Cell value_cell(double value, double error) {
+    const double ratio = std::abs(value) / error;
+    if (!(ratio > 1e5) || !std::isfinite(ratio)) return to_cell(value);
+    return fmt::format("{:.{}g}", value, std::min(15, 2 + static_cast<int>(std::ceil(std::log10(ratio)))));
+}
+
 /// All settled points: value, 95 % error, what the rule compares with the tolerance, and whether it is a gate that
 /// holds the campaign back.
 store::Table statistics_table(const History& history) {
@@ -98,7 +105,7 @@ store::Table statistics_table(const History& history) {
     for (const auto statistic : stats::statistics) {
         const auto& all = history.all.of(statistic);
         const double measure = judged_check(history).of(statistic).measure;
-        table.rows.push_back({std::string(to_string(statistic)), to_cell(all.value), to_cell(all.error),
+        table.rows.push_back({std::string(to_string(statistic)), value_cell(all.value, all.error), to_cell(all.error),
                               percent(measure), gate_text(history, statistic)});
     }
     return table;
@@ -109,7 +116,8 @@ store::Table provisional_table(const History& history) {
     if (!history.provisional) return table;
     for (const auto statistic : stats::statistics) {
         const auto& known = history.provisional->of(statistic);
-        table.rows.push_back({std::string(to_string(statistic)), to_cell(known.value), to_cell(known.error)});
+        table.rows.push_back(
+            {std::string(to_string(statistic)), value_cell(known.value, known.error), to_cell(known.error)});
     }
     return table;
 }

@@ -1,4 +1,4 @@
-// Moments of the setting `reference` from a campaign with an error goal: rows for people, JSON for programs.
+// Moments of the setting `reference` from a campaign with an error goal, as a table for people and JSON for programs.
 #pragma once
 
 #include "sweep/report/table.hpp"
@@ -6,7 +6,7 @@
 
 namespace grainsweep::report {
 
-/// One row per statistic: at the chosen setting, corrected, and the parts of the error relative to it.
+/// Returns one row per statistic: value at the chosen setting, corrected value, and the parts of the relative error.
 [[nodiscard]] store::Table corrected_table(const study::Corrected& corrected);
 
 /// {"observable", "setting", "cases", "pairs", "tolerance", "within", "core_seconds", "alone_core_seconds",

@@ -114,8 +114,8 @@ Film::Slice& Film::slice_of(const FlowField& field, const std::string& quantity,
 
 namespace {
 
-/// Calls body(cell) for the cells of a plane across `axis`, the next axis but one fastest... in the order (u, v), u
-/// fastest, where u and v are the other two axes in their order.
+/// Calls body(cell) for the cells of a plane across `axis`. u and v are the other two axes in their order; u varies
+/// fastest.
 template <class Body>
 void for_each_cell_of_plane(const std::array<std::size_t, 3>& cells, std::size_t axis, std::size_t at, Body body) {
     const std::size_t u = axis == 0 ? 1 : 0;

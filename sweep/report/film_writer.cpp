@@ -226,8 +226,8 @@ private:
                 {"clipped", range.clipped}};
     }
 
-    /// Corners as 16-bit numbers in the wall's own box: one frame where it stands still, else those from `first` on,
-    /// `frames` in number; shown that long.
+    /// Writes corners as 16-bit numbers in the wall's own box: one frame for a fixed wall, else the `frames` frames
+    /// from `first` on that show the wall.
     void write_walls() {
         Json walls = Json::array(), left_out = Json::array();
         for (const auto& wall : film_.walls_) {

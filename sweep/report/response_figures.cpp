@@ -33,8 +33,8 @@ plot::Figure draw_distribution(const FigureSubject& subject, const PanelNames&) 
     return {{{number_axis(shown, range, false, 0.02), {"cases", 0, 1.06 * most}, {bars}}}};
 }
 
-/// The numbers that set the range of a moment's axis: the first checks may have errors many times larger than any
-/// later, and their bands leave the frame.
+/// Returns the range of a moment's axis. Bands of the first checks may leave the frame, because their errors can be
+/// many times larger than later ones.
 NumberRange moment_range(const std::vector<const stats::Checkpoint*>& checks, stats::Statistic statistic) {
     std::vector<double> numbers;
     for (std::size_t k = 0; k < checks.size(); ++k) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <ostream>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ constexpr std::size_t narrow_text = 12;  // a column of sentences is not wrapped
 constexpr std::size_t short_cell = 24;   // shorter texts (0.2702 ± 0.0011) may be wrapped narrower
 constexpr std::size_t whole_word = 32;   // longer words are cut; a case id is not
 constexpr std::size_t shown_of_an_id = 12;
+constexpr int fewest_digits = 6, most_digits = 12;
+constexpr double least_difference = 1e-11;  // a smaller relative difference of two numbers is no difference
 constexpr std::int64_t largest_exact = std::int64_t{1} << 53U;
 
 /// Columns on how a case was computed are left out first, in this order.
@@ -52,6 +55,27 @@ void measure(Column& column, std::size_t narrow = narrow_text) {
                                              std::max({std::min(word, whole_word), std::min(widest, narrow), heading}));
 }
 
+/// One line of text of a cell, a number to so many digits.
+std::string cell_with_digits(const store::Table::Cell& cell, int digits) {
+    const auto* real = std::get_if<double>(&cell);
+    return real == nullptr ? cell_text(cell) : fmt::format("{:.{}g}", *real == 0 ? 0 : *real, digits);
+}
+
+/// Digits that tell each number of a column from the one above it, unless they differ by rounding alone.
+int digits_of(const store::Table& table, std::size_t column) {
+    int digits = fewest_digits;
+    const double* above = nullptr;
+    for (const auto& row : table.rows) {
+        const auto* real = std::get_if<double>(&row[column]);
+        if (real == nullptr) continue;
+        if (above != nullptr && std::abs(*real - *above) > least_difference * std::abs(*real))
+            while (digits < most_digits && cell_with_digits(*real, digits) == cell_with_digits(*above, digits))
+                ++digits;
+        above = real;
+    }
+    return digits;
+}
+
 std::vector<Column> columns_in(const store::Table& table) {
     std::vector<Column> columns;
     for (std::size_t j = 0; j < table.columns.size(); ++j) {
@@ -60,8 +84,9 @@ std::vector<Column> columns_in(const store::Table& table) {
         const auto place = std::ranges::find(least_asked_for, column.name);
         column.rank = place != least_asked_for.end() ? 1 + static_cast<std::size_t>(place - least_asked_for.begin())
                                                      : 1 + least_asked_for.size() + (table.columns.size() - j);
+        const int digits = digits_of(table, j);
         for (const auto& row : table.rows) {
-            column.cells.push_back(cell_text(row[j]));
+            column.cells.push_back(cell_with_digits(row[j], digits));
             column.numeric = column.numeric && !std::holds_alternative<std::string>(row[j]);
             const auto* whole = std::get_if<std::int64_t>(&row[j]);
             if (whole != nullptr && (*whole > largest_exact || *whole < -largest_exact)) column.rank = 0;
@@ -186,7 +211,7 @@ void write_narrow(std::ostream& out, std::vector<Column> columns, std::size_t wi
 
 std::string cell_text(const store::Table::Cell& cell) {
     if (const auto* whole = std::get_if<std::int64_t>(&cell)) return std::to_string(*whole);
-    if (const auto* real = std::get_if<double>(&cell)) return fmt::format("{:.6g}", *real == 0 ? 0 : *real);
+    if (std::holds_alternative<double>(cell)) return cell_with_digits(cell, fewest_digits);
     if (std::holds_alternative<std::monostate>(cell)) return "";
     std::string line;
     for (const char c : std::get<std::string>(cell)) {  // a row stays a row, and no text moves the cursor of a terminal

@@ -6,7 +6,8 @@
 //   columns are left out, and a line below names them: whole numbers beyond 2^53 (seeds), then columns on how a case
 //     was computed (wall_seconds, attempts), then from the right
 //
-// Numbers are aligned to the right and never broken.
+// Numbers are aligned to the right and never broken. They have 6 digits, or up to 12 in a column where two neighbours
+// would else look alike.
 #pragma once
 
 #include "sweep/store/store.hpp"

@@ -55,8 +55,8 @@ double objective_of(const Judgement& one) {
     return one.objective.mean;
 }
 
-/// Variance of `values` that the means of groups of points near one another in a factor make: eight groups of equal
-/// count, or the factor's values where these are no more. 0 where no point has a value of the factor.
+/// Returns the variance of the means of `values` in groups by a factor: eight groups of equal count, or the factor's
+/// values if there are at most eight. 0 if no point has a value of the factor.
 double variance_by(std::span<const Setting> settings, std::span<const double> values, std::size_t factor) {
     constexpr std::size_t most_groups = 8;
     struct Group {

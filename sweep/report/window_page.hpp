@@ -1,8 +1,8 @@
 // Page of a process window, for print: the best setting, its predictions with errors, a map of the two most influential
 // factors, and every response against every factor. Map and curves pass through the best setting, or, if there is none,
 // through the setting with the largest probability. The influence of a factor is the variance of the probability due to
-// its value in the searched box. Factors of equal influence are ordered by the change along their curves: range of the
-// probability, and range of the objective's mean divided by the range of its means at the cases.
+// its value in the searched box. Factors of equal influence are ordered by the change along their curves: the range of
+// the probability, and the range of the objective's mean relative to the range of its means at the cases.
 // Curves have 41 points, the map 41 x 41 cells, evenly along the ranges (logarithmic ranges in their logarithms), or
 // one per level. Bands are 95 % bands of the mean and of a single run.
 #pragma once

@@ -98,8 +98,8 @@ private:
 /// File of a running task, which is touched repeatedly and removed at the end.
 class TaskFile {
 public:
-    /// `lease`: a task counts as dead if its file is older than this, s, or did not change for this time while watched,
-    /// so that a date in the future does not count as life.
+    /// `lease`: a task counts as dead if its file is older than this, s. It is dead also if the file did not change for
+    /// this time while watched, so a date in the future is no sign of life.
     TaskFile(const Spool& spool, double lease);
     TaskFile(const TaskFile&) = delete;
     TaskFile& operator=(const TaskFile&) = delete;

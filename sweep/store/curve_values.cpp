@@ -31,8 +31,8 @@ struct Curve {
     }
 };
 
-/// A program writes samples in any order. Of a profile measured more than once the last time counts; of several samples
-/// at one place their mean; of a profile no sample without a bin.
+/// A program writes samples in any order. For a profile measured more than once, the last time counts. Several samples
+/// at one place are averaged. Samples of a profile without a bin do not count.
 Curve curve_of(std::vector<Sample> samples) {
     const bool binned = std::ranges::any_of(samples, [](const Sample& s) { return !std::isnan(s.bin); });
     const auto place = [binned](const Sample& s) { return binned ? s.bin : s.time; };

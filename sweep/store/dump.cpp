@@ -1,5 +1,5 @@
-// The archive as canonical text: two archives with the same answers give the same lines, whatever the order of
-// completion, the number of attempts, the machine or the day.
+// Database as canonical text. Two databases with the same answers give the same lines, independent of the order of
+// completion, the attempts, the machine and the time.
 //
 //     case ID scene=NAME revision=N seed=N outcome=WORD
 //       NAME = VALUE                      inputs that differ from the scene's defaults
@@ -12,8 +12,8 @@
 //       convergence OBSERVABLE POINTS ...
 //
 // Cases in order of their id, everything else in order of name or number, doubles in shortest round-trip form.
-// A case counts where a campaign counts it: answers beyond the point at which a campaign converged and stopped,
-// and those no present design asks for, are in the archive but not in this text.
+// Only cases that count in a campaign are included. Answers beyond the point of convergence, and answers that no
+// present design contains, are in the database but not in this text.
 #include "sweep/campaign/visible_text.hpp"
 #include "sweep/store/archive.hpp"
 
@@ -95,8 +95,8 @@ std::vector<std::int64_t> counted_cases(const Connection& db) {
     return keys;
 }
 
-/// What has checksums are the tables: indices, by which a case may be missed, are not used (NOT INDEXED, + before what
-/// is ordered by, all columns of a table asked for).
+/// Only tables have checksums, and a damaged index could hide a case. So indices are not used: NOT INDEXED, + before
+/// the columns of ORDER BY, all columns selected.
 void dump_cases(const Connection& db, const Sink& sink) {
     const auto counted = counted_cases(db);
     auto rows = db.ask(

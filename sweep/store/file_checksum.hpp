@@ -2,8 +2,8 @@
 // of the pages takes a fraction of a second. The last run checked or wrote the whole file, so an unchanged file is
 // undamaged.
 //
-// Not included are the page of the checksum itself, and the parts of the first page that SQLite changes with it: the
-// change counter (bytes 24 to 27) and its version (92 to 99);
+// Not included are the page of the checksum itself and the parts of the first page that SQLite changes with it: the
+// change counter (bytes 24 to 27), and its version (92 to 99);
 // https://www.sqlite.org/fileformat.html
 #pragma once
 

@@ -1,5 +1,5 @@
-// Places of a campaign that cannot simply be added to: where points were renumbered the new design replaces the old
-// one, and a damaged one is put right.
+// Places of a campaign that cannot simply be extended: a design with renumbered points replaces the old one, and a
+// damaged design is repaired.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/soundness.hpp"

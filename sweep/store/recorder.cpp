@@ -16,9 +16,9 @@ constexpr std::size_t group_rows = 256;
 constexpr auto idle_look = std::chrono::seconds(1);
 constexpr auto group_wait = std::chrono::milliseconds(10);
 
-// Places of a campaign that are entered between two groups: few at first, so that the first answers do not wait, at
-// last as many as take about a second. Large pieces are cheaper, because ids are spread over their index and each piece
-// writes most of its pages.
+// Number of places of a campaign that are entered between two groups. It is small at first, so that the first answers
+// do not wait, and grows to as many as take about a second. Large pieces are cheaper, because ids are spread over their
+// index and each piece writes most pages of the index.
 constexpr std::size_t first_piece = 8192, largest_piece = 131'072;
 
 // Entries and samples that may wait, some 25 MB: more than a disk that works leaves behind.

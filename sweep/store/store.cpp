@@ -151,8 +151,8 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     transaction.commit();
 }
 
-/// "process 4711 on node3 since 2026-01-01T12:00:00Z", as far as the archive can tell: the last run that
-/// recorded itself, unless it has ended and another one is about to.
+/// Returns a text such as "process 4711 on node3 since 2026-01-01T12:00:00Z": the last run that the archive has
+/// recorded. It is wrong if that run has ended and a new one has not recorded itself yet.
 std::string holder_of(const std::filesystem::path& file) {
     try {
         const Connection db(file, Connection::Access::read);
@@ -246,8 +246,8 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     if (version == 0)
         throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
     check_tables(db, file);
-    // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for
-    // only where it is (keeps_extents).
+    // An older schema is read unchanged; the next run migrates it. So queries for data that a migration added first
+    // check whether they exist (keeps_extents).
     enter_programs(db);
     enter_machines(db);
     return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));

@@ -191,6 +191,8 @@ public:
     /// std::logic_error for an observable that the scene has not declared.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
+    /// Deletes the recorded checks, and the points at which the campaign stopped.
+    void forget_checks(std::string_view campaign);
     /// Stores the points at which the campaign converged and stopped; empty: it continues.
     void stop(std::string_view campaign, std::optional<std::int64_t> points);
 

@@ -28,9 +28,9 @@ constexpr off_t locked_byte = off_t{1} << 61U;
 
 }  // namespace
 
-// A lock of an open file description (F_OFD_SETLK) rather than of the process: SQLite's own locks belong to the
-// process, and those of one kind never release those of the other. The descriptor outlives the connection to the
-// database, because closing it would release what SQLite holds.
+// The lock belongs to an open file description (F_OFD_SETLK), SQLite's locks belong to the process. So neither kind
+// releases the other. The descriptor outlives the connection to the database, because closing it would release what
+// SQLite holds.
 std::optional<WriterLock> WriterLock::take(const std::filesystem::path& database) {
     files::Descriptor descriptor(open(database.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
     if (!descriptor.is_open()) fail_to(database, "cannot be opened to write", errno);

@@ -168,6 +168,11 @@ void Store::record(std::string_view campaign, const ConvergenceRow& row) {
     store_sum(db, "convergence", key, sum);
 }
 
+void Store::forget_checks(std::string_view campaign) {
+    impl_->require_group();
+    forget_convergence(impl_->db, impl_->campaign_key(campaign));
+}
+
 void Store::stop(std::string_view campaign, std::optional<std::int64_t> points) {
     impl_->require_group();
     constexpr std::string_view update = "UPDATE campaign SET stopped_at = ? WHERE campaign_id = ?";

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace grainsweep::study {
 namespace {
@@ -152,9 +153,11 @@ std::string Corrected::verdict() const {
     const auto cases = check.pairs == 0
                            ? fmt::format("{} cases at {}", check.points, *goal.setting)
                            : fmt::format("{} cases at {} and {} pairs", check.points, *goal.setting, check.pairs);
-    const auto other = alone          ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone)
-                       : chosen_alone ? "; pairs with a cheaper setting would have cost more"
-                                      : "";
+    const auto other =
+        alone          ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone)
+        : before_alone ? fmt::format("; after {} cases at a cheaper setting, as more pairs cost more", *before_alone)
+        : chosen_alone ? "; pairs with a cheaper setting would have cost more"
+                       : "";
     return fmt::format(
         "{} {} {} of {}: {}; numerics {}, statistics {}, together {}; {}, {:.3g} core-s{}", goal.observable,
         within ? "within" : "not yet within", share_or_unknown(goal.tolerance), campaign::AccuracyGoal::measure,
@@ -233,21 +236,28 @@ std::optional<Corrected> corrected_of(const store::Store& store, const store::Ca
     const auto records = store.campaigns();
     const auto name = name_at(campaign.name, campaign::AccuracyGoal::measure);
     const auto measure = std::ranges::find(records, name, &store::CampaignRecord::name);
-    const bool paired = *goal->setting != campaign::AccuracyGoal::measure;
-    const auto cheap = first_values(store, campaign.name, goal->observable, campaign.asked.candidates).values;
-    std::vector<double> expensive;
-    if (paired && measure != records.end())
-        expensive = first_values(store, name, goal->observable,
-                                 std::min(measure->asked.candidates, static_cast<std::int64_t>(cheap.size())))
-                        .values;
-    if (cheap.empty() || (paired && expensive.empty())) return std::nullopt;
     Corrected found;
+    auto cheap = first_values(store, campaign.name, goal->observable, campaign.asked.candidates).values;
+    std::vector<double> expensive;
+    auto checks = store.convergence(campaign.name, goal->observable);
+    bool paired = *goal->setting != campaign::AccuracyGoal::measure;
+    if (paired && measure != records.end())
+        expensive = first_values(store, name, goal->observable, measure->asked.candidates).values;
+    if (auto alone = store.convergence(name, goal->observable); paired && !alone.empty()) {
+        paired = false;
+        checks = std::move(alone);
+        found.before_alone = std::ssize(cheap);
+        cheap = std::exchange(expensive, {});
+        goal->setting = campaign::AccuracyGoal::measure;
+    }
+    expensive.resize(std::min(expensive.size(), cheap.size()));
+    if (cheap.empty() || (paired && expensive.empty())) return std::nullopt;
     const stats::TwoLevelRule rule{gates_of(*goal), goal->tolerance, campaign.asked.candidates, 1};
-    const auto factors = first_factors(store, campaign.name, std::ssize(cheap));
+    const auto factors = first_factors(store, found.before_alone ? name : campaign.name, std::ssize(cheap));
     const auto sequences = static_cast<std::size_t>(campaign.sequences);
     found.check = stats::two_level_check(rule, {cheap, expensive, sequences, factors.view()});
-    for (const auto& row : store.convergence(campaign.name, goal->observable))
-        found.within = found.within || (row.converged && row.points == found.check.points);
+    found.within =
+        std::ranges::any_of(checks, [&](const auto& row) { return row.converged && row.points == found.check.points; });
     found.core_seconds = core_seconds(store, "total", campaigns_of_goal(store, campaign));
     if (paired)
         found.alone = stats::cases_alone(rule, {expensive, {}, sequences, factors.view()}) *

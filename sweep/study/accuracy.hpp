@@ -1,11 +1,11 @@
-// What each setting of the numerics costs and how far its answers lie from those of the most accurate one.
+// Cost of each setting of the numerics, and its bias relative to the most accurate setting.
 //
-// The same points are asked at every setting with the same random numbers (common_random_numbers), so that the
-// difference of an observable is that of the numerics:
+// Every setting runs the same points with the same random numbers (common_random_numbers), so differences of an
+// observable come from the numerics:
 //
 //   bias = mean over points of (y_setting - y_against),   +- t_{0.975, n-1} sd/sqrt(n)
 //
-// over the n points that have an answer at both. Cost: mean processor time of a case with an answer.
+// n: number of points with an answer at both settings. Cost: mean processor time of a case with an answer.
 #pragma once
 
 #include "sweep/store/store.hpp"
@@ -18,7 +18,7 @@
 
 namespace grainsweep::study {
 
-/// One way to compute the points: a campaign of the database.
+/// Campaign of the database with one setting of the numerics.
 struct NumericsCampaign {
     std::string campaign;
     std::string says;  ///< "fast", "reference with precision = mixed"
@@ -27,12 +27,12 @@ struct NumericsCampaign {
 struct Bias {
     std::string observable, unit;
     std::size_t pairs = 0;
-    double mean = 0;        ///< of the most accurate setting, over the pairs
+    double mean = 0;        ///< mean of the most accurate setting, of the pairs
     double bias = 0;        ///< NaN without a pair
-    double half_width = 0;  ///< of 95 %; NaN with fewer than two pairs
+    double half_width = 0;  ///< 95 % half-width; NaN with fewer than two pairs
     double scatter = 0;     ///< standard deviation of the differences
 
-    /// |bias| + half_width over |mean|: what the setting may be off by.
+    /// Returns (|bias| + half_width)/|mean|, the bound of the relative bias.
     [[nodiscard]] double relative_bound() const;
 };
 
@@ -43,12 +43,12 @@ struct NumericsCost {
     std::vector<Bias> biases;
 };
 
-/// Of each campaign against the last. Observables: those scalars that have a value there.
+/// Returns cost and bias of each campaign relative to the last one, for the scalars with a value there.
 [[nodiscard]] std::vector<NumericsCost> accuracy_of(const store::Store& store,
                                                     std::span<const NumericsCampaign> campaigns);
 
-/// The cheapest setting whose bias of every named observable is within the tolerance, relative to its mean, with 95 %;
-/// none where that is no other than the most accurate one.
+/// Returns the cheapest setting whose 95 % bound of the relative bias of every named observable is within the
+/// tolerance; empty if only the most accurate setting is.
 [[nodiscard]] std::optional<std::size_t> cheapest_within(std::span<const NumericsCost> costs,
                                                          std::span<const std::string> observables, double tolerance);
 

@@ -121,8 +121,8 @@ std::optional<std::pair<double, double>> covered_by(const store::Store& store, c
     return covered;
 }
 
-/// How many of the points that follow from the answers are, from the first on, the settings that were run: all of them,
-/// unless another version of the program chose them.
+/// Returns how many points, from the first on, agree with the settings that were run: all, unless another version of
+/// the program chose them.
 std::size_t followed_points(const designs::Calibration& found, const Responses& run) {
     constexpr double rounding = 1e-9;  // of the range
     const std::size_t d = found.points.dimensions;

@@ -32,7 +32,8 @@ struct TargetCheck {
     std::optional<double> z = {};  ///< distance of the fresh runs from the measurement (designs::miss_of)
     double beyond = 0;             ///< distance from the range of all cases, in standard deviations; 0: inside
     std::string refusal;           ///< why the target has no model; empty: it has one
-    /// For a place along a curve that no case has reached: first and last place of the curves under its condition.
+    /// First and last place of the curves under the target's condition. Only for a target at a place of a curve that no
+    /// case has reached.
     std::optional<std::pair<double, double>> covered = {};
 
     /// Returns a name such as "torque at rpm = 15" or "heap angle".

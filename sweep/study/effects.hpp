@@ -1,4 +1,4 @@
-// Histogram of a response and its mean in bins of each factor, so that a figure of ten thousand cases has no more
+// Histogram of a response and its mean in bins of each factor. A figure of ten thousand cases therefore has no more
 // elements than one of a hundred.
 #pragma once
 

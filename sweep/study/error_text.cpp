@@ -10,7 +10,7 @@ namespace grainsweep::study {
 std::string with_error(double value, double error) {
     if (!std::isfinite(value)) return "-";
     if (!std::isfinite(error)) return fmt::format("{:.5g}", value);
-    if (!(error > 1e-12 * std::abs(value))) return fmt::format("{:.5g} ± 0", value);
+    if (!(error > 1e-12 * std::abs(value))) return fmt::format("{:.{}g} ± 0", value, std::abs(value) < 1e5 ? 5 : 12);
     const double magnitude = std::max(std::abs(value), error);
     const int place = 1 - static_cast<int>(std::floor(std::log10(error)));  // decimals for two digits of the error
     if (magnitude >= 1e6 || magnitude < 1e-3) {

@@ -1,6 +1,7 @@
 #include "sweep/study/history.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/spread.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/schedule/judge.hpp"
@@ -142,6 +143,17 @@ std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, c
     return found.front();
 }
 
+/// Why statistics are missing of values that spread too far or too little for double precision.
+void warn_of_powers(History& history, std::span<const double> values) {
+    for (const int power : {2, 4}) {
+        const auto reason = stats::reason_against_powers(values, power);
+        if (reason.empty()) continue;
+        history.warnings.push_back(
+            fmt::format("no {}: {}", power == 2 ? "sd, skewness, g1 and kurtosis" : "g1 and kurtosis", reason));
+        return;
+    }
+}
+
 /// What the values of a sample do not show yet.
 void warn_of_few(History& history, const Responses& responses) {
     if (!responses.ordered_sample()) return;
@@ -157,6 +169,7 @@ void warn_of_few(History& history, const Responses& responses) {
 }
 
 void warn(History& history, const Responses& responses, const ResponseColumn& response) {
+    warn_of_powers(history, responses.known(response));
     warn_of_few(history, responses);
     const auto& record = responses.campaign;
     if (history.has_rule && history.settings.traits().one_gate) {

@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "stats/confidence.hpp"
+#include "stats/spread.hpp"
 #include "stats/trend.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
@@ -35,9 +36,9 @@ std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settl
     return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, most_bins);
 }
 
-/// The binned index of a lattice with replicates without the part that scatter gives to the means, and the half-width
-/// of normal scatter: a sum of squares S of f degrees of freedom has E[S] = S0 + f sigma^2 and, as a (noncentral)
-/// chi-squared variable, V[S] = 2 f sigma^4 + 4 sigma^2 S0; the index is one such sum over that and the rest.
+/// Removes the contribution of scatter to the bin means from the index of a lattice with replicates, and sets its
+/// half-width for normal scatter. A sum of squares S with f degrees of freedom is a (noncentral) chi-squared variable:
+/// E[S] = S0 + f sigma^2, V[S] = 2 f sigma^4 + 4 sigma^2 S0. The index is the ratio of one such sum to the total.
 void take_out_scatter(FactorInfluence& factor, const stats::VarianceSplit& split, std::span<const double> values) {
     double n = 0, mean = 0, squares = 0;
     for (const double value : values) {
@@ -86,8 +87,8 @@ double variance_in_bins(const Responses& responses, const stats::PureError& pure
     return freedom > 0 ? std::max(0.0, squares / freedom) : not_a_number;
 }
 
-/// The response bends where its binned means leave the best rising and the best falling curve by more than scatter
-/// explains: a sum of squares beyond three standard deviations of a chi-squared variable.
+/// Returns the trend. The response bends if its bin means are too far from the best rising and from the best falling
+/// curve: the sum of squared distances is beyond three standard deviations of a chi-squared variable.
 Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, const Responses& responses,
                const stats::PureError& pure, std::span<const double> response) {
     double centre = 0, count = 0;
@@ -152,8 +153,8 @@ void add_trends(Influence& influence, const Responses& responses, std::span<cons
     }
 }
 
-/// Values of points that do not depend on each other: of a block of a Saltelli design its first two points alone, for
-/// the others repeat their coordinates, and bins of repeated coordinates would explain what other factors do.
+/// Returns the values of independent points. In a block of a Saltelli design these are the first two points, because
+/// the others repeat their coordinates. Bins of repeated coordinates would include effects of other factors.
 std::vector<double> independent_values(const Responses& responses, const ResponseColumn& response) {
     const auto judged = responses.judged(response);
     std::vector<double> values(judged.begin(), judged.end());
@@ -183,6 +184,23 @@ stats::VarianceSplit split_of(const Responses& responses, std::span<const double
                                                             std::min(most_pieces, most_coefficients / d))});
     }
     return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
+}
+
+/// Of values that depend on other factors a binned index is no first-order index of an independent factor.
+void note_dependent_values(Influence& influence, const Responses& responses) {
+    const auto note = [&](const char* sentence, auto depends) {
+        std::vector<std::string> names;
+        for (std::size_t j = 0; j < responses.factors.size(); ++j)
+            if (depends(j)) names.push_back(responses.factors[j].name);
+        if (!names.empty()) influence.notes.push_back(fmt::format(fmt::runtime(sentence), campaign::listed(names)));
+    };
+    note(
+        "the binned index of {} includes the effect of its condition, because the default stands where that is false; "
+        "indices by a response model do not include it",
+        [&](std::size_t j) { return responses.factors[j].conditional; });
+    if (responses.design().purpose == designs::Purpose::saltelli) return;  // the shares have one index there
+    note("{} add to one: the binned index of each includes the effect of the others, and the indices have no sum",
+         [&](std::size_t j) { return responses.group_names[responses.groups[j]] == campaign::group_of_shares; });
 }
 
 void add_given_data(Influence& influence, const Responses& responses, std::span<const double> values) {
@@ -224,6 +242,7 @@ void add_given_data(Influence& influence, const Responses& responses, std::span<
             fmt::format("with {} points in {} bins an index below about {:.2g} is indistinguishable from zero", points,
                         bins_at_most, floor));
     }
+    note_dependent_values(influence, responses);
 }
 
 }  // namespace
@@ -299,6 +318,11 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
             fmt::format("a {} places its points by results: shares of the variance over the ranges are those of the "
                         "response model alone",
                         responses.campaign.design));
+        add_trends(influence, responses, values);
+        return influence;
+    }
+    if (const auto reason = stats::reason_against_powers(values, 2); !reason.empty()) {
+        influence.notes.push_back("no shares of the variance: " + reason);
         add_trends(influence, responses, values);
         return influence;
     }

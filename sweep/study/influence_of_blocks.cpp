@@ -25,8 +25,8 @@ std::vector<std::size_t> members_of(const Responses& responses, std::size_t grou
     return members;
 }
 
-/// One row per design point from 0 on: coordinates and the mean over its repeats; NaN where the point was filtered
-/// out, failed or is not there. What designs made of blocks need.
+/// Points of block designs, one row per design point from 0: coordinates, and the mean of its replicates. NaN if the
+/// point was filtered out, failed or is missing.
 struct Grid {
     std::vector<double> coordinates, values;
     std::vector<bool> there;  ///< of every point, whether it has a row

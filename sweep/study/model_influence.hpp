@@ -2,9 +2,9 @@
 // It gives total indices and interactions from any design (stats/model_indices.hpp), beside the indices from the cases
 // themselves.
 //
-// Refused if the model is refused (stats/response_model.hpp), or if the campaign's `where` excludes a part of the box:
-// the indices refer to the whole box, and that part has no cases. Errors come from leaving out independent sequences,
-// or eight stretches of the cases.
+// Refused if the model is refused (stats/response_model.hpp). Refused also if the campaign's `where` excludes a part of
+// the box: the indices refer to the whole box, and that part has no cases. Errors come from leaving out independent
+// sequences, or eight stretches of the cases.
 #pragma once
 
 #include "stats/model_indices.hpp"

@@ -13,7 +13,8 @@ namespace grainsweep::study {
 namespace {
 
 constexpr std::size_t cases_in_trial = 300, most_trials = 6;
-constexpr double worth_a_ratio = 0.95;  // of the leave-one-out error without it
+constexpr double worth_a_ratio = 0.95;     // of the leave-one-out error without it
+constexpr double barely_explained = 0.95;  // leave-one-out error in standard deviations: 10 % of the variance
 
 stats::ResponseModelOptions boxed(std::span<const double> rows, std::size_t width) {
     auto box = box_of(rows, width);
@@ -135,8 +136,9 @@ using FittedModel = std::variant<stats::ResponseModel, stats::ProbabilityModel>;
 
 /// A probability's own model where the response is one.
 std::variant<FittedModel, stats::Refusal> fitted(std::span<const double> rows, std::size_t width,
-                                                 std::span<const double> values) {
+                                                 std::span<const double> values, Unexplained unexplained) {
     auto options = boxed(rows, width);
+    if (unexplained == Unexplained::scatter) options.refused_error = std::numeric_limits<double>::infinity();
     if (stats::only_zero_and_one(values)) {
         auto fit = stats::fit_probability({rows, width}, values, options.low, options.high);
         if (auto* refused = std::get_if<stats::Refusal>(&fit)) return std::move(*refused);
@@ -152,6 +154,12 @@ void note_quality(ObservableModel& learned) {
     const auto* model = std::get_if<stats::ResponseModel>(&learned.model);
     if (model == nullptr) return;
     const auto& quality = model->quality();
+    if (quality.leave_one_out_error >= stats::ResponseModelOptions{}.refused_error)
+        learned.notes.push_back(fmt::format(
+            "the factors explain {} of '{}' ({} cases, left-out ones predicted with an error of {:.2f} standard "
+            "deviations): the model counts the rest as scatter of single runs",
+            quality.leave_one_out_error < barely_explained ? "little" : "nothing", learned.observable, quality.cases,
+            quality.leave_one_out_error));
     if (quality.logarithm)
         learned.notes.push_back(fmt::format(
             "the model is one of log({}): leave-one-out error {:.3f} with it, {:.3f} without it, on {} cases",
@@ -164,7 +172,8 @@ void note_quality(ObservableModel& learned) {
 
 }  // namespace
 
-std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, const ResponseColumn& observable) {
+std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, const ResponseColumn& observable,
+                                                    Unexplained unexplained) {
     std::vector<std::string> notes;
     const bool probability = stats::only_zero_and_one(observable.values);
     Features features = !cases.features.empty() ? written_features(cases.factors, cases.features)
@@ -179,7 +188,7 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
     std::future<std::optional<stats::ProbabilityModel>> has_a_value;  // learned beside the model
     if (undefined > 0)
         has_a_value = std::async(std::launch::async, [&] { return learn_defined(rows, width, observable.values); });
-    auto fit = fitted(rows, width, observable.values);
+    auto fit = fitted(rows, width, observable.values, unexplained);
     if (auto* refused = std::get_if<stats::Refusal>(&fit)) return std::move(*refused);
     ObservableModel learned{observable.name,
                             observable.unit,
@@ -201,8 +210,8 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
     return learned;
 }
 
-ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable) {
-    auto learned = learn(cases, observable);
+ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable, Unexplained unexplained) {
+    auto learned = learn(cases, observable, unexplained);
     if (auto* refused = std::get_if<stats::Refusal>(&learned)) {
         throw campaign::wrong_question(
             fmt::format("campaign {}, observable '{}'", cases.campaign.name, observable.name), "",

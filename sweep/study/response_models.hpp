@@ -45,10 +45,18 @@ struct ObservableModel {
     [[nodiscard]] double freedom() const;
 };
 
+/// Treatment of a response that the factors hardly explain.
+enum class Unexplained {
+    refused,
+    scatter  ///< the model counts it as scatter of single runs, with a note
+};
+
 /// Fits a model of one observable. Throws WrongQuestion if a written feature cannot be evaluated.
 [[nodiscard]] std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases,
-                                                                  const ResponseColumn& observable);
+                                                                  const ResponseColumn& observable,
+                                                                  Unexplained unexplained = Unexplained::refused);
 /// Fits a model of one observable. Throws WrongQuestion with the reason if the model is refused.
-[[nodiscard]] ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable);
+[[nodiscard]] ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable,
+                                              Unexplained unexplained = Unexplained::refused);
 
 }  // namespace grainsweep::study

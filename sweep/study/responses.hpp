@@ -67,8 +67,8 @@ struct Responses {
     /// display.
     std::vector<store::ConvergenceRow> judged_checks;
     std::int64_t candidates = 0;  ///< points of the design, including those that `where` excludes
-    /// Number of rows from which statistics are computed: the rows of the prefix in which every case has a final
-    /// outcome (for a lattice or a list: all rows with one), at most to the point of convergence. A case given up after
+    /// Number of rows from which statistics are computed: the prefix in which every case has a final outcome, at most
+    /// to the point of convergence. For a lattice or a list: all rows with a final outcome. A case given up after
     /// crashes has a final outcome.
     std::size_t settled = 0;
     std::int64_t settled_points = 0;  ///< number of design points in that prefix
@@ -95,9 +95,9 @@ struct Responses {
     /// Returns the number of points of the design that the `where` clause excludes.
     [[nodiscard]] std::int64_t dropped() const;
     [[nodiscard]] const designs::DesignInfo& design() const;
-    /// Returns the main observable: the observable of the convergence rule; else the first one that decides later
-    /// points of the design (a calibration's first target); else the scene's first one with a value; else its first.
-    /// nullptr without scalars.
+    /// Returns the main observable; nullptr without scalars. It is the observable of the convergence rule. Without one
+    /// it is the observable that decides later points of the design (a calibration's first target), else the scene's
+    /// first observable with a value, else its first.
     [[nodiscard]] const ResponseColumn* main_observable() const;
     /// Returns the observable of this name; empty name: the main observable. Throws WrongQuestion with the nearest
     /// name.

@@ -81,7 +81,7 @@ void WindowQuestion::add_model(std::size_t name, std::span<const ObservableModel
     if (std::ranges::find(name_of_model_, name) != name_of_model_.end()) return;
     const auto& column = cases_->observables[name];
     const auto known = std::ranges::find(learned, column.name, &ObservableModel::observable);
-    models_.push_back(known != learned.end() ? *known : learn_or_refuse(*cases_, column));
+    models_.push_back(known != learned.end() ? *known : learn_or_refuse(*cases_, column, Unexplained::scatter));
     name_of_model_.push_back(name);
 }
 

@@ -7,8 +7,8 @@
 
 namespace grainsweep::workers {
 
-/// Clock that is read several times a second. The time between two readings counts as a quarter of a second at most:
-/// after a longer pause the process was stopped, or too busy to notice the event that it waits for.
+/// Clock that is read several times a second. The time between two readings counts as a quarter of a second at most.
+/// After a longer pause the process was stopped, or too busy to notice the event that it waits for.
 class AwakeClock {
 public:
     explicit AwakeClock(std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now())

@@ -22,7 +22,7 @@ public:
     /// its place for ever.
     [[nodiscard]] std::size_t places_taken(double now) const;
     /// Ends these processes and all that are already ending, and waits for them. A launcher still has work after its
-    /// worker has ended (srun returns its part of the machine), so it is waited for first, then receives TERM, and KILL
+    /// worker has ended; srun, for example, returns its part of the machine. So it first gets time, then TERM, and KILL
     /// last. A process that cannot be killed (it waits for a dead file server) is left behind.
     void end_all(std::vector<std::shared_ptr<Process>> children);
 

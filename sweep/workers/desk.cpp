@@ -181,8 +181,8 @@ void Desk::tick() {
     flush();
 }
 
-// A thread that neither came by nor used its processor since the last sign of life waits for something that does not
-// come, a dead file server say.
+// A thread that has neither reported nor used its processor since the last heartbeat is blocked, for example by a dead
+// file server.
 bool Desk::makes_headway() {
     timespec computed{};
     ::clock_gettime(computing_, &computed);

@@ -7,8 +7,8 @@
 //          start 7 SUM                      grainsweep host 2    first; the number of this protocol
 //          7 120 SUM <bytes>                7 80 SUM <bytes>     standard input and output of worker 7
 //          signal 7 15 SUM                  alive                every second
-//          close 7 SUM                      ended 7 9 33 SUM <log>   its status as of waitpid(2), the last it wrote
-//          lease                                                     to standard error
+//          close 7 SUM                      ended 7 9 33 SUM <log>   its status as of waitpid(2), the end of
+//          lease                                                     its standard error
 //
 // `close`: the worker's pipes are closed; `ended` still follows. End of file in either direction means that the other
 // side is gone.

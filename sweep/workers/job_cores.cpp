@@ -52,7 +52,7 @@ std::optional<std::size_t> quota_of_group(const fs::path& group) {
 }
 
 /// The smallest quota of a group and all above it, within the folder where groups are mounted. A container may see its
-/// own group as the uppermost one while its path is that of the host: what is not there is passed over.
+/// own group as the root while its path is a path of the host; missing folders are skipped.
 std::optional<std::size_t> quota_above(const fs::path& mount, const fs::path& path) {
     std::optional<std::size_t> least;
     for (fs::path group = path.relative_path();; group = group.parent_path()) {

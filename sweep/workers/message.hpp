@@ -7,18 +7,18 @@
 //
 //   main program
 //          {"run":{"attempt":2,"id":"...","inputs":{...},"revision":1,"scene":"...","seed":7}}
-//          {"threads":2}        so many may compute the case from its next slice on, and those after it; at first 1
-//          {"lease":true}       it lives; a worker that gets no message for long gives back what it has and ends
+//          {"threads":2}        threads of the present case, from its next slice on, and of later cases; at first 1
+//          {"lease":true}       heartbeat; a worker without messages for too long gives back its cases and ends
 //          {"stop":true}        no more cases; finish soon or give back, then end
 //   worker
 //          {"ready":{"build":"...","commit":"...","host":"...","path":"avx2",...,"protocol":3,"version":"..."}}
-//          {"begun":{"attempt":2,"id":"...","resumed":false}}     the next of the cases it was given
-//          {"alive":{"attempt":2,"id":"...","progress":0.4}}      every second that the case makes headway
+//          {"begun":{"attempt":2,"id":"...","resumed":false}}     the next of its cases
+//          {"alive":{"attempt":2,"id":"...","progress":0.4}}      every second in which the case makes progress
 //          {"done":{"attempt":2,"checkpointed":false,"cost":{...},"id":"...",...,"outcome":"completed"}}
 //          {"give_back":{"attempt":2,"id":"...","reason":"..."}}  unfinished; a checkpoint may exist.
-//                               With "broken":true: a file could not be written, and no other case would fare better
+//                               With "broken":true: a file could not be written, as in every other case
 //
-// The worker as the main program sees it (worker_state.hpp). Whatever has no arrow is answered by `dismissed`:
+// States of a worker in the main program (worker_state.hpp). An event without an arrow leads to `dismissed`:
 //
 //                      ready, of the same build
 //       starting ------------------------------------> serving <--+ begun, alive, done
@@ -38,7 +38,7 @@
 //       end of file, from any state: ended. What had begun has failed, or was interrupted from outside; the rest of
 //       what it was given was never begun.
 //
-// A case in a worker's hands:
+// States of a case given to a worker:
 //
 //       given --begun--> begun --done------> answered
 //         |                |---give_back---> given back (abandoned; costs no try)

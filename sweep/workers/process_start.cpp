@@ -28,8 +28,8 @@ namespace {
 
 namespace bp = boost::process;
 
-/// No signal reaches this thread while it lives. A process that is forked then begins with all of them held, too, and
-/// must not answer one by a handler of ours, which would tell this process of it.
+/// No signal reaches this thread while it lives. A process forked meanwhile also begins with all signals blocked. It
+/// must not run a handler of this process, which would report the signal here.
 class SignalsHeld {
 public:
     SignalsHeld() {

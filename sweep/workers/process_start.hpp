@@ -23,8 +23,8 @@ struct ProcessStart {
     std::optional<std::int64_t> file = {};      ///< RLIMIT_FSIZE, bytes; empty: as this process
     /// The program is not grainsweep. It inherits no other descriptor and no blocked or ignored signal, writes no core
     /// file, and is killed when this process ends. The calling thread waits until the program runs or has failed to
-    /// start. It does not wait for grainsweep's own processes, because a dead file server could block it for ever: one
-    /// that cannot be executed writes the reason to its standard error and ends.
+    /// start. It does not wait for grainsweep's own processes, because a dead file server could block it for ever. A
+    /// process that cannot be executed writes the reason to its standard error and ends.
     bool stranger = false;
 };
 

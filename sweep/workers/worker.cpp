@@ -38,8 +38,8 @@ std::string binding(const campaign::Computer& program) {
                        ::gnu_get_libc_version(), instruction_path());
 }
 
-/// Shared starting states, kept apart by build and instruction path: another one rounds differently, and a state found
-/// must be to the last bit the one that would be computed.
+/// Shared starting states, separate for each build and instruction path, because these round differently and a stored
+/// state must have the same bits as a computed one.
 class OwnArtefacts final : public Artefacts {
 public:
     OwnArtefacts(files::ArtefactFolder* folder, const campaign::Computer& program)
@@ -56,8 +56,8 @@ private:
     std::string suffix_;
 };
 
-/// Saves and finds the state of an unfinished case. The file is named by the case and the build, not by the
-/// attempt: every attempt follows the same path bit for bit, so any attempt may continue any other's.
+/// Saves and finds the state of an unfinished case. The name of the file contains the case and the build, not the
+/// attempt: all attempts have the same bits, so each may continue any other.
 class Checkpoints {
 public:
     Checkpoints(files::ArtefactFolder* folder, const campaign::CaseId& id, const campaign::Computer& program)
@@ -83,8 +83,8 @@ private:
     bool exists_ = false;
 };
 
-/// Looked at between the slices of a running case: reports that it makes headway, saves it now and then, and gives it
-/// up when the worker is to end.
+/// Watch between the slices of a running case: reports progress, saves checkpoints, and interrupts the case when the
+/// worker must end.
 class CaseWatch {
 public:
     CaseWatch(const WorkerOptions& options, Desk& desk, Checkpoints& checkpoints)

@@ -1,7 +1,7 @@
 // Main function of a worker process: reads cases from standard input, computes them one by one, and writes answers to
-// standard output. It ends on a request to stop, when its main program is gone or sends an invalid message, when it
-// receives no message for too long, and on the signals TERM, INT, HUP, USR1 and USR2. Before it ends, it saves a
-// checkpoint and gives back its cases.
+// standard output. It ends on a request to stop, and on the signals TERM, INT, HUP, USR1 and USR2. It also ends when
+// its main program is gone, sends an invalid message, or is silent for too long. Before it ends, it saves a checkpoint
+// and gives back its cases.
 #pragma once
 
 #include "sweep/campaign/case.hpp"

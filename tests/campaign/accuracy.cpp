@@ -66,6 +66,63 @@ TEST(Accuracy, EverySettingIsComparedPointByPointAndResumes) {
     EXPECT_FALSE(std::filesystem::exists(folder / "a_fast.json"));
 }
 
+std::vector<std::string> settings_in(const json& found) {
+    std::vector<std::string> settings;
+    for (const auto& one : found["settings"]) settings.push_back(one["setting"]);
+    return settings;
+}
+
+TEST(Accuracy, StiffnessIsMovedInScenesAndMachinesUnlessTheCampaignVariesIt) {
+    const Folder folder;
+    const auto settings_of = [&](const json& campaign) {
+        folder.write("a.json", campaign.dump());
+        const auto ended =
+            run_program({"accuracy", "a.json", "--points", "2", "--quiet", "--format", "json"}, folder.path());
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        std::filesystem::remove(folder / "a_accuracy.db");
+        return settings_in(json::parse(ended.out));
+    };
+    auto stiff = spreading({{"youngs_modulus", 3e6}, {"width", 3}});
+    auto found = settings_of(stiff);
+    EXPECT_THAT(found, testing::IsSupersetOf(
+                           {"reference with youngs_modulus = 3e+05", "reference with youngs_modulus = 3e+07"}));
+    EXPECT_THAT(found, testing::IsSupersetOf({"fine", "reference with time_step_fraction = 0.2"}));
+    EXPECT_THAT(found, testing::Not(testing::Contains("reference with precision = mixed"))) << "that is fine";
+    stiff["fixed"].erase("youngs_modulus");
+    stiff["factors"].push_back({{"name", "youngs_modulus"}, {"between", {1e6, 4e6}}});
+    EXPECT_THAT(settings_of(stiff), testing::Not(testing::Contains(HasSubstr("youngs_modulus"))));
+    const json drum = {{"campaign", "a"},
+                       {"scene", "rotating_drum"},
+                       {"factors", {{{"name", "friction"}, {"between", {0.2, 0.8}}}}},
+                       {"fixed",
+                        {{"drum_diameter", 0.03},
+                         {"length", 0.02},
+                         {"particles", 20},
+                         {"turning_time", 0.05},
+                         {"measured_time", 0.05}}},
+                       {"design", {{"kind", "halton"}, {"points", 8}}}};
+    EXPECT_THAT(settings_of(drum),
+                testing::IsSupersetOf({"reference with stiffness_scale = 0.1", "reference with stiffness_scale = 10"}));
+}
+
+TEST(Accuracy, KeepsThePowderOfTheCampaign) {
+    const Folder folder;
+    folder.write("p.json", json({{"powder", "p"},
+                                 {"material", {{"density", 4000}, {"youngs_modulus", 2e7}, {"poisson_ratio", 0.3}}},
+                                 {"contacts", {{"friction", 0.3}, {"restitution", 0.5}}}})
+                               .dump());
+    auto campaign = spreading(json::object());
+    campaign["powder"] = "p.json";
+    folder.write("a.json", campaign.dump());
+    const auto ended =
+        run_program({"accuracy", "a.json", "--points", "2", "--quiet", "--format", "json"}, folder.path());
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto rows = run_program(
+        {"query", "a_accuracy.db", "SELECT fixed FROM campaign WHERE name = 'a_reference'", "--format", "json"},
+        folder.path());
+    EXPECT_THAT(rows.out, HasSubstr("density = 4000")) << rows.err;
+}
+
 TEST(Accuracy, ANumericalInputThatTheFileHoldsIsNotMoved) {
     const Folder folder;
     folder.write("a.json", spreading({{"precision", "mixed"}}).dump());

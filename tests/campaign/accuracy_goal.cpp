@@ -104,6 +104,51 @@ TEST(AccuracyGoal, EndsAlikeWithOneAndTwoWorkersAndAfterKills) {
     EXPECT_EQ(output_of(folder, {"dump", "parts.db"}), calm);
 }
 
+/// Cases of so few particles that those of one seed at two settings hardly resemble each other.
+json scattering_strip() {
+    auto file = narrow_strip(0.05);
+    file["accuracy"]["setting"] = "survey";
+    file["fixed"]["layer_area"] = 5e-5;
+    return file;
+}
+
+TEST(AccuracyGoal, GivesUpPairsThatCostMoreThanTheReferenceAlone) {
+    const Folder folder;
+    folder.write("a.json", scattering_strip().dump());
+    const auto ended = run_of(folder, "calm.db", "2");
+    EXPECT_EQ(ended["campaign"], "a");
+    EXPECT_EQ(ended["converged"], true) << ended;
+    EXPECT_THAT(std::string(ended["ending"]), HasSubstr("at a cheaper setting, as more pairs cost more"));
+    const auto found = json::parse(output_of(folder, {"converge", "calm.db", "--campaign", "a", "--format", "json"}));
+    const auto& corrected = found.at(0).at("corrected");
+    EXPECT_EQ(corrected["setting"], "reference");
+    EXPECT_EQ(corrected["pairs"], 0);
+    EXPECT_EQ(corrected["within"], true);
+    const auto by_hand = json::parse(output_of(
+        folder,
+        {"query", "calm.db", "SELECT avg(mfr) AS mean, count(*) AS cases FROM a_reference", "--format", "json"}))[0];
+    EXPECT_NEAR(by_hand["mean"], corrected["statistics"]["mean"]["value"], 1e-12);
+    EXPECT_EQ(by_hand["cases"], corrected["cases"]);
+
+    const auto calm = output_of(folder, {"dump", "calm.db"});
+    EXPECT_EQ(run_of(folder, "calm.db", "1")["ending"], ended["ending"]) << "nothing is computed again";
+    EXPECT_EQ(output_of(folder, {"dump", "calm.db"}), calm);
+    for (const int after : {5, 30, 50, 60}) {
+        Process killed(program_command({"run", "a.json", "--db", "killed.db", "-j", "2"}), folder.path());
+        await_settled(killed, folder / "killed.db", after);
+        killed.signal(SIGKILL);
+        killed.wait();
+    }
+    EXPECT_EQ(without_time(run_of(folder, "killed.db", "2")["ending"]), without_time(ended["ending"]));
+    EXPECT_EQ(output_of(folder, {"dump", "killed.db"}), calm);
+
+    // With a larger tolerance the pairs suffice, and their answer counts again.
+    auto larger = scattering_strip();
+    larger["accuracy"]["tolerance"] = 0.5;
+    folder.write("a.json", larger.dump());
+    EXPECT_THAT(std::string(run_of(folder, "calm.db", "2")["ending"]), HasSubstr(" cases at survey and "));
+}
+
 TEST(AccuracyGoal, OfTheReferenceAloneNeedsNoPairs) {
     const Folder folder;
     auto file = narrow_strip(0.3);

@@ -214,6 +214,19 @@ TEST_F(ServedCampaign, WithControlTheReaderStopsAndStartsTheRun) {
     EXPECT_TRUE(reader.until([&] { return settled("a") == 130; }));
 }
 
+TEST_F(ServedCampaign, OfAFolderEveryCampaignFileCanBeStarted) {
+    begin("a", 3, 0);
+    begin("b", 4, 0);
+    folder.write("notes.json", R"({"no": "campaign"})");
+    const LiveServer server(folder, ".", {"--control", "."});
+    Reader reader(server.events());
+    EXPECT_EQ(server.post("/run", "database=b.db").status, 404) << "which file?";
+    EXPECT_EQ(server.post("/run", "database=b.db&config=notes.json").status, 404) << "no campaign";
+    EXPECT_EQ(server.post("/run", "database=b.db&config=b.json").status, 200);
+    EXPECT_TRUE(reader.until([&] { return settled("b") == 4; }));
+    EXPECT_EQ(settled("a"), 1);
+}
+
 TEST_F(ServedCampaign, AFilmIsComputedOnceAndKeptBesideTheDatabase) {
     folder.write("a.json", R"({"campaign": "a", "scene": "powder_spreading", "fixed": {"diameter": 0.003},
         "factors": [{"name": "gap", "levels": [0.004]}], "design": {"kind": "lattice"}})");

@@ -111,4 +111,20 @@ TEST(LaboratoryBulk, TheMillsTorqueIsTheMomentOfTheWeight) {
     EXPECT_LT(answer("mill", small).at("torque"), 0.6 * tumbling.at("torque")) << "balls that stick to the wall";
 }
 
+// Bond's standard mill: 305 mm wide and long, smooth, 20.1 kg of balls, 70 rpm, about 70 W (Steiner 1996, Int. J.
+// Miner. Process. 44-45, 373). Its balls have several sizes, and it holds ore: a tenth is what this is known to.
+TEST(LaboratoryBulk, BondsMillTakesItsPower) {
+    const auto bond = answer("mill", {{"mill_diameter", 0.305},
+                                      {"length", 0.305},
+                                      {"ball", 0.025},
+                                      {"filling", 0.193},
+                                      {"speed", 0.876},
+                                      {"lifters", std::int64_t{0}},
+                                      {"friction", 0.4},
+                                      {"revolutions", 2.0}});
+    EXPECT_NEAR(bond.at("mass"), 20.1, 0.2);
+    EXPECT_NEAR(bond.at("power"), 70, 7);
+    EXPECT_NEAR(bond.at("power") / bond.at("torque"), 70 * 2 * std::numbers::pi / 60, 0.02) << "rad/s";
+}
+
 }  // namespace grainsweep::tests::laboratory_bulk_test

@@ -2,7 +2,7 @@
 # Makes the pictures of README and docs anew: runs the program and opens its pages in headless Chromium.
 #   tests/pictures/make.sh [NAME]...       all, or some of:
 #                                          spreading cell bands report drum heap roller hopper profile layers
-#                                          window mixer machines
+#                                          window mixer machines mill
 # PROGRAM (build/grainsweep) and CHROMIUM (chromium) may be given in the environment. The pictures go to docs/pictures,
 # less than 150 kB each. Ten minutes of computing.
 set -euo pipefail
@@ -135,6 +135,13 @@ b["walls"].update(a["walls"]); print(json.dumps({**a, **b}))' >mixer.json
     shoot "mixer.html#t=0.37" machine_draw 1000 700 0.7
 }
 
+# Power of the mill against its speed, with and without lifters.
+mill() {
+    "$program" run "$here/configs/laboratory_mill.json" --quiet
+    "$program" figure laboratory_mill.db cases --observable power --across speed --up power --colour lifters --width 110mm \
+        -o "$pictures/mill_power.png"
+}
+
 # Every installed machine as it is drawn, without the controls of the page; the chute, which starts empty, in a case.
 machines() {
     local name
@@ -149,14 +156,14 @@ machines() {
     done
 }
 
-if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers window mixer machines; fi
+if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers window mixer machines mill; fi
 for name in "$@"; do
     case $name in
-        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers | window | mixer | machines)
+        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers | window | mixer | machines | mill)
             "$name"
             ;;
         *)
-            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers window mixer machines" >&2
+            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers window mixer machines mill" >&2
             exit 2
             ;;
     esac

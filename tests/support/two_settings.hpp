@@ -61,34 +61,44 @@ private:
 struct TwoLevelCourse {
     stats::TwoLevelCheck check;
     bool within = false;
+    std::int64_t before_alone = 0;  ///< values of the cheap setting before the expensive one went on alone
 };
 
 /// As `run` does it.
 inline TwoLevelCourse follow(const TwoSettingsCampaign& campaign, const stats::TwoLevelRule& rule, bool paired) {
-    auto [points, pairs] = stats::first_sizes(8, paired);
+    constexpr std::int64_t sequences = 8;
+    auto [points, pairs] = stats::first_sizes(sequences, paired);
     bool passed = false;
+    std::int64_t before_alone = 0;
     while (true) {
         const auto cheap = paired ? campaign.cheap(points) : campaign.expensive(points);
         const auto expensive = campaign.expensive(pairs);
-        TwoLevelCourse course{stats::two_level_check(rule, {cheap, expensive, 8, campaign.points(points)}), false};
+        const stats::PairedValues values{cheap, expensive, sequences, campaign.points(points)};
+        TwoLevelCourse course{stats::two_level_check(rule, values), false, before_alone};
         course.within = passed && course.check.passes;
         if (course.within || course.check.last()) return course;
         passed = course.check.passes;
         points = course.check.next_points;
         pairs = course.check.next_pairs;
+        if (!paired || !stats::alone_costs_less(rule, values)) continue;
+        before_alone = std::ssize(cheap);
+        const auto own = stats::two_level_check(rule, {expensive, {}, sequences, values.points});
+        points = std::max(own.next_points, stats::first_sizes(sequences, false).points);
+        pairs = 0;
+        paired = passed = false;
     }
 }
 
 struct TwoLevelCoverage {
-    int campaigns = 0, stopped = 0, mean_held = 0, sd_held = 0, within_goal = 0;
+    int campaigns = 0, stopped = 0, mean_held = 0, sd_held = 0, within_goal = 0, switched = 0;
     double points = 0, pairs = 0;
     double alone = 0;  ///< cost of the expensive setting alone / cost of the campaigns
 
     [[nodiscard]] std::string figures(const std::string& name) const {
         return name + ": mean " + std::to_string(mean_held) + ", sd " + std::to_string(sd_held) + ", goal " +
                std::to_string(within_goal) + " of " + std::to_string(campaigns) + "; stopped " +
-               std::to_string(stopped) + ", points " + std::to_string(points) + ", pairs " + std::to_string(pairs) +
-               ", alone " + std::to_string(alone);
+               std::to_string(stopped) + ", switched " + std::to_string(switched) + ", points " +
+               std::to_string(points) + ", pairs " + std::to_string(pairs) + ", alone " + std::to_string(alone);
     }
 };
 
@@ -112,7 +122,10 @@ inline TwoLevelCoverage cover(const TwoSettings& settings, std::vector<stats::St
         ++all.campaigns;
         all.stopped += course.within ? 1 : 0;
         all.within_goal += reached ? 1 : 0;
-        const auto points = static_cast<double>(course.check.points), pairs = static_cast<double>(course.check.pairs);
+        const bool alone = course.before_alone > 0;
+        all.switched += alone ? 1 : 0;
+        const auto points = static_cast<double>(alone ? course.before_alone : course.check.points);
+        const auto pairs = static_cast<double>(alone ? course.check.points : course.check.pairs);
         all.points += points / campaigns;
         all.pairs += pairs / campaigns;
         cost += points + pairs * settings.cost_ratio;

@@ -177,7 +177,7 @@ TEST_F(LiveServed, NobodySteersWithoutControl) {
 
 // The file that says which process to stop may be written by anybody who may write into the folder.
 TEST_F(LiveServed, StopsNoProcessThatDoesNotHoldTheDatabase) {
-    serve(Control{folder / "c.json"});
+    serve(Control{{folder / "c.json"}});
     EXPECT_EQ(status(post("/stop")), 409u) << "nothing runs";
     char host[65] = {};
     ::gethostname(host, sizeof host - 1);
@@ -190,6 +190,18 @@ TEST_F(LiveServed, StopsNoProcessThatDoesNotHoldTheDatabase) {
         EXPECT_EQ(status(post("/stop")), 409u) << process;
     }
     EXPECT_EQ(status(post("/run")), 409u) << "while a run says it is there";
+}
+
+TEST_F(LiveServed, OfSeveralCampaignFilesTheReaderNamesOne) {
+    serve(Control{{folder / "b.json", folder / "c.json"}});
+    EXPECT_NE(answered(get("/")).body->find(R"("steerable":["b.json","c.json"])"), std::string::npos);
+    EXPECT_EQ(status(post("/run")), 404u) << "which?";
+    auto strange = post("/run");
+    strange.query.emplace("config", "../c.json");
+    EXPECT_EQ(status(strange), 404u);
+    auto stop = post("/stop");
+    stop.query.emplace("config", "c.json");
+    EXPECT_EQ(status(stop), 409u) << "nothing runs";
 }
 
 TEST_F(LiveServed, SaysThatTheDatabaseWasMoved) {

@@ -21,6 +21,7 @@ namespace grainsweep::tests::report_folded_cases_test {
 using stats::Statistic;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 /// x2 counts for one tool of two, the other is one case for half of the points.
 std::string tools(const std::string& more = "") {
@@ -128,6 +129,30 @@ TEST_F(Study, AModelSeesAConditionalFactorWhereItCounts) {
     const auto influence = study::model_influence_of(all, all.observable("y"));
     ASSERT_TRUE(influence.indices) << influence.refused;
     EXPECT_GT(influence.indices->total[0].value, 0.6);
+}
+
+TEST_F(Study, BinnedIndicesOfValuesThatDependOnOtherFactorsSaySo) {
+    answer_by(store, tools(), by_tool);
+    const auto tool = ask("tools");
+    const auto influence = study::influence_of(tool, tool.observable("y"));
+    // The value of x2 tells which tool it is: 1 at its default, and only there, is x1 = 0. By itself x2 explains the
+    // variance 0.8^2/12 of one half, 1/4 of that with the mean over x1.
+    EXPECT_GT(influence.factors[1].first.value, 0.5);
+    EXPECT_THAT(influence.notes, Contains(HasSubstr("the binned index of x2 includes the effect of its condition")));
+    answer_by(store, R"({"campaign": "mix", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "between": [0, 1]}, {"name": "x3", "between": [0, 1]}, {"name": "x4", "between": [0, 1]}],
+        "simplex": ["x1", "x2", "x3"], "design": {"kind": "halton", "points": 512, "sequences": 8}})",
+              [](const Inputs& inputs) { return input(inputs, "x1"); });
+    const auto mix = ask("mix");
+    const auto shares = study::influence_of(mix, mix.observable("y"));
+    EXPECT_GT(shares.factors[0].first.value, 0.95);
+    EXPECT_GT(shares.factors[1].first.value, 0.1) << "x2 has no effect, but where it is large x1 is small";
+    EXPECT_THAT(shares.notes, Contains(HasSubstr("x1, x2, x3 add to one: the binned index of each includes the effect "
+                                                 "of the others")));
+    answer_by(store, halton("plain", 128), linear);
+    const auto plain = ask("plain");
+    EXPECT_THAT(study::influence_of(plain, plain.observable("y")).notes,
+                Not(Contains(HasSubstr("the binned index of"))));
 }
 
 TEST_F(Study, AWindowSuggestsSettingsThatCanBeSet) {

@@ -46,6 +46,24 @@ TEST_F(Study, ALatticeTellsItsIndicesLineByLine) {
     EXPECT_TRUE(std::isnan(influence.factors[0].first.half_width));
 }
 
+TEST_F(Study, ValuesWhoseSquaresOverflowHaveNoSharesButAReason) {
+    for (const auto& [name, unit] : {std::pair("far", 1e160), {"little", 1e-160}, {"fourth", 1e90}}) {
+        answer_by(store, halton(name, 128), [unit = unit](const Inputs& inputs) { return unit * linear(inputs); });
+        const auto responses = ask(name);
+        const auto influence = influence_of(responses, responses.observable("y"));
+        const auto history = history_of(responses, responses.observable("y"));
+        EXPECT_NEAR(history.all.of(stats::Statistic::mean).error / unit, 0.05, 0.05) << "is known all the same";
+        if (unit == 1e90) {
+            EXPECT_NEAR(influence.factors[0].first.value, 0.8, 0.1);
+            EXPECT_THAT(history.warnings, Contains(HasSubstr("no g1 and kurtosis: the values from 1")));
+            continue;
+        }
+        EXPECT_EQ(unexplained_text(influence), "");
+        EXPECT_THAT(influence.notes, Contains(HasSubstr("no shares of the variance: the values from ")));
+        EXPECT_THAT(history.warnings, Contains(HasSubstr(" that sums of their squares leave the range of double")));
+    }
+}
+
 TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
     const std::string factors = R"("scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
         {"name": "x2", "between": [0, 0.5]}], )";

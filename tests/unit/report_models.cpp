@@ -1,4 +1,5 @@
 // What response models see of a case, conditions of a process window, and what both refuse.
+#include "stats/confidence.hpp"
 #include "stats/random.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stored_text.hpp"
@@ -22,9 +23,11 @@ using namespace report;
 using namespace study;
 
 using store::Store;
+using testing::AllOf;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 const std::vector<std::string> names = {"mfr", "rough", "gap"};
@@ -276,6 +279,33 @@ TEST_F(Learned, WindowKeepsAwayFromWhereTheObservableIsUndefined) {
     EXPECT_NEAR(window.share_of_box, 0.7, 0.06);
     const auto again = window_of(store, cases, {.where = "y >= 0", .objective = "y", .maximise = false});
     EXPECT_EQ(again.best->setting, window.best->setting);
+}
+
+TEST_F(Learned, AWindowOfAResponseThatOnlyScattersIsAllOrNothing) {
+    answer_by(store, campaign_of("c"), [number = 0](const Inputs&) mutable {
+        return stats::normal_quantile(stats::Stream(5, 0).uniform(static_cast<std::uint64_t>(++number)));
+    });
+    const auto cases = read_model_cases(store, "c");
+    EXPECT_THAT(refusal([&] { return learn_or_refuse(cases, cases.observable("y")); }), HasSubstr("no response model"));
+    EXPECT_EQ(window_of(store, cases, {.where = "y >= -0.7"}).share_of_box, 1);
+    EXPECT_EQ(window_of(store, cases, {.where = "y >= 0.7"}).share_of_box, 0);
+    // A single run: y >= -1.28 with probability 0.9, so the box is the window at a risk of 0.2, not of 0.05.
+    const auto runs = [&](double risk) {
+        return window_of(store, cases, {.where = "y >= -1.28", .risk = risk, .judged = stats::Judged::single_run});
+    };
+    EXPECT_LT(runs(0.05).share_of_box, 0.2);
+    const auto window = runs(0.2);
+    EXPECT_EQ(window.share_of_box, 1);
+    ASSERT_EQ(window.models.size(), 1U);
+    EXPECT_THAT(window.models.front().notes, testing::Contains(HasSubstr("the factors explain nothing of 'y' (120 "
+                                                                         "cases, left-out ones predicted with an")));
+}
+
+TEST_F(Learned, RefusesWhatNoSumOfSquaresHolds) {
+    answer_by(store, campaign_of("c"), [](const Inputs& inputs) { return 1e160 * (1 + input(inputs, "x1")); });
+    const auto cases = read_model_cases(store, "c");
+    EXPECT_THAT(refusal([&] { return learn_or_refuse(cases, cases.observable("y")); }),
+                AllOf(HasSubstr("leave the range of double precision: choose another unit"), Not(HasSubstr("nan"))));
 }
 
 TEST_F(Learned, ConditionsOverFactorsAloneNeedNoModel) {

@@ -19,6 +19,7 @@ using namespace report;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 using Cell = store::Table::Cell;
 
@@ -77,6 +78,18 @@ TEST(TextTable, ALongCellIsWrappedAndNumbersStayAligned) {
               "                 of particles and\n"
               "                 base\n"
               "gap        12.5  height\n");
+}
+
+TEST(TextTable, NeighboursOfAColumnDoNotLookAlike) {
+    store::Table table{{"near", "far", "rounded"}, {}};
+    for (int k = 0; k < 4; ++k) table.rows.push_back({1e9 + 0.25 * k, 1e9 / (k + 3), 0.1 * (1 + k * 1e-15)});
+    const auto lines = lines_of(written(table, 80));
+    EXPECT_THAT(lines[1], StartsWith("  1000000000  3.33333e+08      0.1"));
+    EXPECT_THAT(lines[2], StartsWith("1000000000.2      2.5e+08      0.1"));
+    EXPECT_THAT(lines[4], StartsWith("1000000000.8  1.66667e+08      0.1"));
+    // Twelve digits are the most.
+    table = {{"y"}, {{1e13}, {1e13 + 1e3}, {1e13 + 1.001e3}}};
+    EXPECT_EQ(written(table, 80), "               y\n           1e+13\n1.0000000001e+13\n1.0000000001e+13\n");
 }
 
 TEST(TextTable, AHeadingIsWrappedAtItsUnderscores) {

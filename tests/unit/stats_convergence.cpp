@@ -51,6 +51,11 @@ TEST(Confidence, JackknifeOfTheMeanIsTheStudentHalfWidth) {
     std::vector<double> leave_one_out;
     for (const double value : values) leave_one_out.push_back((31 - value) / 4);
     EXPECT_NEAR(jackknife_half_width(leave_one_out), student_half_width(values), 1e-12);
+    for (const double unit : {1e-200, 1e160, 1e300}) {  // squares of these vanish or overflow
+        std::vector<double> scaled = values;
+        for (double& value : scaled) value *= unit;
+        EXPECT_NEAR(student_half_width(scaled) / unit, student_half_width(values), 1e-12) << unit;
+    }
 }
 
 TEST(Confidence, NothingSeenIsNoProofOfNothing) {

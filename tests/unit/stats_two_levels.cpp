@@ -93,6 +93,42 @@ TEST(TwoLevels, APilotChoosesPairsWhereTheyCostLess) {
     EXPECT_EQ(chosen(9.9, 1e-9), 2U) << "one that does not predict the measure";
 }
 
+TEST(TwoLevels, PairsAreGivenUpWhereTheExpensiveAloneCostsLess) {
+    std::vector<double> far, close, reference;
+    for (int i = 0; i < 64; ++i) {
+        const double own = 2 + 0.2 * std::cos(37 * i);
+        if (i < 32) reference.push_back(own);
+        close.push_back(own + 0.1 + 0.001 * std::sin(23 * i));
+        far.push_back(2 + 0.2 * std::cos(53 * i + 1));
+    }
+    const auto gives_up = [&](const std::vector<double>& cheap, double cost_ratio) {
+        return stats::alone_costs_less({{Statistic::mean}, 0.01, 100'000, cost_ratio}, {cheap, reference, 8});
+    };
+    EXPECT_FALSE(gives_up(close, 10)) << "a cheap setting that predicts";
+    EXPECT_TRUE(gives_up(far, 10)) << "one that does not";
+    EXPECT_TRUE(gives_up(close, 1)) << "one that saves nothing";
+    EXPECT_TRUE(gives_up(std::vector<double>(64, 2.0), 1e9)) << "one that is constant";
+    const std::vector<double> equal(64, reference.front()), same(32, reference.front());
+    EXPECT_FALSE(stats::alone_costs_less({{Statistic::mean}, 0.01, 1000, 10}, {equal, same, 8}))
+        << "neither is known to end";
+}
+
+TEST(TwoLevels, PilotAndLaterChecksPredictTheSameCosts) {
+    std::vector<double> cheap, reference;
+    for (int i = 0; i < 16; ++i) {
+        reference.push_back(2 + std::cos(i));
+        cheap.push_back(2.1 + std::cos(i) + 0.1 * std::sin(7 * i));
+    }
+    bool both[2] = {false, false};
+    for (double ratio = 1; ratio < 1000; ratio *= 1.3) {
+        const stats::TwoLevelRule rule{{Statistic::mean}, 0.01, 100'000, ratio};
+        const bool alone = stats::alone_costs_less(rule, {cheap, reference, 8});
+        EXPECT_EQ(stats::cheapest_level(rule, {{{cheap, 1}, {reference, ratio}}, 8, {}}), alone ? 1U : 0U) << ratio;
+        both[alone ? 1 : 0] = true;
+    }
+    EXPECT_TRUE(both[0] && both[1]) << "the price decides";
+}
+
 /// A response that is a line over the factor, which evenly spread points integrate, and a little scatter; the cheap one
 /// scatters by itself.
 TEST(TwoLevels, APilotCountsTheScatterThatEvenlySpreadPointsLeave) {
@@ -122,6 +158,22 @@ TEST(TwoLevels, ADifferenceThatIsSmoothIsLearned) {
     EXPECT_EQ(learned.by, stats::PairPredictor::model) << to_string(learned.by);
     EXPECT_LT(learned.numerics, 0.1 * plain.numerics);
     EXPECT_LE(std::abs(learned.value - truth), learned.together);
+}
+
+/// Too many pairs for the model, and a difference that is no line.
+TEST(TwoLevels, ADifferenceWithSquaresIsLearnedFromManyPairs) {
+    std::vector<double> cheap, expensive, points;
+    for (int i = 0; i < 1024; ++i) {
+        const double x = std::fmod(0.5 + 0.618'033'988'75 * i, 1);
+        points.push_back(x);
+        cheap.push_back(1 + std::cos(3 * x));
+        if (i < 640) expensive.push_back(cheap.back() - 0.1 * x * (1 - x) + 0.001 * std::sin(29 * i));
+    }
+    const double truth = 1 + std::sin(3.0) / 3 - 0.1 / 6;
+    const auto learned = stats::two_level_moment(Statistic::mean, {cheap, expensive, 8, {points, 1}});
+    EXPECT_EQ(learned.by, stats::PairPredictor::squares) << to_string(learned.by);
+    EXPECT_LE(std::abs(learned.value - truth), learned.together);
+    EXPECT_LT(learned.numerics, 2e-4);
 }
 
 TEST(TwoLevels, PairsThatDoNotPredictLeaveTheExpensiveMean) {

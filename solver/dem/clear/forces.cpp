@@ -88,8 +88,8 @@ void ClearEngine::evaluate(bool advance) {
 
 /// List entries of some particles that touch, in list order; histories of contacts that ended are dropped.
 ///
-/// Whether a pair on the list touches is hard to predict for a processor, so there is no branch: every entry
-/// is written, and kept by advancing the end of the list.
+/// A branch for touching pairs would be hard to predict. So every entry is written, and the end of the list advances
+/// only for touching ones.
 std::size_t ClearEngine::find_touching(std::size_t first, std::size_t last) {
     touching_.resize(std::max<std::size_t>(touching_.size(), list_.end(last - 1) - list_.begin(first)));
     std::size_t found = 0;

@@ -35,8 +35,8 @@ inline std::int32_t true_pairs(const Field& f) {
     return k;
 }
 
-/// Returns Field::fetch_ahead for an inner list. For each group of adjacent pairs take the distance in places to the
-/// farthest partner; the result is the median of these, enlarged because pairs are sifted before particles are
+/// Returns Field::fetch_ahead for an inner list. For each group of adjacent pairs, the farthest partner has a distance
+/// in places. The result is the median of these distances, enlarged because pairs are sifted before particles are
 /// integrated. Pairs across periodic faces and copies of other subdomains' particles do not count. 0 if particles have
 /// fewer than one pair each: prefetching then costs more than it saves.
 inline std::int32_t distance_to_fetch(const Field& f) {

@@ -83,8 +83,8 @@ Seal MixedEngine::seal() const {
     return s;
 }
 
-/// What lies behind the ends of lists and histories, and the forces on the records that fill vectors up, depends on the
-/// past and counts for nothing: bytes that depend on the state only.
+/// Clears unused entries, so that the bytes of a checkpoint depend only on the state. Unused are the entries behind the
+/// ends of lists and histories, and the forces on records that pad vectors.
 void MixedEngine::clear_spare_entries() const {
     const auto width = static_cast<std::size_t>(kernels_->width), n = static_cast<std::size_t>(field_.inner_count);
     std::size_t contacts = 0;

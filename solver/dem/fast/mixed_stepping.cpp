@@ -14,10 +14,11 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-// The skins that make lists cheapest. A pair listed in vain costs about 1.5 ns a step and there are about ten per
-// diameter of inner skin and particle; a refresh costs about 10 ns per particle, plus 1.5 ns per pair of the outer
-// list; a rebuild about 100 ns. With drift d per step the sums of cost per step, 15 s + 10 d/s and (refreshing every
-// five steps or so) 3 s + 100 d/s, are least at s = sqrt(0.67 d) and s = sqrt(33 d).
+// Skins with the lowest cost of lists. A listed pair without contact costs about 1.5 ns per step, and there are about
+// ten per particle and diameter of inner skin. A refresh costs about 10 ns per particle, plus 1.5 ns per pair of the
+// outer list. A rebuild costs about 100 ns per particle. For a skin s and a drift d per step, the costs per step are 15
+// s + 10 d/s (inner) and 3 s + 100 d/s (outer, with a refresh about every five steps). They are smallest at s =
+// sqrt(0.67 d) and s = sqrt(33 d).
 constexpr double inner_balance = 0.45;
 constexpr double outer_balance = 40;
 constexpr double inner_skin_least = 0.004;
@@ -246,8 +247,8 @@ void MixedEngine::full_step_velocities() {
     walls_.kick(wall_time(), -0.5);  // they are half a step ahead of the forces
 }
 
-/// Lists anew, forces at the present full-step velocities without touching histories, velocities then set back by
-/// half a step: a leapfrog whose first kick is a half one.
+/// Restarts the leapfrog: makes the lists anew, computes forces at the present full-step velocities without changing
+/// histories, and sets velocities back by half a step.
 void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     stand_walls();
     drift_ = Drift{};

@@ -20,9 +20,9 @@ inline Vec3 in_body(const MovingWall& wall, const Record& record, const Scale& s
     return wall.pose().to_body(wall.image().of(position_of(record, scale)));
 }
 
-/// Calls visit(centre as of in_body) for the nearest image of the wall, and for images that become the nearest after a
-/// displacement of less than `way`, m: on the other side of the plane halfway between two images, other pieces are
-/// near.
+/// Calls visit(centre as of in_body) for the nearest image of the wall, and for images that can become the nearest
+/// after a displacement of less than `way`, m. Those are needed because other pieces are near on the other side of the
+/// plane halfway between two images.
 template <class Visit>
 void each_image(const MovingWall& wall, const Record& record, const Scale& scale, double way, Visit&& visit) {
     const NearestImage& image = wall.image();

@@ -107,7 +107,7 @@ void find_pairs(Field& f, Columns& c, const Kernels& kernels, const ListSpace& s
 }
 
 /// Calls visit(first, second, stream index, inner index) for every contact of the last step in these vectors of the
-/// inner list, in order; `stream` is the index of the first.
+/// inner list, in order. `stream`: index of the first contact.
 template <class Visit>
 void for_each_contact(const Field& f, Range vectors, std::int32_t stream, std::int32_t width, Visit visit) {
     for (std::int32_t b = vectors.begin; b < vectors.end; ++b)

@@ -98,8 +98,8 @@ struct Faces {
     }
 };
 
-/// How many of each part's particles come before those of that cell, and before those of the next part in it: the place
-/// where its next particle goes. c.cell_start becomes where each cell begins.
+/// Computes, for each part and cell, the place of the part's next particle: the number of particles in earlier cells,
+/// and of earlier parts in this cell. Sets c.cell_start to the start of each cell.
 void place_cells(Columns& c, std::int32_t cells, const Parts& parts) {
     const auto stride = static_cast<std::size_t>(cells);
     const auto each_part = [&](auto&& visit) {

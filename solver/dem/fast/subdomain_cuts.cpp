@@ -99,8 +99,9 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     if (first) cut_seconds_ *= share_without_memory;
 }
 
-/// Ranges that take about the same time. Pairs across subdomains are computed in both: what a subdomain computes of the
-/// earlier ones' depends little on where exactly its range begins, and is known from ranges chosen without it.
+/// Chooses ranges that need about the same time. Pairs across subdomains are computed in both. The cost of a
+/// subdomain's pairs with earlier subdomains depends little on the exact start of its range. So this cost is computed
+/// for ranges that were chosen without it.
 void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
     for (const auto& subdomain : subdomains_) subdomain->ghost_cost = 0;
     set_ranges(whole, columns);
@@ -113,7 +114,7 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
     find_crossing_pairs(whole);
 }
 
-/// Ranges whose costs are as the shares of their threads, with the ghosts' costs as they are.
+/// Sets ranges whose costs are proportional to the shares of their threads, with the present costs of ghosts.
 void Subdomains::set_ranges(const Field& whole, const Columns& columns) {
     const int parts = count();
     const auto cost_before = [&](std::int32_t particle) {

@@ -10,9 +10,9 @@
 //
 // The changes of a step are sent to the copies. After a subdomain has advanced its particles, it writes the kinematics
 // of particles with partners elsewhere into rows. The other subdomains update their copies from these rows before the
-// next sweep. So a sweep rarely writes a record that another subdomain has read (writing such a cache line needs a
-// message between cores), and a step needs only one synchronisation. The rows are prefetched for writing during the
-// sweep before. If the rows belong to another state or to other particles, all records are copied before any subdomain
+// next sweep. So a sweep rarely writes a record that another subdomain has read; writing such a cache line needs a
+// message between cores. A step needs only one synchronisation. The rows are prefetched for writing during the sweep
+// before. If the rows belong to another state or to other particles, all records are copied before any subdomain
 // continues.
 //
 // Code outside a step (contacts in SI, checkpoints, energy, faults, rebuilds) reads the whole lists; join() writes the

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::array<Vec3, 3> unit_vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// The motions without those that leave the surface where it is: a turn that comes first, or after such turns only; a
-/// shift where nothing turns the shape.
+/// Returns the motions that move the surface. A rotation may leave the surface unchanged only if all earlier rotations
+/// do; a shift, only if no motion rotates the shape.
 std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motions) {
     bool turns = false;
     std::vector<bool> moves(motions.size(), true);
@@ -183,9 +183,9 @@ void MovingWall::require_possible(const geometry::Domain& domain) const {
     }
 }
 
-/// A particle is taken to the nearest image of the middle: what is touched there is all of the shape, and as much of
-/// its images as half a period reaches. No list reaches farther, else a particle would find an image of a partner
-/// twice.
+/// Returns the shape with its images. A particle is transformed to the nearest image of the middle. There it can touch
+/// the whole shape, and its images within half a period. No list reaches farther, because a particle would then find an
+/// image of a partner twice.
 Shape MovingWall::with_images(const geometry::Domain& domain) const {
     geometry::Domain around = domain;
     double margin = std::numeric_limits<double>::infinity();

@@ -44,8 +44,8 @@ public:
     [[nodiscard]] MovingWall moving_as(const Wall& other, const geometry::Domain& domain) const;
 
     /// Sets place and velocity of the wall at `time` after the walls were set, s. A shape with several contacts has no
-    /// velocity at time 0, before the first step, so that a dashpot does not push powder on it before anything has
-    /// slipped (as moving meshes in LIGGGHTS). A shape with one contact has its velocity then.
+    /// velocity at time 0, before the first step. So a dashpot does not push powder on it before the first slip (moving
+    /// meshes in LIGGGHTS behave in the same way). A shape with one contact has its velocity then.
     void place(double time);
 
     /// Returns whether the powder moves it: it has a press or a drive.

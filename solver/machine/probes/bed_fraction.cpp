@@ -1,5 +1,5 @@
-// Solid fraction of a bed in a vessel of one cross-section: between three diameters above its bottom and three below
-// the height that 95 % of the centres do not reach.
+// Solid fraction of a bed in a vessel of constant cross-section. It is measured from three diameters above the bottom
+// to three below the 95 % quantile of the centres' heights.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/upright.hpp"
 #include "solver/observables/settled.hpp"

@@ -1,5 +1,5 @@
-// Surface of a bed in a turning drum and the flow below it, from sums over all frames so far: the value at the last
-// frame is that of the whole time. Definitions: solver/observables/turned_bed.hpp.
+// Surface of a bed in a rotating drum and the flow below it, from sums over all frames so far. The value at the last
+// frame is the result for the whole time. Definitions: solver/observables/turned_bed.hpp.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/probes/section.hpp"
 

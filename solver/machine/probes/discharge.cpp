@@ -1,5 +1,5 @@
-// What has left a region, or the domain: of all particles that were filled in or fed, those that are not in the region
-// now, by centres. Gone particles count with the size that they had.
+// Discharge from a region, or from the domain: all particles filled in or fed whose centres are not in the region now.
+// Gone particles count with the size that they had.
 //
 //     share = mass outside / mass of all
 #include "solver/machine/probes/probes.hpp"

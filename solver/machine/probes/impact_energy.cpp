@@ -2,9 +2,9 @@
 //
 //     E = sum over the steps of a contact of dt (-F_n v_n - F_t . v_t - M . w_ij)
 //
-// F and M act in the step, the velocities v and w_ij of i against j are those of the full step. E is exactly what the
-// steps have taken out of the motion of both bodies, so that nothing is left out between frames: of a contact that has
-// ended it is the energy dissipated, as springs keep nothing then. A contact lasts from touch to separation; places in
+// F and M act in the step, the velocities v and w_ij of i against j are those of the full step. E is exactly the energy
+// that all steps have removed from the motion of both bodies, also between frames. For a contact that has ended it is
+// the dissipated energy, because its springs store nothing then. A contact lasts from touch to separation; places in
 // which a particle touches one wall at once are one contact. "part" splits E into the term with F_n and the rest. Of
 // contacts that last the sum contains what their springs hold. The error is rounding, about 1e-12 in double precision;
 // in mixed precision 3e-3, as whether a contact slides is judged anew. At the beginning of a phase, and where particles

@@ -1,7 +1,7 @@
 // How well species are mixed: the Lacey index, and the share of a species in a region.
 //
-// Lacey (1954), by volume in cubic cells, for spheres of several sizes: V_c solid volume and p_c share of the first
-// species in a cell, P in the whole bed,
+// Lacey (1954), by volume in cubic cells, for spheres of several sizes. With the solid volume V_c and the share p_c of
+// the first species in a cell, and the share P in the whole bed,
 //
 //     s^2 = sum V_c (p_c - P)^2/sum V_c      s0^2 = P (1 - P)      sr^2 = P (1 - P) (P v_B + (1 - P) v_A)/mean V_c
 //     M = (s0^2 - s^2)/(s0^2 - sr^2),        v_s = sum v^2/sum v over the spheres of a species

@@ -1,5 +1,5 @@
-// Profiles along a direction: in equal bins of a coordinate the mean of a quantity over the particles in them, weighted
-// by volume, or the sum of volumes.
+// Profiles along a direction in equal bins. The value of a bin is the mean of a quantity of its particles, weighted by
+// volume, or the sum of their volumes.
 #include "solver/machine/binning.hpp"
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"

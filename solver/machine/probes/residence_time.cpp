@@ -1,9 +1,9 @@
-// Residence times between two planes: of each particle from its first passage of the first plane to its first passage
-// of the second one, both along the direction.
+// Residence times between two planes: for each particle the time from its first passage of the first plane to its first
+// passage of the second, both along the direction.
 //
-// Between two frames a particle is taken to move evenly, which errs by at most a v' dt^2/8 over v for an acceleration
-// v'; one that is gone at the next frame, to fly freely. What starts behind the first plane is not counted, nor what
-// has not arrived.
+// Between two frames the velocity of a particle is taken as constant; the error is at most v' dt^2/(8 v) for an
+// acceleration v'. A particle that is absent at the next frame is taken to fly freely. What starts behind the first
+// plane is not counted, nor what has not arrived.
 #include "solver/machine/binning.hpp"
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"

@@ -2,11 +2,11 @@
 //
 //     s_ab = 1/V (sum over contacts of f_a l_b w + sum over particles of m v'_a v'_b)
 //
-// f acts on one partner, l leads to its centre from that of the other one, from the surface of a wall, or from the
-// contact with a glued particle; w is the share of l in the region, counted in equal pieces; v' is the velocity about
-// the mass mean of the region. Goldhirsch (2010), Granul. Matter 12, 239, eqs. 36 and 37, with the region as coarse-
-// graining function; walls as Weinhart, Thornton, Luding & Bokhove (2012), Granul. Matter 14, 289. Exact where a region
-// holds all of a contact; of a contact across its border w errs by at most half a piece.
+// f: force on one partner; l: vector to its centre from the centre of the other partner, from the surface of a wall, or
+// from the contact with a glued particle. w: share of l in the region, counted in equal pieces. v': velocity relative
+// to the mean by mass of the region. Goldhirsch (2010), Granul. Matter 12, 239, eqs. 36 and 37, with the region as
+// coarse- graining function; walls as Weinhart, Thornton, Luding & Bokhove (2012), Granul. Matter 14, 289. Exact where
+// a region holds all of a contact; of a contact across its border w errs by at most half a piece.
 //
 //     pressure = (s_xx + s_yy + s_zz)/3,   deviator = sqrt(3/2 s'_ab s'_ab), s' without the pressure, symmetric
 #include "solver/machine/binning.hpp"

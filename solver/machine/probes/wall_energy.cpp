@@ -7,8 +7,9 @@
 //
 //     loss = impact_energy - wall_work - contacts
 //
-// out of the motion of powder and wall, of which contact_energy is stored: wall_work is that of the forces on the
-// powder at the speed that the laws see, `contacts` that on the wall at the mean speed of the step.
+// out of the motion of powder and wall; contact_energy is the stored part of this loss. wall_work is the work of the
+// forces on the powder at the speed that the laws use. `contacts` is their work on the wall at the mean speed of the
+// step.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 

@@ -1,7 +1,7 @@
 // What the powder does to walls: force, torque, work, and the pressure of the normal component.
 //
-// Of several walls together. Work is that of the walls on the powder since the start: of their forces, so that what
-// turns a drum against rolling resistance is not in it.
+// Of several walls together. Work: work of the walls' forces on the powder since the start. It does not include the
+// work of moments against rolling resistance.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 

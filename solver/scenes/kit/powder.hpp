@@ -119,8 +119,8 @@ struct Powder {
     /// Returns the material from all parameters from density to cohesion_law.
     [[nodiscard]] dem::Material material(const Inputs& inputs) const;
     /// Returns the deviations of the walls from the powder. Throws std::invalid_argument with one sentence for a value
-    /// that is neither a property nor as_powder, and if with 'jkr' only the walls, or only all other contacts, have
-    /// surface energy.
+    /// that is neither a property nor as_powder. Throws it also with 'jkr' if only the walls, or only all other
+    /// contacts, have surface energy.
     [[nodiscard]] dem::Surface wall_surface(const Inputs& inputs) const;
     /// Returns the distribution of d/D. Throws std::invalid_argument with one sentence if the file is missing or D is
     /// outside its range.

@@ -93,8 +93,8 @@ void Experiment::observe_profile(Observations& into) const {
     const std::size_t first = first_measured_sample;
     const std::size_t last = behind_.size() - 1;
     std::vector<double> velocity;
-    // Ahead of the tool lies powder only where layers hold a particle per sample on average: one thrown up crosses
-    // several at the same velocity, which is no even profile.
+    // Only layers with on average at least one particle per sample count as powder ahead of the tool. A single particle
+    // thrown up crosses several layers at the same velocity, which would give a false uniform profile.
     std::size_t filled = 0, most_filled = 0;  // neighbouring layers
     auto& profile = record::vx_profile.in(into);
     for (std::size_t k = 0; k < profile_layers; ++k) {

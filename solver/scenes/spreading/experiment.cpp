@@ -136,8 +136,8 @@ void Experiment::start_sweep() {
     sample();
 }
 
-/// A particle that has left the box is on the side of the edge where it was last: the open faces are further
-/// from the tool than anything moves between two samples.
+/// Counts the particles that have left the box on their last side of the edge. The open faces are farther from the tool
+/// than particles move between two samples.
 void Experiment::count_left(double edge) {
     std::size_t k = 0;  // of the state, in which ids ascend
     for (std::size_t id = 0; id < place_.size(); ++id) {

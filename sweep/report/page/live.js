@@ -30,7 +30,7 @@ function spanText(seconds) {
   return s < 60 ? `${s} s` : s < 3600 ? `${Math.floor(s / 60)}:${two(s % 60)} min` : `${Math.floor(s / 3600)}:${two(Math.floor((s % 3600) / 60))} h`;
 }
 
-const live = { now: null, lost: false, failures: [], points: new Map() /* wanted, by database */, panel: el("section", { id: "now", "aria-live": "polite" }) };
+const live = { now: null, lost: false, failures: [], points: new Map() /* wanted, by database */, configs: new Map() /* the same */, panel: el("section", { id: "now", "aria-live": "polite" }) };
 
 // Where a case stands, in words: its point and its factors.
 function placeOf(database, id) {
@@ -65,16 +65,28 @@ function morePoints(state, act) {
   return el("span", { class: "choice" }, button("Extend the design to", act("more", () => ({ points: field.value }))), field, "points");
 }
 
+// The campaign file that Run starts: by default the one named as the database.
+const stem = (name) => name.replace(/\.[^.]*$/, "");
+function configOf(state) {
+  const files = data.steerable;
+  return live.configs.get(state.database) ?? files.find((file) => stem(file) === stem(state.database)) ?? files[0];
+}
+
+function configChoice(state) {
+  if (data.steerable.length < 2) return null;
+  return choice("Campaign file", data.steerable.map((file) => [file, file]), configOf(state), (file) => live.configs.set(state.database, file));
+}
+
 function steering(state) {
   if (!data.steerable) return null;
   const said = el("span", { class: "quiet" });
   const act = (path, more) => async () => {
     try {
-      await ask(path, { database: state.database, ...(typeof more === "function" ? more() : more) }, "");
+      await ask(path, { database: state.database, config: configOf(state), ...(typeof more === "function" ? more() : more) }, "");
       said.textContent = "asked";
     } catch (error) { said.textContent = error.message; }
   };
-  return el("div", { class: "controls" }, state.run ? button("Stop after the running cases", act("stop")) : [button("Run", act("run")),
+  return el("div", { class: "controls" }, state.run ? button("Stop after the running cases", act("stop")) : [configChoice(state), button("Run", act("run")),
     button("Run crashed cases again", act("again", { outcome: "crashed" })), button("Run timed-out cases again", act("again", { outcome: "timed_out" })), morePoints(state, act)], said);
 }
 
