@@ -87,9 +87,9 @@ Cases gather(const AssistedInput& input, const AssistedSettings& settings) {
     c.offset = c.z.mean();
     c.scale = std::sqrt((c.z.array() - c.offset).square().mean());
     c.z = (c.z.array() - c.offset) / c.scale;
+    if (input.noise_variance.empty()) return c;
     for (const std::size_t i : used)
-        if (!input.noise_variance.empty())
-            c.noise.push_back(input.noise_variance[input.noise_variance.size() == 1 ? 0 : i] / (c.scale * c.scale));
+        c.noise.push_back(input.noise_variance[input.noise_variance.size() == 1 ? 0 : i] / (c.scale * c.scale));
     return c;
 }
 
@@ -138,7 +138,6 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
     const auto training = response::spread_choice(c.z.size(), settings.most_training);
     const auto model = response::solve_kriging(*h, c.x(training, Eigen::all), c.z(training));
     if (!model) return false;
-
     std::vector<std::size_t> folds;
     for (std::size_t s = parity; s < c.sequences; s += 2) folds.push_back(s);
     std::vector<std::vector<Eigen::Index>> left_out(folds.size());
@@ -222,7 +221,6 @@ double half_width(const RawMoments& gradient, const std::vector<Moment4>& sequen
     std::vector<double> values;
     for (const Moment4& m : sequences) values.push_back(dot(gradient, m));
     const double by_cases = half_width_by_cases(gradient, parts);
-
     const std::size_t scramblings = parts.integrals.front().size();
     std::vector<double> integrals(scramblings, 0);
     for (const auto& sequence : parts.integrals)
@@ -332,7 +330,7 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
     for (std::size_t k = 0; k < assisted_statistics.size(); ++k) {
         auto& s = result.statistics[k];
         const double joint = std::hypot(s.plain.half_width, s.assisted.half_width);
-        const bool finite = std::isfinite(s.assisted.half_width) && std::isfinite(s.assisted.value);
+        const bool finite = std::isfinite(s.assisted.half_width + s.assisted.value);
         const bool differs = good && std::abs(s.assisted.value - s.plain.value) > contradiction * joint;
         s.withdrawn = !good || (differs && result.excluded == 0);
         s.takes_assisted = finite && good && !differs && (previous == nullptr || previous->statistics[k].shorter);
