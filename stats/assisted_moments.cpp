@@ -4,6 +4,7 @@
 #include "stats/moment_statistics.hpp"
 #include "stats/response/fit.hpp"
 #include "stats/response/kriging.hpp"
+#include "stats/spread.hpp"
 
 #include <Eigen/Core>
 
@@ -86,9 +87,9 @@ Cases gather(const AssistedInput& input, const AssistedSettings& settings) {
     c.offset = c.z.mean();
     c.scale = std::sqrt((c.z.array() - c.offset).square().mean());
     c.z = (c.z.array() - c.offset) / c.scale;
+    if (input.noise_variance.empty()) return c;
     for (const std::size_t i : used)
-        if (!input.noise_variance.empty())
-            c.noise.push_back(input.noise_variance[input.noise_variance.size() == 1 ? 0 : i] / (c.scale * c.scale));
+        c.noise.push_back(input.noise_variance[input.noise_variance.size() == 1 ? 0 : i] / (c.scale * c.scale));
     return c;
 }
 
@@ -101,6 +102,8 @@ std::optional<Refusal> reason_against_assisting(const AssistedInput& input, cons
     if (n < least)
         return Refusal{"no model-assisted moments: too few cases, " + std::to_string(n) + " with a value where " +
                        std::to_string(input.points.dimensions) + " features need at least " + std::to_string(least)};
+    if (const auto reason = reason_against_powers(input.values, 2); !reason.empty())
+        return Refusal{"no model-assisted moments: " + reason};
     if (!c.x.allFinite()) return Refusal{"no model-assisted moments: a feature of a case is not a finite number"};
     std::map<double, std::size_t> counts;
     for (const double y : input.values)
@@ -135,7 +138,6 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
     const auto training = response::spread_choice(c.z.size(), settings.most_training);
     const auto model = response::solve_kriging(*h, c.x(training, Eigen::all), c.z(training));
     if (!model) return false;
-
     std::vector<std::size_t> folds;
     for (std::size_t s = parity; s < c.sequences; s += 2) folds.push_back(s);
     std::vector<std::vector<Eigen::Index>> left_out(folds.size());
@@ -219,7 +221,6 @@ double half_width(const RawMoments& gradient, const std::vector<Moment4>& sequen
     std::vector<double> values;
     for (const Moment4& m : sequences) values.push_back(dot(gradient, m));
     const double by_cases = half_width_by_cases(gradient, parts);
-
     const std::size_t scramblings = parts.integrals.front().size();
     std::vector<double> integrals(scramblings, 0);
     for (const auto& sequence : parts.integrals)
@@ -286,7 +287,7 @@ void add_plain(AssistedMoments& result, const AssistedInput& input) {
         for (const Moments& part : parts) values.push_back(part.summary().of(assisted_statistics[k]));
         result.statistics[k].plain = {pooled.summary().of(assisted_statistics[k]), student_half_width(values)};
     }
-    result.excluded = static_cast<std::size_t>(pooled.excluded());
+    result.excluded = static_cast<std::size_t>(pooled.excluded()) + input.failed;
 }
 
 void add_assisted(AssistedMoments& result, const Cases& c, const Parts& parts, double noise_error) {
@@ -313,6 +314,13 @@ void add_assisted(AssistedMoments& result, const Cases& c, const Parts& parts, d
     }
 }
 
+/// Cases without a value make two populations, whose moments may differ without a contradiction.
+std::string reason_for_the_plain(const AssistedMoments& result) {
+    if (result.excluded == 0) return " is withdrawn: it contradicts the plain ";
+    return " of the whole box is not taken: the " + std::to_string(result.cases) + " of " +
+           std::to_string(result.cases + result.excluded) + " cases with a value have ";
+}
+
 void choose(AssistedMoments& result, const AssistedSettings& settings, const AssistedMoments* previous) {
     const bool good = result.model_error < settings.refused_error;
     if (!good)
@@ -322,15 +330,15 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
     for (std::size_t k = 0; k < assisted_statistics.size(); ++k) {
         auto& s = result.statistics[k];
         const double joint = std::hypot(s.plain.half_width, s.assisted.half_width);
-        const bool finite = std::isfinite(s.assisted.half_width) && std::isfinite(s.assisted.value);
-        const bool contradicts = good && std::abs(s.assisted.value - s.plain.value) > contradiction * joint;
-        s.withdrawn = !good || contradicts;
-        s.takes_assisted = finite && !s.withdrawn && (previous == nullptr || previous->statistics[k].shorter);
-        if (!contradicts) continue;
+        const bool finite = std::isfinite(s.assisted.half_width + s.assisted.value);
+        const bool differs = good && std::abs(s.assisted.value - s.plain.value) > contradiction * joint;
+        s.withdrawn = !good || (differs && result.excluded == 0);
+        s.takes_assisted = finite && good && !differs && (previous == nullptr || previous->statistics[k].shorter);
+        if (!differs) continue;
         result.remark += (result.remark.empty() ? "the model-assisted " : "; the model-assisted ") +
                          std::string(to_string(assisted_statistics[k])) + " " + shown(s.assisted.value) + " +- " +
-                         shown(s.assisted.half_width) + " is withdrawn: it contradicts the plain " +
-                         shown(s.plain.value) + " +- " + shown(s.plain.half_width);
+                         shown(s.assisted.half_width) + reason_for_the_plain(result) + shown(s.plain.value) + " +- " +
+                         shown(s.plain.half_width);
     }
 }
 

@@ -32,10 +32,11 @@
 // The estimate of a statistic is chosen beforehand: assisted where the model errs by less than 0.6 sd on left-out
 // sequences and the assisted half-width was below the plain one at the previous check. Taking the shorter one each time
 // would cost 3 to 10 % of coverage. Where both differ by more than twice their joint half-width the
-// model has gone wrong and the plain estimate stands, with a sentence.
+// plain estimate is taken, with a sentence. If every case has a value, the model has gone wrong: it is withdrawn.
 //
-// Cases without a value: the plain estimate is of the cases that answer. The assisted one integrates over the whole box
-// and is extrapolated into the settings that failed.
+// Cases without a value make two populations. The plain estimate describes the cases with a value. The assisted one
+// integrates over the whole box, extrapolated into the settings that failed. Both may be right and differ, so neither
+// is withdrawn; the plain one is taken because convergence is judged on the cases with a value.
 #pragma once
 
 #include "stats/moments.hpp"
@@ -74,6 +75,7 @@ struct AssistedInput {
     /// Variance of a single run about its mean: one per case, one for all, or empty: unknown.
     std::span<const double> noise_variance = {};
     double noise_variance_error = 0;  ///< relative standard error of all of them together
+    std::size_t failed = 0;           ///< further cases, without a value and without a row here
 };
 
 struct AssistedEstimate {
@@ -87,8 +89,9 @@ struct AssistedStatistic {
     AssistedEstimate assisted;         ///< with scatter, as the plain one
     AssistedEstimate without_scatter;  ///< NaN where the noise is unknown
     bool takes_assisted = false;       ///< decided beforehand, see above
-    bool withdrawn = false;            ///< the two with a model: it is refused, or contradicts the plain estimate
-    bool shorter = false;              ///< the assisted half-width is below the plain one: decides the next check
+    /// The two with a model: it is refused, or contradicts the plain estimate of the same population.
+    bool withdrawn = false;
+    bool shorter = false;  ///< the assisted half-width is below the plain one: decides the next check
 
     [[nodiscard]] const AssistedEstimate& chosen() const { return takes_assisted ? assisted : plain; }
 };
@@ -102,11 +105,11 @@ struct ScatterBudget {
 
 struct AssistedMoments {
     std::size_t cases = 0;
-    std::size_t excluded = 0;
+    std::size_t excluded = 0;                                       ///< without a value
     double model_error = std::numeric_limits<double>::quiet_NaN();  ///< rms on left-out sequences over the sd
     std::array<AssistedStatistic, assisted_statistics.size()> statistics;
     std::array<ScatterBudget, 3> budget;  ///< variance, third, fourth central moment; NaN where the noise is unknown
-    /// Why assisted estimates were withdrawn: one sentence for each, with semicolons; empty: none was.
+    /// Why assisted estimates were withdrawn or not taken: one sentence for each, with semicolons; empty: none was.
     std::string remark;
 
     [[nodiscard]] const AssistedStatistic& of(Statistic statistic) const;

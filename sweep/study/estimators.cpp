@@ -104,7 +104,8 @@ Estimators estimators_of(const store::Store& store, const Responses& responses, 
                                            .integration = {integration, width},
                                            .scramblings = scramblings,
                                            .noise_variance = noise.variance,
-                                           .noise_variance_error = noise.relative_error},
+                                           .noise_variance_error = noise.relative_error,
+                                           .failed = responses.settled - rows.size()},
                                           settings);
     if (const auto* refused = std::get_if<stats::Refusal>(&answer)) {
         found.refused = refused->sentence;
