@@ -132,11 +132,14 @@ TEST_F(Study, AModelSeesAConditionalFactorWhereItCounts) {
 }
 
 TEST_F(Study, BinnedIndicesOfValuesThatDependOnOtherFactorsSaySo) {
-    answer_by(store, tools(), by_tool);
+    answer_by(store, R"({"campaign": "tools", "scene": "rehearsal", "factors": [{"name": "x1", "levels": [0, 1]},
+        {"name": "x2", "between": [0.2, 1], "when": "x1 = 1"}, {"name": "x3", "between": [0, 1]}],
+        "design": {"kind": "halton", "points": 512, "sequences": 8}})",
+              by_tool);
     const auto tool = ask("tools");
     const auto influence = study::influence_of(tool, tool.observable("y"));
-    // The value of x2 tells which tool it is: 1 at its default, and only there, is x1 = 0. By itself x2 explains the
-    // variance 0.8^2/12 of one half, 1/4 of that with the mean over x1.
+    // x2 is at its default where x1 = 0, so its value tells the tool. By itself it explains (0.8^2/12)/4 of a variance
+    // of about 4.4^2/4, 0.3 %.
     EXPECT_GT(influence.factors[1].first.value, 0.5);
     EXPECT_THAT(influence.notes, Contains(HasSubstr("the binned index of x2 includes the effect of its condition")));
     answer_by(store, R"({"campaign": "mix", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
