@@ -26,7 +26,6 @@ struct OpenAttempt {
     std::int64_t number = 0, key = 0, revision = 0, provenance = 0, computer = 0;
     std::string scene, started;
     std::optional<campaign::Outcome> before;  ///< outcome of the case
-    bool stored = false;                      ///< false: its row is written with its outcome, or when the group ends
 };
 
 struct Store::Impl {
@@ -55,8 +54,6 @@ struct Store::Impl {
     std::map<campaign::Computer, std::int64_t> computers;
     /// Some attempts begun by this store; others are looked up.
     std::unordered_map<campaign::CaseId, OpenAttempt> open;
-    /// Cases whose attempts began in this group. Most end in it too, and are then written once.
-    std::vector<campaign::CaseId> begun;
 
     [[nodiscard]] std::int64_t data_version() const;
     void require_writer() const;
@@ -81,9 +78,6 @@ struct Store::Impl {
     /// Takes an open attempt; empty if the attempt is not the case's latest, or has an outcome. Throws std::logic_error
     /// for an unknown case.
     [[nodiscard]] std::optional<OpenAttempt> take_open(const campaign::Attempt& attempt);
-    /// Stores the open attempt of a case, unless it is stored. Throws std::logic_error where it has ended before.
-    void store_open(const campaign::CaseId& id);
-    void store_begun();
 };
 
 /// Columns of `campaign` with the identity, and the identity read from them, beginning at column `first`.

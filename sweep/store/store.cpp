@@ -351,7 +351,6 @@ void Store::group(const std::function<void()>& writes) {
         Membership(const Membership&) = delete;
         ~Membership() {
             impl.in_group = false;
-            impl.begun.clear();
             if (committed) return;  // else forget rows that were rolled back
             impl.computers.clear();
             impl.placing.reset();
@@ -361,7 +360,6 @@ void Store::group(const std::function<void()>& writes) {
     impl_->require_in_place();
     Transaction transaction(impl_->db);
     writes();
-    impl_->store_begun();
     if (impl_->settled_in_group > 0) {
         impl_->db.run("UPDATE provenance SET settled = settled + ?, last_result = ? WHERE provenance_id = ?",
                       impl_->settled_in_group, impl_->run_clock.now(), impl_->provenance);

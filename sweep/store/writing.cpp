@@ -16,7 +16,7 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// Stores the attempt with its outcome. Returns false if the attempt has an outcome already.
+/// Stores the outcome of an attempt. Returns false if the attempt has an outcome already.
 bool close_attempt(Connection& db, const OpenAttempt& open, const campaign::CaseResult& result) {
     const auto phases = campaign::phases_text(result.cost.phases);
     AttemptRow row{.key = open.key,
@@ -31,15 +31,6 @@ bool close_attempt(Connection& db, const OpenAttempt& open, const campaign::Case
                    .phases = phases,
                    .threads = result.cost.threads};
     if (!result.message.empty()) row.message = result.message;
-    if (!open.stored) {
-        db.run(
-            "INSERT INTO attempt (case_key, number, provenance_id, computer_id, started, outcome, message, "
-            "wall_seconds, cpu_seconds, particle_steps, phases, threads, checksum) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-            row.key, row.number, row.provenance, row.computer, row.started, row.outcome, row.message, row.wall_seconds,
-            row.cpu_seconds, row.particle_steps, row.phases, row.threads, as_sql(checksum_of(row)));
-        return true;
-    }
     const auto closed = db.run(
         "UPDATE attempt SET outcome = ?1, message = ?2, wall_seconds = ?3, cpu_seconds = ?4, particle_steps = ?5, "
         "phases = ?6, threads = ?7, checksum = ?8 WHERE case_key = ?9 AND number = ?10 AND outcome IS NULL",
@@ -90,10 +81,8 @@ std::optional<OpenAttempt> case_of(const Connection& db, const campaign::Attempt
 }  // namespace
 
 std::optional<OpenAttempt> Store::Impl::take_open(const campaign::Attempt& attempt) {
-    if (const auto known = open.find(attempt.case_id); known != open.end()) {
-        if (known->second.number == attempt.number) return std::move(open.extract(known).mapped());
-        store_open(attempt.case_id);
-    }
+    if (auto known = open.extract(attempt.case_id); !known.empty() && known.mapped().number == attempt.number)
+        return std::move(known.mapped());
     std::int64_t begun = 0;
     auto found = case_of(db, attempt, begun);
     if (!found) throw std::logic_error(fmt::format("case {} is not enrolled", attempt.case_id));
@@ -105,38 +94,13 @@ std::optional<OpenAttempt> Store::Impl::take_open(const campaign::Attempt& attem
     found->provenance = rows.get<std::int64_t>(0);
     found->started = rows.get<std::string>(1);
     found->computer = rows.get<std::int64_t>(2);
-    found->stored = true;
     return found;
-}
-
-void Store::Impl::store_open(const campaign::CaseId& id) {
-    const auto known = open.find(id);
-    if (known == open.end() || known->second.stored) return;
-    auto& attempt = known->second;
-    db.run("UPDATE sim_case SET attempts = ? WHERE case_key = ?", attempt.number, attempt.key);
-    // An attempt that was handed out to a worker that died before it began may begin again.
-    const auto stored = db.run(
-        "INSERT INTO attempt (case_key, number, provenance_id, computer_id, started) VALUES (?, ?, ?, ?, ?) "
-        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, "
-        "computer_id = excluded.computer_id, started = excluded.started WHERE outcome IS NULL",
-        attempt.key, attempt.number, attempt.provenance, attempt.computer, attempt.started);
-    if (stored != 1)
-        throw std::logic_error(fmt::format("attempt {} of case {} begins after it ended", attempt.number, id));
-    attempt.stored = true;
-}
-
-void Store::Impl::store_begun() {
-    for (const auto& id : begun) store_open(id);
-    begun.clear();
 }
 
 void Store::begin(const campaign::Attempt& attempt, const campaign::Computer& computer) {
     impl_->require_group();
     auto& db = impl_->db;
     if (!impl_->provenance) throw std::logic_error("an attempt begins before its campaign is enrolled");
-    if (const auto known = impl_->open.find(attempt.case_id);
-        known != impl_->open.end() && known->second.number != attempt.number)
-        impl_->store_open(attempt.case_id);
     std::int64_t before = 0;
     auto open = case_of(db, attempt, before);
     if (!open && impl_->placing) {
@@ -151,18 +115,23 @@ void Store::begin(const campaign::Attempt& attempt, const campaign::Computer& co
     open->provenance = *impl_->provenance;
     open->computer = impl_->computer_key(computer);
     open->started = utc_now();
+    db.run("UPDATE sim_case SET attempts = ? WHERE case_key = ?", attempt.number, open->key);
+    // An attempt that was handed out to a worker that died before it began may begin again.
+    const auto begun = db.run(
+        "INSERT INTO attempt (case_key, number, provenance_id, computer_id, started) VALUES (?, ?, ?, ?, ?) "
+        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, "
+        "computer_id = excluded.computer_id, started = excluded.started WHERE outcome IS NULL",
+        open->key, attempt.number, open->provenance, open->computer, open->started);
+    if (begun != 1) {
+        throw std::logic_error(
+            fmt::format("attempt {} of case {} begins after it ended", attempt.number, attempt.case_id));
+    }
     impl_->open.insert_or_assign(attempt.case_id, std::move(*open));
-    if (before < attempt.number)
-        impl_->begun.push_back(attempt.case_id);
-    else  // its row may be there
-        impl_->store_open(attempt.case_id);
 }
 
 bool Store::finish(const campaign::CaseResult& result) {
     impl_->require_group();
     auto& db = impl_->db;
-    const auto known = impl_->open.find(result.attempt.case_id);
-    if (known != impl_->open.end() && known->second.before) impl_->store_open(result.attempt.case_id);
     const auto open = impl_->take_open(result.attempt);
     if (!open || !close_attempt(db, *open, result)) return false;  // given up as abandoned, or reported twice
     ++impl_->settled_in_group;
@@ -178,10 +147,10 @@ bool Store::finish(const campaign::CaseResult& result) {
     const auto outcome = campaign::to_string(result.outcome);
     const auto head = checksum_of_case(open->key, result.attempt.case_id, outcome, result.cost.wall_seconds);
     db.run(
-        "UPDATE sim_case SET attempts = ?1, outcome = ?2, failures = failures + ?3, wall_seconds = ?4, checksum = ?5, "
-        "checksum_by_observable = ?6 WHERE case_key = ?7",
-        open->number, outcome, failed, result.cost.wall_seconds, as_sql(head + measured.plain),
-        as_sql(measured.by_observable), open->key);
+        "UPDATE sim_case SET outcome = ?1, failures = failures + ?2, wall_seconds = ?3, checksum = ?4, "
+        "checksum_by_observable = ?5 WHERE case_key = ?6",
+        outcome, failed, result.cost.wall_seconds, as_sql(head + measured.plain), as_sql(measured.by_observable),
+        open->key);
     return true;
 }
 

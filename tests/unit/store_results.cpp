@@ -2,7 +2,6 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/archive.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -167,36 +166,6 @@ TEST_F(StoreResults, AnAnswerOfAnEarlierAttemptIsStale) {
     });
     EXPECT_EQ(store.attempts(one.id).size(), 2u);
     EXPECT_EQ(only_cell(store, "SELECT count(*) FROM observation"), "1");
-}
-
-TEST_F(StoreResults, AnAttemptThatEndsInTheGroupWhereItBeganIsStoredAsAnyOther) {
-    auto crash = campaign::unanswered({cases[2].question.id, 1}, Outcome::crashed, "signal 11", 0.5);
-    store.group([&] {
-        store.begin({one.id, 1});
-        EXPECT_TRUE(store.finish(answer(one, 1)));
-        store.begin(crash.attempt);
-        EXPECT_TRUE(store.finish(crash));
-        store.begin({crash.attempt.case_id, 2});
-        EXPECT_TRUE(store.finish(answer(cases[2].question, 2)));
-    });
-    const auto& other = cases[4].question;
-    store.group([&] { store.begin({other.id, 1}); });
-    EXPECT_EQ(only_cell(store, "SELECT count(*) FROM attempt WHERE outcome IS NULL"), "1") << "it runs";
-    store.group([&] { EXPECT_TRUE(store.finish(answer(other, 1))); });
-    const auto row_of = [&](const std::string& id) {
-        return store.query(
-            fmt::format("SELECT c.attempts, c.failures, c.outcome, c.wall_seconds, a.number, a.outcome, "
-                        "a.message, a.wall_seconds, a.cpu_seconds, a.phases, a.threads FROM sim_case c "
-                        "JOIN attempt a USING (case_key) WHERE case_id = '{}' ORDER BY a.number",
-                        id));
-    };
-    EXPECT_EQ(row_of(one.id).rows, row_of(other.id).rows);
-    const auto again = row_of(crash.attempt.case_id);
-    ASSERT_EQ(again.rows.size(), 2U);
-    EXPECT_EQ(again.rows[0].at(5), store::Table::Cell{std::string("crashed")});
-    EXPECT_EQ(again.rows[1].at(0), store::Table::Cell{std::int64_t{2}}) << "attempts";
-    EXPECT_EQ(again.rows[1].at(1), store::Table::Cell{std::int64_t{1}}) << "failures";
-    EXPECT_TRUE(store.verify().empty());
 }
 
 TEST_F(StoreResults, AttemptNumbersOnlyGrow) {
