@@ -241,14 +241,15 @@ std::optional<Corrected> corrected_of(const store::Store& store, const store::Ca
     std::vector<double> expensive;
     auto checks = store.convergence(campaign.name, goal->observable);
     bool paired = *goal->setting != campaign::AccuracyGoal::measure;
-    if (paired && measure != records.end())
+    if (paired && measure != records.end()) {
         expensive = first_values(store, name, goal->observable, measure->asked.candidates).values;
-    if (auto alone = store.convergence(name, goal->observable); paired && !alone.empty()) {
-        paired = false;
-        checks = std::move(alone);
-        found.before_alone = std::ssize(cheap);
-        cheap = std::exchange(expensive, {});
-        goal->setting = campaign::AccuracyGoal::measure;
+        if (auto alone = store.convergence(name, goal->observable); !alone.empty()) {
+            paired = false;
+            checks = std::move(alone);
+            found.before_alone = std::ssize(cheap);
+            cheap = std::exchange(expensive, {});
+            goal->setting = campaign::AccuracyGoal::measure;
+        }
     }
     expensive.resize(std::min(expensive.size(), cheap.size()));
     if (cheap.empty() || (paired && expensive.empty())) return std::nullopt;
