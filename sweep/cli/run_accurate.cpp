@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -74,8 +75,11 @@ private:
             const auto cost = campaign::forecast(at.scene(), cases);
             settings_.push_back({name, cost.total_seconds / static_cast<double>(cost.questions), cases.hash(0)});
         };
+        // Names, because reading a machine file again replaces its scene.
+        const auto offered = std::views::keys(asked_.scene().accuracy);
+        const std::vector<std::string> names(offered.begin(), offered.end());
         add(measure());
-        for (const auto& [name, inputs] : asked_.scene().accuracy) {
+        for (const auto& name : names) {
             if (name == campaign::AccuracyGoal::measure) continue;
             add(name);
             const auto before = std::span(settings_).first(settings_.size() - 1);

@@ -154,7 +154,7 @@ std::string Corrected::verdict() const {
                            ? fmt::format("{} cases at {}", check.points, *goal.setting)
                            : fmt::format("{} cases at {} and {} pairs", check.points, *goal.setting, check.pairs);
     const auto other =
-        alone          ? fmt::format("; {} alone about {:.3g}", campaign::AccuracyGoal::measure, *alone)
+        alone          ? fmt::format("; {} alone at least {:.3g}", campaign::AccuracyGoal::measure, *alone)
         : before_alone ? fmt::format("; after {} cases at a cheaper setting, as more pairs cost more", *before_alone)
         : chosen_alone ? "; pairs with a cheaper setting would have cost more"
                        : "";

@@ -163,6 +163,22 @@ TEST(AccuracyGoal, OfTheReferenceAloneNeedsNoPairs) {
     EXPECT_EQ(number_in(folder / "a.db", "SELECT count(*) FROM campaign"), 1);
 }
 
+TEST(AccuracyGoal, OfAMachineReadsItsFileAtEverySetting) {
+    const Folder folder;
+    const json file = {{"campaign", "a"},
+                       {"scene", "machine"},
+                       {"machine", "heap"},
+                       {"factors", {{{"name", "friction"}, {"between", {0.2, 0.8}}}}},
+                       {"fixed", {{"youngs_modulus", 2e5}, {"particles", 40}, {"diameter", 0.005}, {"end_time", 0.3}}},
+                       {"design", {{"kind", "halton"}, {"sequences", 4}, {"points", 64}}},
+                       {"accuracy", {{"observable", "angle_moment"}, {"gates", {"mean"}}, {"tolerance", 0.9}}}};
+    folder.write("a.json", file.dump());
+    const std::string ending = run_of(folder, "a.db", "2")["ending"];
+    EXPECT_THAT(ending, HasSubstr("angle_moment within 90 % of reference"));
+    EXPECT_EQ(number_in(folder / "a.db", "SELECT count(*) FROM campaign"), 5)
+        << "the goal and a pilot of four settings";
+}
+
 TEST(AccuracyGoal, WrongQuestionsAreOneSentence) {
     const Folder folder;
     const auto says = [&](const json& patch, const std::string& command = "run") {
