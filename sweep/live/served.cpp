@@ -223,7 +223,7 @@ HttpReply Served::answer(const HttpQuestion& question) {
 
 HttpReply Served::page() const {
     std::ostringstream stream;
-    JsonText configs;  // null: nobody steers
+    JsonText configs;  // null: control is not permitted
     if (control_)
         configs = JsonText::list(control_->configs, [](const fs::path& file) { return file.filename().string(); });
     const auto policy =
