@@ -74,7 +74,7 @@ TEST(AccuracyGoal, EndsWithinTheToleranceByPairsOfEqualSeeds) {
     EXPECT_EQ(number_in(folder / "a.db", "SELECT count(*) FROM attempt"), cases);
 
     // A smaller tolerance continues with the stored cases, at the same setting unless `reference` alone costs less.
-    folder.write("a.json", narrow_strip(0.022).dump());
+    folder.write("a.json", narrow_strip(0.06).dump());
     const auto finer = run_of(folder, "a.db", "2");
     EXPECT_THAT(std::string(finer["ending"]), AnyOf(HasSubstr(" cases at " + corrected["setting"].get<std::string>()),
                                                     HasSubstr(" cases at a cheaper setting, as more pairs cost more")));
