@@ -161,10 +161,11 @@ std::vector<Draws::Particle> Draws::in_numbers(std::int64_t count) const {
     return particles;
 }
 
-Obstacles::Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time) {
+Obstacles::Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time,
+                     dem::MovingWall::Searches searches) {
     for (const dem::Wall& wall : walls) {
         if (!wall.present) continue;
-        walls_.emplace_back(wall, domain, largest);
+        walls_.emplace_back(wall, domain, largest, searches);
         walls_.back().place(time);
     }
 }

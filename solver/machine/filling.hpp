@@ -53,7 +53,8 @@ inline constexpr std::uint64_t first_feed = 1000;
 class Obstacles {
 public:
     /// Takes the present walls of `walls` at a time, for spheres of up to the largest diameter.
-    Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time);
+    Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time,
+              dem::MovingWall::Searches searches = dem::MovingWall::Searches::many);
     /// Returns whether a sphere touches a wall.
     [[nodiscard]] bool touch(const Vec3& centre, double radius) const;
 

@@ -172,7 +172,9 @@ void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
         std::vector<geometry::Motion> motions;
         for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
         if (motions.empty()) continue;
-        const double speed = dem::MovingWall(dem::Wall(wall.shape, motions), spec.domain, largest).fastest_surface();
+        const dem::MovingWall moving(dem::Wall(wall.shape, motions), spec.domain, largest,
+                                     dem::MovingWall::Searches::few);
+        const double speed = moving.fastest_surface();
         if (speed * spec.time_step > longest_way * smallest)
             warnings.push_back({"walls faster than the time step allows",
                                 wall.name + sentence(" moves at up to %.3g m/s, %.2g of the smallest diameter in a "

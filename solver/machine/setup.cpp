@@ -195,7 +195,9 @@ double fastest_of(const Spec& spec) {
         std::vector<Motion> motions;
         for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
         if (motions.empty()) continue;
-        walls = std::max(walls, dem::MovingWall(dem::Wall(wall.shape, motions), spec.domain, largest).fastest());
+        const dem::MovingWall moving(dem::Wall(wall.shape, motions), spec.domain, largest,
+                                     dem::MovingWall::Searches::few);
+        walls = std::max(walls, moving.fastest());
     }
     return std::max(std::sqrt(2 * g * top) + initial + walls, 1e-3);
 }

@@ -223,10 +223,10 @@ std::set<std::string> species_names(const Section& top) {
 /// A quantity in SI units, whichever they are.
 double any_quantity(const Cursor& place) {
     std::string why;
-    for (const auto si : si_units) {
-        const auto converted = in_si(place.text(), si);
+    if (const auto si = calculating_unit(std::string(unit_of_quantity(place.text())), why)) {
+        const auto converted = in_si(place.text(), *si);
         if (const auto* value = std::get_if<double>(&converted)) return *value;
-        if (why.empty()) why = std::get<std::string>(converted);
+        why = std::get<std::string>(converted);
     }
     place.refuse(why);
 }

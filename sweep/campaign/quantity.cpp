@@ -297,23 +297,41 @@ std::string_view without_blanks(std::string_view text) {
     return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
+/// A quantity as written: the digits of its number and its unit are parts of the text.
+struct Written {
+    explicit Written(std::string_view text) {
+        text = without_blanks(text);
+        const bool plus = text.starts_with('+');
+        if (plus) text.remove_prefix(1);
+        const std::size_t sign = !plus && text.starts_with('-') ? 1 : 0;
+        number = text.size() > sign && (text[sign] == '.' || (text[sign] >= '0' && text[sign] <= '9'));
+        const char* const end = text.data() + text.size();
+        const auto [stop, failure] = std::from_chars(text.data(), end, value);
+        error = failure;
+        digits = text.substr(0, static_cast<std::size_t>(stop - text.data()));
+        unit = without_blanks({stop, static_cast<std::size_t>(end - stop)});
+    }
+
+    bool number = false;  // whether it begins with one
+    std::errc error{};
+    double value = 0;
+    std::string_view digits, unit;
+};
+
 }  // namespace
 
 std::variant<double, std::string> in_si(std::string_view text, std::string_view unit) {
     if (text.size() > longest_quantity) return fmt::format("a quantity has at most {} characters", longest_quantity);
-    text = without_blanks(text);
-    const bool plus = text.starts_with('+');
-    if (plus) text.remove_prefix(1);
-    const std::size_t sign = !plus && text.starts_with('-') ? 1 : 0;
-    const bool number = text.size() > sign && (text[sign] == '.' || (text[sign] >= '0' && text[sign] <= '9'));
-    double x = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, x);
-    if (!number || error == std::errc::invalid_argument) return "it begins with no number";
-    if (error != std::errc()) return "the number is beyond double precision";
-    const auto given = without_blanks({stop, static_cast<std::size_t>(end - stop)});
-    if (given.empty() || given == unit) return x == 0 ? 0.0 : x;
-    return with_unit(text.substr(0, static_cast<std::size_t>(stop - text.data())), x, given, unit);
+    const Written written(text);
+    if (!written.number || written.error == std::errc::invalid_argument) return "it begins with no number";
+    if (written.error != std::errc()) return "the number is beyond double precision";
+    if (written.unit.empty() || written.unit == unit) return written.value == 0 ? 0.0 : written.value;
+    return with_unit(written.digits, written.value, written.unit, unit);
+}
+
+std::string_view unit_of_quantity(std::string_view text) {
+    const Written written(text);
+    return written.number && written.error == std::errc() ? written.unit : std::string_view();
 }
 
 }  // namespace grainsweep::campaign

@@ -165,6 +165,12 @@ TEST(Quantities, ThatDoNotFitAreRefusedWithUnitsThatDo) {
     EXPECT_THAT(refusal_of("3 m", "1"), HasSubstr("'m' does not fit '1'"));
 }
 
+TEST(Quantities, NameTheirUnitAsWritten) {
+    EXPECT_EQ(campaign::unit_of_quantity(" +60 um "), "um");
+    EXPECT_EQ(campaign::unit_of_quantity("-1.5e3kg/m3"), "kg/m3");
+    for (const char* text : {"60", "", "um", "1e999 m", "-"}) EXPECT_EQ(campaign::unit_of_quantity(text), "") << text;
+}
+
 TEST(Quantities, ThatAreNoneAreRefused) {
     for (const char* text :
          {"", " ", "um", "um 60", "abc", "-", "+", "+-3 m", "--3 m", "nan m", "inf m", "e5 m", "NaN", "."})

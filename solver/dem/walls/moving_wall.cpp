@@ -85,7 +85,8 @@ void refuse_flaw(const std::string& flaw) {
 
 }  // namespace
 
-MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest) : wall_(std::move(wall)) {
+MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest, Searches searches)
+    : wall_(std::move(wall)) {
     refuse_flaw(std::visit([](const auto& s) { return s.flaw(); }, wall_.shape));
     take_motions(wall_.motions);
     energy_.start = kinetic_energy(wall_.motions);
@@ -108,7 +109,7 @@ MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest
     std::visit(  // a little beyond, for contacts that adhesion keeps
         [&](auto& shape) {
             if constexpr (Preparable<decltype(shape)>)
-                if (largest > 0) shape = shape.prepared(1.05 * largest);
+                if (largest > 0 && searches == Searches::many) shape = shape.prepared(1.05 * largest);
         },
         found_);
     thin_ = std::visit([](const auto& s) { return Thin<decltype(s)>; }, found_);
