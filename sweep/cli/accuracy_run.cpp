@@ -164,6 +164,7 @@ AccuracyEnd run_accuracy(const AccuracyRun& run) {
         request.database = database;
         request.workers = run.workers;
         request.quiet = run.quiet;
+        request.goes_on = !campaigns.empty();
         const auto report = run_campaign(request);
         campaigns.push_back({one.name, one.says});
         constexpr int interrupted = 130;

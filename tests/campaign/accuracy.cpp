@@ -31,6 +31,9 @@ TEST(Accuracy, EverySettingIsComparedPointByPointAndResumes) {
                                                 "balanced", "--quiet", "--format", "json"};
     const auto first = run_program(arguments, folder.path());
     ASSERT_EQ(first.code, 0) << first.err;
+    const auto warning = first.err.find("warning: narrow layer");
+    ASSERT_NE(warning, std::string::npos) << first.err;
+    EXPECT_EQ(first.err.find("warning: narrow layer", warning + 1), std::string::npos) << "once for all settings";
     const auto found = json::parse(first.out);
     std::vector<std::string> settings;
     for (const auto& one : found["settings"]) {
