@@ -2,6 +2,8 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/accuracy_run.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/figure_file.hpp"
+#include "sweep/report/accuracy_figure.hpp"
 #include "sweep/report/accuracy_tables.hpp"
 
 #include <fmt/format.h>
@@ -14,19 +16,31 @@ namespace {
 struct AccuracyRequest : AccuracyRun {
     std::vector<std::string> observables;
     double tolerance = 0.01;
+    FigureFile file;
 };
+
+/// The named observables, or the first one.
+std::vector<std::string> drawn_observables(const AccuracyRequest& request, const AccuracyEnd& end) {
+    if (!request.observables.empty() || end.costs.back().biases.empty()) return request.observables;
+    return {end.costs.back().biases.front().observable};
+}
 
 int accuracy(const AccuracyRequest& request, report::Format format) {
     if (!(request.tolerance > 0 && request.tolerance < 1))
         throw campaign::wrong_question("--tolerance", fmt::format("{}", request.tolerance),
                                        "must be a number above 0 and below 1");
+    const auto database = request.database.string();
+    if (!request.file.output.empty()) (void)width_in_mm(request.file), (void)figure_type(request.file, database);
     const auto end = run_accuracy(request);
     if (end.costs.empty()) {
         std::cerr << "interrupted; run it again to resume\n";
         return end.exit_code;
     }
-    report::write(std::cout, report::accuracy_document(end.campaign, end.costs, request.observables, request.tolerance),
-                  format);
+    const auto document = report::accuracy_document(end.campaign, end.costs, request.observables, request.tolerance);
+    if (!request.file.output.empty())
+        write_figure(request.file,
+                     report::accuracy_figure(end.costs, drawn_observables(request, end), request.tolerance), database);
+    report::write(std::cout, document, format);
     return end.exit_code;
 }
 
@@ -36,7 +50,7 @@ void declare_accuracy(Parser& parser, AccuracyRequest& request) {
         .add_option("--points N", request.points, "points of the campaign's design that are computed at each setting")
         ->check(whole_number(2, 100'000))
         ->capture_default_str();
-    parser.add_option("--against SETTING", request.against, "the setting whose answers are the measure")
+    parser.add_option("--against NAME", request.against, "the setting whose answers are the measure")
         ->capture_default_str();
     parser.add_option("--observable NAME", request.observables, "scalar to be judged, may be repeated; default: all")
         ->allow_extra_args(false);
@@ -45,6 +59,7 @@ void declare_accuracy(Parser& parser, AccuracyRequest& request) {
     parser.add_option("-j N", request.workers, "worker processes; 0: all cores; default: execution.workers")
         ->check(whole_number(0, 4096));
     parser.add_flag("--quiet", request.quiet, "print no progress");
+    declare_figure_file(parser, request.file);
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ std::string points_text(std::span<const NumericsCost> costs, std::span<const std
     const NumericsCost* cheapest = nullptr;
     double points = 0;
     for (const auto& cost : costs.first(costs.size() - 1)) {
+        if (!(cost.seconds < costs.back().seconds)) continue;  // dearer, or without an answer
         double needed = 0;
         for (const auto& name : observables) {
             const auto one = std::ranges::find(cost.biases, name, &Bias::observable);
@@ -66,14 +67,14 @@ std::string points_text(std::span<const NumericsCost> costs, std::span<const std
 
 store::Table all_rows(std::string_view campaign, std::span<const NumericsCost> costs) {
     store::Table table{{"campaign", "setting", "observable", "unit", "cases", "answered", "core_seconds", "pairs",
-                        "mean", "bias", "bias_error", "scatter", "relative_bound"},
+                        "mean", "bias", "bias_error", "scatter", "spread", "relative_bound"},
                        {}};
     for (const auto& cost : costs)
         for (const auto& one : cost.biases)
             table.rows.push_back({std::string(campaign), cost.numerics.says, one.observable, one.unit,
                                   static_cast<std::int64_t>(cost.cases), static_cast<std::int64_t>(cost.answered),
                                   to_cell(cost.seconds), static_cast<std::int64_t>(one.pairs), to_cell(one.mean),
-                                  to_cell(one.bias), to_cell(one.half_width), to_cell(one.scatter),
+                                  to_cell(one.bias), to_cell(one.half_width), to_cell(one.scatter), to_cell(one.spread),
                                   to_cell(one.relative_bound())});
     return table;
 }
@@ -127,6 +128,7 @@ Document accuracy_document(std::string_view campaign, std::span<const NumericsCo
                         {"bias", one.bias},
                         {"bias_error", one.half_width},
                         {"scatter", one.scatter},
+                        {"spread", one.spread},
                         {"relative_bound", one.relative_bound()}};
         };
         return Json{{"setting", cost.numerics.says}, {"campaign", cost.numerics.campaign},

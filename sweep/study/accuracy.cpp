@@ -28,14 +28,25 @@ Values values_of(const store::Store& store, const std::string& campaign, const s
     return values;
 }
 
+/// Returns the standard deviation; NaN of fewer than two values.
+double deviation(const std::vector<double>& values) {
+    if (values.size() < 2) return nan;
+    const auto n = static_cast<double>(values.size());
+    double sum = 0, squares = 0;
+    for (const double x : values) sum += x;
+    for (const double x : values) squares += (x - sum / n) * (x - sum / n);
+    return std::sqrt(squares / (n - 1));
+}
+
 Bias bias_of(const Values& values, const Values& against) {
     Bias found;
-    std::vector<double> differences;
+    std::vector<double> differences, own;
     double sum = 0;
     for (const auto& [point, value] : values) {
         const auto other = against.find(point);
         if (other == against.end()) continue;
         differences.push_back(value - other->second);
+        own.push_back(value);
         sum += other->second;
     }
     found.pairs = differences.size();
@@ -44,9 +55,8 @@ Bias bias_of(const Values& values, const Values& against) {
     double all = 0;
     for (const double x : differences) all += x;
     found.bias = found.pairs > 0 ? all / n : nan;
-    double squares = 0;
-    for (const double x : differences) squares += (x - found.bias) * (x - found.bias);
-    found.scatter = found.pairs > 1 ? std::sqrt(squares / (n - 1)) : nan;
+    found.scatter = deviation(differences);
+    found.spread = deviation(own);
     found.half_width = found.pairs > 1 ? stats::student_half_width(differences) : nan;
     return found;
 }

@@ -31,6 +31,7 @@ struct Bias {
     double bias = 0;        ///< NaN without a pair
     double half_width = 0;  ///< 95 % half-width; NaN with fewer than two pairs
     double scatter = 0;     ///< standard deviation of the differences
+    double spread = 0;      ///< standard deviation of the setting's own answers; both NaN with fewer than two pairs
 
     /// Returns (|bias| + half_width)/|mean|, the bound of the relative bias.
     [[nodiscard]] double relative_bound() const;

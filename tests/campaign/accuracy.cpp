@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -73,6 +76,41 @@ std::vector<std::string> settings_in(const json& found) {
     std::vector<std::string> settings;
     for (const auto& one : found["settings"]) settings.push_back(one["setting"]);
     return settings;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Accuracy, ErrorAgainstCostIsDrawn) {
+    const Folder folder;
+    folder.write("a.json", spreading(json::object()).dump());
+    std::vector<std::string> arguments = {"accuracy", "a.json",       "--points", "2",       "--against",
+                                          "balanced", "--observable", "mfr",      "--quiet", "-o",
+                                          "a.svg",    "--format",     "json"};
+    const auto ended = run_program(arguments, folder.path());
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto drawn = text_of(folder / "a.svg");
+    EXPECT_TRUE(drawn.starts_with("<?xml")) << drawn.substr(0, 80);
+    // The standard deviation of the answers, for the error of a mean.
+    const auto query =
+        run_program({"query", "a_accuracy.db", "SELECT mfr FROM a_fast", "--format", "json"}, folder.path());
+    const auto values = json::parse(query.out);
+    const double apart = double(values[0]["mfr"]) - double(values[1]["mfr"]);
+    for (const auto& setting : json::parse(ended.out)["settings"])
+        for (const auto& of : setting["biases"])
+            if (setting["setting"] == "fast" && of["observable"] == "mfr") {
+                EXPECT_NEAR(of["spread"], std::abs(apart) / std::sqrt(2.0), 1e-12);
+            }
+    ASSERT_EQ(run_program(arguments, folder.path()).code, 0);
+    EXPECT_EQ(text_of(folder / "a.svg"), drawn) << "the same numbers, the same bytes";
+    std::filesystem::remove(folder / "a_accuracy.db");
+    arguments[10] = "a.txt";
+    const auto refused = run_program(arguments, folder.path());
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("must end in .pdf, .svg or .png"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a_accuracy.db")) << "nothing is computed for a wrong question";
 }
 
 TEST(Accuracy, StiffnessIsMovedInScenesAndMachinesUnlessTheCampaignVariesIt) {

@@ -1,0 +1,22 @@
+// Figure of `accuracy`: numerical error against cost, and the error of a campaign's mean against its cost.
+#pragma once
+
+#include "sweep/plot/plot.hpp"
+#include "sweep/study/accuracy.hpp"
+
+#include <span>
+#include <string>
+
+namespace grainsweep::report {
+
+/// Returns two panels for each observable.
+///
+/// 1. Bias of each setting against the processor time of a case, with 95 % whiskers and dashed lines at the tolerance.
+/// 2. Error of the mean that a campaign of N random points at one setting has at 95 %, against its processor time N c,
+///    with bias b, cost c of a case and standard deviation s of its answers: sqrt(b^2 + 1.96^2 s^2/N).
+///
+/// All errors are relative to the mean at the most accurate setting; an observable whose mean is 0 has no panel.
+[[nodiscard]] plot::Figure accuracy_figure(std::span<const study::NumericsCost> costs,
+                                           std::span<const std::string> observables, double tolerance);
+
+}  // namespace grainsweep::report
