@@ -42,7 +42,7 @@ namespace {
 
 struct Entered {
     std::mutex mutex;
-    std::map<std::string, SceneInfo, std::less<>> scenes;
+    std::map<std::string, SharedScene, std::less<>> scenes;
 };
 
 Entered& entered() {
@@ -52,24 +52,24 @@ Entered& entered() {
 
 }  // namespace
 
-const SceneInfo& enter_scene(SceneInfo scene) {
+SharedScene enter_scene(SceneInfo scene) {
     auto& all = entered();
     const std::lock_guard lock(all.mutex);
     auto& known = all.scenes[scene.name];
-    return known = std::move(scene);
+    return known = std::make_shared<const SceneInfo>(std::move(scene));
 }
 
-const SceneInfo* find_scene(std::string_view name) {
+SharedScene find_scene(std::string_view name) {
     const auto scenes = scene_catalogue();
-    if (const auto own = std::ranges::find(scenes, name, &SceneInfo::name); own != scenes.end()) return &*own;
+    if (const auto own = std::ranges::find(scenes, name, &SceneInfo::name); own != scenes.end()) return unowned(*own);
     auto& all = entered();
     const std::lock_guard lock(all.mutex);
     const auto found = all.scenes.find(name);
-    return found == all.scenes.end() ? nullptr : &found->second;
+    return found == all.scenes.end() ? nullptr : found->second;
 }
 
 std::string shown_scene(std::string_view name) {
-    const SceneInfo* known = find_scene(name);
+    const auto known = find_scene(name);
     return known != nullptr ? known->shown() : std::string(name);
 }
 

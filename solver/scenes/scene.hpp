@@ -126,10 +126,16 @@ struct SceneInfo {
 
 /// Returns the solver's own scenes, in the order of display.
 [[nodiscard]] std::span<const SceneInfo> scene_catalogue();
+/// A scene that stays for whoever holds it.
+using SharedScene = std::shared_ptr<const SceneInfo>;
 /// Registers another scene in this process; it replaces a scene of the same name.
-const SceneInfo& enter_scene(SceneInfo scene);
+SharedScene enter_scene(SceneInfo scene);
 /// Returns a scene of the solver or a registered scene; nullptr if there is none of this name.
-[[nodiscard]] const SceneInfo* find_scene(std::string_view name);
+[[nodiscard]] SharedScene find_scene(std::string_view name);
+/// Returns a handle of a scene that outlives it.
+[[nodiscard]] inline SharedScene unowned(const SceneInfo& scene) {
+    return {std::shared_ptr<void>(), &scene};
+}
 /// Returns the label of the scene of this name; the name if it has no label.
 [[nodiscard]] std::string shown_scene(std::string_view name);
 

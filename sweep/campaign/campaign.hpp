@@ -88,7 +88,7 @@ struct Expression {
 
 /// Varied and fixed parameters of a campaign.
 struct ParameterSpace {
-    const SceneInfo* scene = nullptr;
+    SharedScene scene;
     std::vector<Factor> factors;  ///< their order fixes the design's dimensions
     Inputs fixed;                 ///< as given, with the inputs of the accuracy setting
     /// Fixed parameters given as expressions, each after the ones that it needs. expressions.hpp checks their results.

@@ -129,8 +129,8 @@ Experiment experiment_file(const Json& file, const Cursor& place, const std::str
                              fmt::format("'{}' is missing: an object of the discrepancies in this experiment", name));
     section["discrepancy"] = discrepancy[name];
     try {
-        const auto& scene = read_scene(Section(Cursor(document, "$"), campaign_keys()), folder);
-        keep_known(file, place.json(), scene, experiment);
+        const auto scene = read_scene(Section(Cursor(document, "$"), campaign_keys()), folder);
+        keep_known(file, place.json(), *scene, experiment);
     } catch (const WrongQuestion& wrong) {
         throw WrongQuestion(experiment.in_whole(wrong.what(), place.json()));
     }

@@ -48,20 +48,19 @@ std::shared_ptr<const Machine> installed_machine(std::string_view name) {
     });
 }
 
-const SceneInfo* scene_named(std::string_view word) {
-    if (const SceneInfo* scene = find_scene(word)) return scene;
-    // Entered once: who holds a scene keeps it.
+SharedScene scene_named(std::string_view word) {
+    if (auto scene = find_scene(word)) return scene;
     static std::mutex mutex;
-    static std::map<std::string, const SceneInfo*, std::less<>> entered;
+    static std::map<std::string, SharedScene, std::less<>> entered;
     const std::lock_guard lock(mutex);
     if (const auto known = entered.find(word); known != entered.end()) return known->second;
     auto machine = installed_machine(word);
-    return machine == nullptr ? nullptr : (entered[machine->name] = &enter_machine(machine));
+    return machine == nullptr ? nullptr : (entered[machine->name] = enter_machine(machine));
 }
 
-std::vector<const SceneInfo*> named_scenes() {
-    std::vector<const SceneInfo*> all;
-    for (const auto& scene : scene_catalogue()) all.push_back(&scene);
+std::vector<SharedScene> named_scenes() {
+    std::vector<SharedScene> all;
+    for (const auto& scene : scene_catalogue()) all.push_back(unowned(scene));
     for (const auto& name : installed_machines()) all.push_back(scene_named(name));
     return all;
 }

@@ -1,15 +1,13 @@
 // Machines that come with the program: configs/machines, compiled in.
 #pragma once
 
+#include "solver/scenes/scene.hpp"
+
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-namespace grainsweep {
-struct SceneInfo;
-}
 
 namespace grainsweep::campaign {
 
@@ -29,9 +27,9 @@ struct InstalledFile {
 /// Returns an installed machine; nullptr if there is none of this name.
 [[nodiscard]] std::shared_ptr<const Machine> installed_machine(std::string_view name);
 /// Returns the scene of this name, or of the installed machine of this name; nullptr if there is none.
-[[nodiscard]] const SceneInfo* scene_named(std::string_view word);
+[[nodiscard]] SharedScene scene_named(std::string_view word);
 /// Returns the possible scenes of a campaign file: scenes of the program, then installed machines.
-[[nodiscard]] std::vector<const SceneInfo*> named_scenes();
+[[nodiscard]] std::vector<SharedScene> named_scenes();
 
 /// Returns the machine of a file path or the installed machine of a name. Throws WrongQuestion with `where`.
 [[nodiscard]] std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name);

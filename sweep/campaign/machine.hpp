@@ -63,7 +63,7 @@ using FileReader = std::function<std::string(const std::string& name)>;
 [[nodiscard]] std::shared_ptr<const Machine> machine_in(std::string_view text, const FileReader& contents_of_hash);
 
 /// Registers the machine's scene in this process.
-const SceneInfo& enter_machine(std::shared_ptr<const Machine> machine);
+SharedScene enter_machine(std::shared_ptr<const Machine> machine);
 /// Returns the registered machine of a scene; nullptr if there is none.
 [[nodiscard]] std::shared_ptr<const Machine> known_machine(std::string_view scene);
 

@@ -71,7 +71,7 @@ std::string_view machine_summary() {
     return "your own granular experiment as one JSON file: walls, motions, powders, phases, measurements";
 }
 
-const SceneInfo& enter_machine(std::shared_ptr<const Machine> machine) {
+SharedScene enter_machine(std::shared_ptr<const Machine> machine) {
     auto scene = scene_of_machine(machine, machine_scene_name(*machine));
     auto& all = machines();
     const std::lock_guard lock(all.mutex);

@@ -100,7 +100,7 @@ struct Program {
                                            const Inputs& inputs);
 
 /// Registers the program's scene in this process; the same program gives the same scene again.
-const SceneInfo& enter_program(std::shared_ptr<const Program> program);
+SharedScene enter_program(std::shared_ptr<const Program> program);
 /// Returns the registered program of a scene; nullptr if there is none.
 [[nodiscard]] std::shared_ptr<const Program> known_program(std::string_view scene);
 /// Returns why a completed case of a scene can lack a value of a scalar; empty: unknown.

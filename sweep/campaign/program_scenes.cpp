@@ -46,7 +46,7 @@ SceneInfo scene_of(const Program& program, std::string name) {
 
 }  // namespace
 
-const SceneInfo& enter_program(std::shared_ptr<const Program> program) {
+SharedScene enter_program(std::shared_ptr<const Program> program) {
     auto scene = scene_of(*program, program_scene_name(*program));
     auto& all = entered();
     const std::lock_guard lock(all.mutex);
@@ -62,7 +62,7 @@ std::shared_ptr<const Program> known_program(std::string_view scene) {
 }
 
 std::string why_absent(std::string_view scene, std::string_view observable) {
-    const SceneInfo* known = find_scene(scene);
+    const auto known = find_scene(scene);
     const ObservableSpec* spec = known == nullptr ? nullptr : known->find_observable(observable);
     return spec == nullptr ? std::string() : spec->absent;
 }

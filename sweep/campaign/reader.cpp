@@ -134,7 +134,7 @@ std::string read_text(const fs::path& file) {
 
 }  // namespace
 
-const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
+SharedScene read_scene(const Section& top, const fs::path& folder) {
     const Cursor place = top.at("scene");
     const auto known = scene_words();
     const auto& json = place.json();
@@ -150,7 +150,7 @@ const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
     if (const auto program = top.find("program"))
         throw wrong_question(program->path(), "",
                              fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
-    return *scene_named(word);
+    return scene_named(word);
 }
 
 Campaign campaign_in(const Json& document, const fs::path& folder) {
@@ -158,7 +158,7 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     if (!top.find("scene")) throw wrong_question("$", "", "key 'scene' is missing: the experiment every case runs");
     Campaign campaign;
     campaign.name = read_name(top.at("campaign"));
-    campaign.space.scene = &read_scene(top, folder);
+    campaign.space.scene = read_scene(top, folder);
     campaign.seed = static_cast<std::uint64_t>(top.whole("seed", 1));
     campaign.replicates = top.whole("replicates", 1);
     if (const auto where = top.find("where")) campaign.where = where->text();

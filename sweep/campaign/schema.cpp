@@ -383,7 +383,7 @@ std::string campaign_schema(int indentation) {
     for (const auto& design : designs::design_catalogue())
         properties["design"]["oneOf"].push_back(design_schema(design));
     OrderedJson scenes = OrderedJson::array();
-    for (const auto* scene : named_scenes()) {
+    for (const auto& scene : named_scenes()) {
         scenes.push_back(scene->shown());
         schema["allOf"].push_back(scene_rule(*scene));
     }

@@ -67,7 +67,7 @@ void check_unfit(const Campaign& campaign);
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
 
 /// Returns the scene of a campaign file or of one of its experiments; a program or machine is made from its section.
-[[nodiscard]] const SceneInfo& read_scene(const Section& top, const std::filesystem::path& folder);
+[[nodiscard]] SharedScene read_scene(const Section& top, const std::filesystem::path& folder);
 /// Reads a campaign file of one experiment, without its text.
 [[nodiscard]] Campaign campaign_in(const Json& document, const std::filesystem::path& folder);
 /// Returns the experiments of "calibration"; empty: there is only one.

@@ -219,7 +219,7 @@ int explain(const Arguments& asked, Format format) {
     }
     std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id),
                              shown_scene(question.scene), question.revision, question.seed);
-    const SceneInfo* scene = find_scene(question.scene);
+    const auto scene = find_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
         if (parameter != nullptr && parameter->default_value == value) continue;

@@ -237,7 +237,7 @@ int list_scenes(const std::string& name, Format format) {
         return 0;
     }
     if (!name.empty()) {
-        const auto* scene = campaign::scene_named(name);
+        const auto scene = campaign::scene_named(name);
         if (scene == nullptr) {
             throw campaign::wrong_question("NAME", name, "there is no such scene; grainsweep scenes lists them",
                                            campaign::nearest_word(name, known));
@@ -246,7 +246,7 @@ int list_scenes(const std::string& name, Format format) {
         return 0;
     }
     store::Table table{{"scene", "revision", "parameters", "observables", "summary"}, {}};
-    for (const auto* scene : campaign::named_scenes())
+    for (const auto& scene : campaign::named_scenes())
         table.rows.push_back({scene->shown(), std::int64_t{scene->revision},
                               static_cast<std::int64_t>(scene->parameters.size()),
                               static_cast<std::int64_t>(scene->observables.size()), scene->summary});
@@ -260,7 +260,7 @@ int list_scenes(const std::string& name, Format format) {
 
 int list_machines(const std::string& name, Format format) {
     if (!name.empty()) {
-        show_scene(campaign::enter_machine(campaign::machine_named("NAME", name)), format);
+        show_scene(*campaign::enter_machine(campaign::machine_named("NAME", name)), format);
         return 0;
     }
     store::Table table{{"machine", "kind", "parameters", "observables", "summary"}, {}};

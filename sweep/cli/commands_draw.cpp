@@ -65,20 +65,20 @@ Json about_machine(const SceneInfo& scene, const Inputs& inputs) {
 int draw(const DrawRequest& request, report::Format format) {
     check_page_file("-o", request.page, "");
     const auto machine = campaign::machine_named("MACHINE", request.machine);
-    const SceneInfo& scene = campaign::enter_machine(machine);
-    const Inputs inputs = inputs_of(scene, request.settings);
+    const auto scene = campaign::enter_machine(machine);
+    const Inputs inputs = inputs_of(*scene, request.settings);
     report::Film film;
     campaign::draw_machine(*machine, inputs, request.frames,
                            [&film](const Snapshot& picture, double time) { film.add(picture, time); });
-    const std::string page = report::watch_page(film, about_machine(scene, inputs));
+    const std::string page = report::watch_page(film, about_machine(*scene, inputs));
     write_page_file(request.page, page);
     if (format == report::Format::json)
-        report::write(std::cout, Json{{"machine", scene.shown()},
+        report::write(std::cout, Json{{"machine", scene->shown()},
                                       {"page", request.page},
                                       {"particles", static_cast<std::int64_t>(film.spheres())}});
     else
         std::cout << fmt::format("{} ({}): {} with {} particles; open it in a browser\n", request.page,
-                                 report::size_text(page.size()), scene.shown(), film.spheres());
+                                 report::size_text(page.size()), scene->shown(), film.spheres());
     return 0;
 }
 

@@ -126,7 +126,7 @@ Campaign campaign_of(const std::string& config) {
     if (auto machine = campaign::machine_if_any(config)) {
         Campaign campaign;
         campaign.name = machine->name;
-        campaign.space.scene = &campaign::enter_machine(std::move(machine));
+        campaign.space.scene = campaign::enter_machine(std::move(machine));
         return campaign;
     }
     Campaign campaign = read_with_program(config);

@@ -35,7 +35,7 @@ std::vector<std::string> design_names() {
 /// "friction=" and so on, every parameter of every scene once.
 std::vector<std::string> settings() {
     std::set<std::string> names;
-    for (const auto* scene : campaign::named_scenes())
+    for (const auto& scene : campaign::named_scenes())
         for (const auto& parameter : scene->parameters) names.insert(parameter.name + "=");
     return {names.begin(), names.end()};
 }

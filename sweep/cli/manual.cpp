@@ -127,7 +127,7 @@ std::string keys_section() {
 
 std::string catalogue_sections() {
     std::string text = section("SCENES");
-    for (const auto* scene : campaign::named_scenes()) text += item(bold(scene->shown()), plain(scene->summary) + ".");
+    for (const auto& scene : campaign::named_scenes()) text += item(bold(scene->shown()), plain(scene->summary) + ".");
     text += item(bold(std::string(campaign::program_word)), plain(std::string(campaign::program_summary()) + "."));
     text += section("DESIGNS");
     for (const auto& design : designs::design_catalogue()) text += item(bold(design.name), plain(design.summary));

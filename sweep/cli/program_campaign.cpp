@@ -29,7 +29,7 @@ campaign::Campaign with_program(campaign::Campaign campaign, const fs::path& con
     } catch (const std::runtime_error& why) {
         throw campaign::wrong_question(place + "version", "", why.what());
     }
-    campaign.space.scene = &campaign::enter_program(std::move(versioned));
+    campaign.space.scene = campaign::enter_program(std::move(versioned));
     return campaign;
 }
 

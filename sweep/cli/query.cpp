@@ -86,7 +86,7 @@ std::string unit_of(const std::vector<std::string>& scenes, const std::string& c
     if (column == "wall_seconds" || column == "cpu_seconds") return "s";
     std::optional<std::string> unit;
     for (const auto& name : scenes) {
-        const auto* scene = find_scene(name);
+        const auto scene = find_scene(name);
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(column);
         const auto* observable = scene == nullptr ? nullptr : scene->find_observable(column);
         if (parameter == nullptr && observable == nullptr) continue;

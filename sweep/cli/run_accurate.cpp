@@ -75,11 +75,8 @@ private:
             const auto cost = campaign::forecast(at.scene(), cases);
             settings_.push_back({name, cost.total_seconds / static_cast<double>(cost.questions), cases.hash(0)});
         };
-        // Names, because reading a machine file again replaces its scene.
-        const auto offered = std::views::keys(asked_.scene().accuracy);
-        const std::vector<std::string> names(offered.begin(), offered.end());
         add(measure());
-        for (const auto& name : names) {
+        for (const auto& name : std::views::keys(asked_.scene().accuracy)) {
             if (name == campaign::AccuracyGoal::measure) continue;
             add(name);
             const auto before = std::span(settings_).first(settings_.size() - 1);

@@ -22,7 +22,7 @@ std::string heading_of(const store::Store& archive, const campaign::CaseId& id) 
 }
 
 std::string why_not_again(const campaign::Case& question) {
-    const SceneInfo* scene = find_scene(question.scene);
+    const auto scene = find_scene(question.scene);
     if (scene == nullptr) return "needs a scene that this build does not have: " + question.scene;
     if (scene->revision == question.revision) return {};
     return fmt::format(

@@ -267,7 +267,7 @@ std::vector<const ResponseColumn*> shown_observables(const Responses& responses)
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
                  const PageModels& models, std::vector<std::string>& measured) {
     const auto responses = read_responses(store, record);
-    const SceneInfo* scene = find_scene(record.scene);
+    const auto scene = find_scene(record.scene);
     const auto observables = shown_observables(responses);
     for (const auto* one : observables)
         if (!std::ranges::count(measured, one->name)) measured.push_back(one->name);

@@ -26,7 +26,7 @@ Json entry(const std::string& name, const Json& value, const std::string& unit) 
 }  // namespace
 
 Json about_case(const campaign::Case& question, const campaign::CaseResult& result) {
-    const SceneInfo* scene = find_scene(question.scene);
+    const auto scene = find_scene(question.scene);
     std::string title = shown_scene(question.scene);
     std::ranges::replace(title, '_', ' ');
     const std::string message = result.outcome == campaign::Outcome::completed

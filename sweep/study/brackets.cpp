@@ -16,7 +16,7 @@ std::optional<Brackets> brackets_of(const store::Store& store, const store::Camp
     brackets.observable = request.word("observable");
     brackets.threshold = request.number("threshold");
     brackets.width = request.number("width");
-    if (const auto* scene = find_scene(record.scene)) {
+    if (const auto scene = find_scene(record.scene)) {
         if (const auto* parameter = scene->find_parameter(brackets.factor)) brackets.factor_unit = parameter->unit;
         if (const auto* measured = scene->find_observable(brackets.observable))
             brackets.observable_unit = measured->unit;

@@ -267,7 +267,7 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
         for (std::size_t j = 0; j < report.found.factors.size(); ++j) {
             auto& factor = report.factors.emplace_back(posterior_of(report.found, j));
             for (const auto& [name, one] : records)
-                if (const auto* scene = find_scene(one.scene))
+                if (const auto scene = find_scene(one.scene))
                     if (const auto* parameter = scene->find_parameter(factor.name)) factor.unit = parameter->unit;
         }
     const auto layout = designs::calibration_layout(request, report.found.targets);
@@ -278,7 +278,7 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
         check.condition = condition_text(report.found.targets[t], campaign::factors_of(one->second));
         const auto place = designs::place_on_curve(check.observable);
         if (std::isinf(check.beyond)) check.covered = covered_by(store, one->second.name, layout, t, place);
-        const auto* scene = find_scene(one->second.scene);
+        const auto scene = find_scene(one->second.scene);
         const auto* measured = scene == nullptr ? nullptr : scene->find_observable(place.observable);
         if (measured != nullptr) check.unit = measured->unit;
     }

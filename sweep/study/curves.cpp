@@ -82,7 +82,7 @@ std::string label_of(const Responses& responses, std::size_t row) {
 
 Curves read_curves(const store::Store& store, const Responses& responses, const CurveChoice& choice) {
     Curves curves;
-    const SceneInfo* scene = find_scene(responses.campaign.scene);
+    const auto scene = find_scene(responses.campaign.scene);
     if (scene == nullptr) return curves;
     for (const auto& spec : scene->observables)
         if (spec.shape != Shape::scalar) {

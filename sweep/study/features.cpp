@@ -64,7 +64,7 @@ double number_of_default(ModelFactor& factor, const Value& value) {
 
 /// Compiles the `when` of stored factors.
 void add_conditions(std::vector<ModelFactor>& factors, const campaign::Identity& identity) {
-    const auto* scene = find_scene(identity.scene);
+    const auto scene = find_scene(identity.scene);
     campaign::ParameterSpace space{scene, campaign::factors_asked(identity), {}};
     const auto conditional = [](const auto& factor) { return !factor.when.empty(); };
     if (scene == nullptr || std::ranges::none_of(space.factors, conditional)) return;

@@ -95,7 +95,7 @@ std::vector<store::CampaignRecord> chosen_campaigns(const store::Store& store, s
 /// Complete inputs of settings; empty where no case is answered.
 std::function<Inputs(const Setting&)> completion(const store::Store& store, const ModelCases& cases) {
     const auto example = cases.case_id.empty() ? std::nullopt : store.find_case(cases.case_id);
-    const auto* scene = find_scene(cases.campaign.scene);
+    const auto scene = find_scene(cases.campaign.scene);
     if (!example || scene == nullptr) return {};
     Inputs inputs = example->inputs;
     for (const auto& [name, value] : scene->defaults()) inputs.try_emplace(name, value);

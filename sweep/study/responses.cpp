@@ -214,14 +214,14 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
     responses.repeats_weigh = campaign::repeats_weigh(campaign::factors_asked(record));
-    const SceneInfo* scene = find_scene(record.scene);
+    const auto scene = find_scene(record.scene);
     std::vector<FactorReader> factors;
-    for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
+    for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene.get());
     const auto first_observable = first_factor + factors.size();
     const auto declare = [&](const std::vector<std::string>& columns) {
         for (std::size_t column = first_observable; column < columns.size(); ++column) {
             ResponseColumn response;
-            response.name = observable_name(columns[column], scene);
+            response.name = observable_name(columns[column], scene.get());
             if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
                 response.unit = spec->unit;
                 response.meaning = spec->meaning;

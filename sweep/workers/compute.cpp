@@ -156,7 +156,7 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         return result;
     };
 
-    const SceneInfo* info = find_scene(question.scene);
+    const auto info = find_scene(question.scene);
     if (info == nullptr || info->revision != question.revision) {
         return close(campaign::Outcome::rejected,
                      fmt::format("this build has no scene '{}' of revision {}", question.scene, question.revision));

@@ -132,7 +132,8 @@ class MachinesAgainstLiggghts : public testing::TestWithParam<Case> {};
 
 TEST_P(MachinesAgainstLiggghts, AgreeWithinThreeStandardErrors) {
     const Case& asked = GetParam();
-    const SceneInfo& scene = campaign::enter_machine(campaign::installed_machine(asked.machine));
+    const auto shared = campaign::enter_machine(campaign::installed_machine(asked.machine));
+    const SceneInfo& scene = *shared;
     // Four times as many as there: the tolerance of a mean over m seeds against one over n is 3 sd sqrt(1/m + 1/n).
     const int theirs = references().at({asked.reference, asked.quantities.front().name}).seeds, seeds = 4 * theirs;
     const double narrower = std::sqrt((1.0 / seeds + 1.0 / theirs) / (2.0 / theirs));

@@ -15,7 +15,8 @@ namespace grainsweep::tests::laboratory_bulk_test {
 using Scalars = std::map<std::string, double, std::less<>>;
 
 Scalars answer(const char* machine, const Inputs& set, std::uint64_t seed = 1) {
-    const SceneInfo& scene = campaign::enter_machine(campaign::installed_machine(machine));
+    const auto shared = campaign::enter_machine(campaign::installed_machine(machine));
+    const SceneInfo& scene = *shared;
     Inputs inputs = scene.defaults();
     for (const auto& [name, value] : set) inputs[name] = value;
     NoArtefacts none;

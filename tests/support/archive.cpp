@@ -16,7 +16,7 @@ campaign::Campaign small_campaign(const std::string& name, std::size_t factors) 
     static const SceneInfo scene = rehearsal_scene();
     campaign::Campaign campaign;
     campaign.name = name;
-    campaign.space.scene = &scene;
+    campaign.space.scene = unowned(scene);
     for (std::size_t j = 1; j <= factors; ++j) {
         campaign.space.factors.push_back({"x" + std::to_string(j), campaign::Between{0, 1, campaign::Scale::linear}});
     }

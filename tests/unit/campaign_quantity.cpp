@@ -191,7 +191,7 @@ TEST(Quantities, ThatAreNoneAreRefused) {
 
 TEST(Quantities, ReadEveryUnitOfTheScenes) {
     std::set<std::string> units;
-    for (const auto* scene : campaign::named_scenes())
+    for (const auto& scene : campaign::named_scenes())
         for (const auto& parameter : scene->parameters)
             if (!std::holds_alternative<std::string>(parameter.default_value)) units.insert(parameter.unit);
     ASSERT_GT(units.size(), 8U);

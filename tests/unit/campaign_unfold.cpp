@@ -27,7 +27,7 @@ Campaign read(const std::string& text, const std::filesystem::path& folder = "."
 }
 
 ParameterSpace space_of(std::vector<Factor> factors) {
-    return {&rehearsal(), std::move(factors), {}};
+    return {unowned(rehearsal()), std::move(factors), {}};
 }
 
 double x1_at(const Between& range, double u) {
@@ -340,7 +340,7 @@ SceneInfo dependent_scene() {
 TEST(Relevance, AFactorSatisfiesAConditionIfAnyOfItsValuesCan) {
     const SceneInfo scene = dependent_scene();
     const auto reason = [&](const char* parameter, std::vector<Factor> factors, Inputs fixed) {
-        const ParameterSpace space{&scene, std::move(factors), std::move(fixed)};
+        const ParameterSpace space{unowned(scene), std::move(factors), std::move(fixed)};
         return no_effect(space, *scene.find_parameter(parameter)).value_or("it matters");
     };
     EXPECT_EQ(
@@ -366,7 +366,7 @@ TEST(Relevance, AFactorSatisfiesAConditionIfAnyOfItsValuesCan) {
 TEST(Accuracy, FillsInUnderWhatIsGivenAndOnlyWhatMatters) {
     const SceneInfo scene = dependent_scene();
     const auto resolved = [&](Inputs fixed) {
-        ParameterSpace space{&scene, {}, std::move(fixed)};
+        ParameterSpace space{unowned(scene), {}, std::move(fixed)};
         resolve_accuracy(space, "fast");
         return space.fixed;
     };
@@ -375,7 +375,7 @@ TEST(Accuracy, FillsInUnderWhatIsGivenAndOnlyWhatMatters) {
     EXPECT_EQ(resolved({{"time_step", 1e-6}}), (Inputs{{"time_step", 1e-6}}));
     EXPECT_EQ(resolved({{"law", std::string("b")}}),
               (Inputs{{"fraction", 0.4}, {"law", std::string("b")}, {"strength", 2.0}}));
-    ParameterSpace space{&scene, {{"amplitude", Between{0, 1}}}, {}};
+    ParameterSpace space{unowned(scene), {{"amplitude", Between{0, 1}}}, {}};
     resolve_accuracy(space, "fast");
     hold(space, "time_step", 1e-6, "fast");
     hold(space, "amplitude", 0.5, "fast");

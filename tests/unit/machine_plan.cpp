@@ -25,6 +25,18 @@ std::set<std::string> kinds(const char* patch, const Inputs& inputs = {}) {
 
 using Kinds = std::set<std::string>;
 
+TEST(MachineScenes, StayForWhoeverHoldsThemWhenTheMachineIsReadAgain) {
+    const auto held = campaign::enter_machine(machine_of(small_machine()));
+    json other = small_machine();
+    other["summary"] = "the same answers, other words";
+    const auto newest = campaign::enter_machine(machine_of(other));
+    ASSERT_EQ(newest->name, held->name);
+    EXPECT_EQ(find_scene(held->name), newest);
+    EXPECT_EQ(newest->summary, "the same answers, other words");
+    EXPECT_NE(held->summary, newest->summary);
+    EXPECT_EQ(held->defaults(), newest->defaults());
+}
+
 TEST(MachinePlan, ASoundMachineHasNoWarning) {
     EXPECT_EQ(kinds("[]"), Kinds{});
 }

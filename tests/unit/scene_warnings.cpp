@@ -11,7 +11,7 @@
 namespace grainsweep::tests::scene_warnings_test {
 
 std::set<std::string> kinds(const std::string& scene, const Inputs& changed) {
-    const auto* info = campaign::scene_named(scene);
+    const auto info = campaign::scene_named(scene);
     Inputs inputs = info->defaults();
     for (const auto& [name, value] : changed) inputs.at(name) = value;
     std::set<std::string> found;

@@ -159,7 +159,7 @@ std::vector<Hostile> kinds() {
     const auto thermo = [](const char* coupling) {
         return Inputs{{"coupling", std::string(coupling)}, {"cells", std::int64_t{8}}, {"particles", std::int64_t{64}}};
     };
-    static const std::string bin = campaign::enter_machine(machine_of(small_machine())).name;
+    static const std::string bin = campaign::enter_machine(machine_of(small_machine()))->name;
     std::vector<Hostile> all = {
         {bin, {{"precision", mixed}}, 0.055, "MachineMixed"},
         {bin, {{"precision", in_double}}, 0.055, "MachineDouble"},

@@ -119,7 +119,7 @@ TEST_F(StoreEnrol, AnotherQuestionUnderTheSameNameIsRefused) {
     SceneInfo changed = campaign.scene();
     changed.revision = 2;
     other = campaign;
-    other.space.scene = &changed;
+    other.space.scene = unowned(changed);
     EXPECT_THAT(refusal(other, cases), AllOf(HasSubstr("revision 2"), HasSubstr("revision 1")));
     changed = campaign.scene();
     changed.name = "another";

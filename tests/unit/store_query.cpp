@@ -109,7 +109,7 @@ TEST_F(StoreQuery, NamesThatMeetInAViewAreToldApart) {
     scene.parameters[1].name = "y";
     campaign::Campaign twins = asked;
     twins.name = "twins_campaign";
-    twins.space.scene = &scene;
+    twins.space.scene = unowned(scene);
     twins.space.factors[0].name = "seed";
     twins.space.factors[1].name = "y";
     store.enrol(twins, {}, here());
