@@ -46,11 +46,6 @@ dem::Setup pair_of(const dem::Material& material, double gap, double speed, doub
     return s;
 }
 
-Method method(Method::Precision precision) {
-    Method m;
-    m.precision = precision;
-    return m;
-}
 constexpr Method::Precision both[] = {Method::Precision::double_precision, Method::Precision::mixed};
 
 /// The largest root a of the quartic, by bisection of d(a) = a^2/R* - sqrt(2 pi w a/E*), which grows beyond its

@@ -40,11 +40,6 @@ dem::Material wet() {
     return m;
 }
 
-Method method(Method::Precision precision) {
-    Method m;
-    m.precision = precision;
-    return m;
-}
 constexpr Method::Precision both[] = {Method::Precision::double_precision, Method::Precision::mixed};
 
 /// Willett's closed form in its own words: radius of Derjaguin, volume, gap.

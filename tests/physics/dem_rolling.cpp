@@ -35,11 +35,6 @@ dem::Setup soft_spheres(double rolling_friction, double time_step) {
     return s;
 }
 
-Method method(Method::Precision precision) {
-    Method m;
-    m.precision = precision;
-    return m;
-}
 constexpr auto exact = Method::Precision::double_precision;
 constexpr auto mixed = Method::Precision::mixed;
 

@@ -18,13 +18,6 @@ using namespace geometry;
 using Precision = dem::Method::Precision;
 constexpr std::array both = {Precision::double_precision, Precision::mixed};
 
-dem::Method method(Precision precision, int threads = 1) {
-    dem::Method made;
-    made.precision = precision;
-    made.threads = threads;
-    return made;
-}
-
 /// A closed box of these lengths about `centre`, triangles outwards.
 std::vector<std::array<Vec3, 3>> box(const Vec3& centre, const Vec3& lengths) {
     const auto corner = [&](int x, int y, int z) {

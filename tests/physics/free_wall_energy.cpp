@@ -28,13 +28,6 @@ using namespace geometry;
 using Precision = dem::Method::Precision;
 constexpr std::array both = {Precision::double_precision, Precision::mixed};
 
-dem::Method method(Precision precision, int threads = 1) {
-    dem::Method made;
-    made.precision = precision;
-    made.threads = threads;
-    return made;
-}
-
 /// Residual of the balance of a wall.
 double residual(const dem::Engine& engine, std::size_t wall) {
     return kinetic_energy(engine.wall(wall).motions) - engine.wall_energy(wall).sum();

@@ -21,13 +21,6 @@ using std::numbers::pi;
 using Precision = dem::Method::Precision;
 constexpr std::array both = {Precision::double_precision, Precision::mixed};
 
-dem::Method method(Precision precision, int threads = 1) {
-    dem::Method made;
-    made.precision = precision;
-    made.threads = threads;
-    return made;
-}
-
 constexpr double diameter = 0.01, stiffness = 1000;
 
 /// One sphere of 1 cm on the floor z = 0, by undamped springs, without gravity.

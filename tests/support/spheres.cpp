@@ -87,6 +87,13 @@ bool finite(const dem::State& state) {
     return all(state.position) && all(state.velocity) && all(state.angular_velocity);
 }
 
+dem::Method method(dem::Method::Precision precision, int threads) {
+    dem::Method made;
+    made.precision = precision;
+    made.threads = threads;
+    return made;
+}
+
 dem::State state_of(const dem::Engine& engine) {
     dem::State state;
     engine.state(state);

@@ -22,6 +22,8 @@ namespace grainsweep::tests {
 [[nodiscard]] double kinetic_energy(const dem::Setup& setup, const dem::State& state);  ///< with rotation, J
 [[nodiscard]] bool finite(const dem::State& state);
 
+/// The default method with this precision.
+[[nodiscard]] dem::Method method(dem::Method::Precision precision, int threads = 1);
 /// The state of an engine.
 [[nodiscard]] dem::State state_of(const dem::Engine& engine);
 
