@@ -19,6 +19,7 @@ namespace {
 using kit::sentence;
 
 constexpr double early = 0.5;                          // of a phase that may end before its time
+constexpr double at_steps = 2.8e-7, another = 1.3e-8;  // s per particle and step with a probe at every step, or more
 constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
 constexpr double softest = 0.1;                        // overlap over diameter
 constexpr double most_loose = 0.35;                    // solid fraction of particles placed at random
@@ -209,6 +210,20 @@ void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
+/// Returns the time in which probes read the contacts of every step, s per particle.
+double cost_of_step_probes(const Spec& spec) {
+    double seconds = 0;
+    for (std::size_t p = 0; p < spec.phases.size(); ++p) {
+        const auto probes = std::ranges::count_if(spec.measures, [&](const Measure& measure) {
+            return holds(measure.during, p) && find_probe(measure.probe)->steps;
+        });
+        if (probes == 0) continue;
+        const double steps = length_of(spec.phases[p]) / spec.time_step;
+        seconds += steps * (at_steps + another * static_cast<double>(probes - 1));
+    }
+    return seconds;
+}
+
 /// How much longer a step takes with walls of triangles: as in blender, screw feeder and silo.
 double cost_of_meshes(const Spec& spec) {
     double factor = 1;
@@ -236,8 +251,10 @@ CostEstimate cost_of(const Spec& spec) {
         most += fed;
     }
     const double steps = duration_of(spec, {}) / spec.time_step;
-    return kit::estimate(spec.method, spec.pairs.front(), most,
-                         cost_of_meshes(spec) * (most > 0 ? work / spec.time_step / most : steps));
+    auto cost = kit::estimate(spec.method, spec.pairs.front(), most,
+                              cost_of_meshes(spec) * (most > 0 ? work / spec.time_step / most : steps));
+    cost.seconds += most * cost_of_step_probes(spec);
+    return cost;
 }
 
 std::vector<Warning> warnings_of(const Spec& spec) {

@@ -38,6 +38,8 @@ struct Sight {
     double peak_overlap = 0;              ///< largest overlap at any step since the phase began
     std::span<const double> radius = {};  ///< by id, of all particles so far, m
     double time_step = 0;                 ///< s
+    /// In step(): the contacts in the order of their partners (partner_order.hpp).
+    std::span<const std::uint32_t> by_partners = {};
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }
@@ -120,7 +122,7 @@ struct ProbeInfo {
     std::string_view over = {};  ///< of a profile: its coordinate with unit
     /// Returns the error of a combination of options, in one sentence; empty: none. May be null.
     std::string (*flaw)(const Options&) = nullptr;
-    bool steps = false;  ///< called at every step, which costs about as much as twenty steps
+    bool steps = false;  ///< called at every step, which costs about as much as eight steps
 };
 
 /// Returns all probes, sorted by name.

@@ -139,7 +139,8 @@ void Run::end_phase(std::uint8_t condition) {
 
 void Run::stop_here() {
     if (!at_steps_[phase_].empty()) {
-        const Sight sight = look(Contacts::of_step);
+        Sight sight = look(Contacts::of_step);
+        sight.by_partners = partner_order_.of(contacts_);
         for (Probe* probe : at_steps_[phase_]) probe->step(sight);
     }
     if (step_ > phase_begin_) feed();

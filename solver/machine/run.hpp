@@ -6,6 +6,7 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/machine/feeding.hpp"
+#include "solver/machine/partner_order.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/machine/spec.hpp"
 #include "solver/scenes/scene.hpp"
@@ -100,6 +101,7 @@ private:
     std::vector<Record> records_;
     dem::State state_;
     std::vector<dem::ContactForce> contacts_;
+    PartnerOrder partner_order_;
 };
 
 }  // namespace grainsweep::machine

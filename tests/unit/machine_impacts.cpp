@@ -77,11 +77,13 @@ TEST_P(StepContacts, AnImpactDissipatesByItsRestitution) {
     Method method;
     method.precision = GetParam();
     bed.engine = make_engine(bed.setup, method);
+    machine::PartnerOrder order;
     for (int k = 0; k < 20000; ++k) {
         bed.engine->run(1);
         bed.engine->step_contacts(bed.contacts);
         machine::Sight sight{*bed.engine, bed.state, bed.contacts, bed.species, bed.density, bed.domain, {},
                              k * 1e-7,    0,         bed.radius,   1e-7};
+        sight.by_partners = order.of(bed.contacts);
         for (auto* probe : {spectrum.get(), energy.get(), number.get(), tangential.get()}) probe->step(sight);
     }
     const double expected = (1 - 0.36) * 1000 * volume(0.002) * 0.4 * 0.4 / 4;
@@ -95,6 +97,19 @@ TEST_P(StepContacts, AnImpactDissipatesByItsRestitution) {
     EXPECT_NEAR(bins[place].bin, std::pow(10, -8.5 + static_cast<double>(place)), 1e-3 * bins[place].bin);
     for (std::size_t b = 0; b < bins.size(); ++b)
         EXPECT_EQ(bins[b].value, b == place ? energy->look(bed.sight()) : 0) << b;
+}
+
+TEST(PartnerOrder, IsByTheLargerIdThenBySmallerAndKeepsPlacesOnAWall) {
+    std::vector<dem::ContactForce> contacts;
+    for (const auto& [first, second] : {std::pair{2, 5}, {3, -1}, {3, -2}, {3, -1}, {0, 1}, {5, 0}, {3, 2}}) {
+        contacts.emplace_back();
+        contacts.back().first = first, contacts.back().second = second;
+    }
+    machine::PartnerOrder order;
+    const auto places = order.of(contacts);
+    EXPECT_EQ((std::vector<std::uint32_t>(places.begin(), places.end())),
+              (std::vector<std::uint32_t>{4, 2, 1, 3, 6, 5, 0}));
+    EXPECT_TRUE(order.of({}).empty());
 }
 
 /// A sphere that falls on a floor for half a second.

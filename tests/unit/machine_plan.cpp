@@ -37,6 +37,25 @@ TEST(MachineScenes, StayForWhoeverHoldsThemWhenTheMachineIsReadAgain) {
     EXPECT_EQ(held->defaults(), newest->defaults());
 }
 
+TEST(MachinePlan, CountsProbesThatReadEveryStepInTheirPhases) {
+    const auto cost = [](const json& measures) {
+        json machine = small_machine();
+        for (const auto& [name, measure] : measures.items()) machine["measure"][name] = measure;
+        return machine::cost_of(spec_of(machine, {}));
+    };
+    const json probe = {{"impact_energy", json::object()}, {"as", "last"}};
+    json during = probe;
+    during["during"] = "turn";
+    const auto plain = cost(json::object()), one = cost({{"lost", probe}}), part = cost({{"lost", during}}),
+               two = cost({{"lost", probe}, {"again", probe}});
+    EXPECT_EQ(one.particle_steps, plain.particle_steps);
+    EXPECT_GT(one.seconds, 2 * plain.seconds);
+    EXPECT_GT(part.seconds, plain.seconds);
+    EXPECT_LT(part.seconds, one.seconds);
+    EXPECT_GT(two.seconds, one.seconds);
+    EXPECT_LT(two.seconds, 1.1 * one.seconds) << "the contacts are read once";
+}
+
 TEST(MachinePlan, ASoundMachineHasNoWarning) {
     EXPECT_EQ(kinds("[]"), Kinds{});
 }

@@ -10,12 +10,12 @@
 // in mixed precision 3e-3, as whether a contact slides is judged anew. At the beginning of a phase, and where particles
 // are added, forces change once between two steps: that half a step is missing.
 #include "solver/machine/binning.hpp"
+#include "solver/machine/partner_order.hpp"
 #include "solver/machine/probes/probes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace grainsweep::machine::probes {
 namespace {
@@ -37,27 +37,22 @@ public:
 
     void step(const Sight& sight) override {
         now_.clear();
-        for (const auto& contact : sight.contacts)
-            if (counts(sight, contact))
-                now_.push_back(
-                    {std::max(contact.first, contact.second), std::min(contact.first, contact.second),
-                     sight.time_step * (normal_ * contact.normal_power + tangential_ * contact.tangential_power)});
-        // Stable, so that places on a wall are added in their order.
-        std::ranges::stable_sort(now_, {}, &Lasting::key);
-        std::size_t kept = 0;
         auto before = lasting_.cbegin();
-        for (const Lasting& contact : now_) {
-            if (kept > 0 && now_[kept - 1].key() == contact.key()) {
-                now_[kept - 1].energy += contact.energy;
+        for (const auto place : sight.by_partners) {
+            const auto& contact = sight.contacts[place];
+            if (!counts(sight, contact)) continue;
+            const Lasting one{
+                std::max(contact.first, contact.second), std::min(contact.first, contact.second),
+                sight.time_step * (normal_ * contact.normal_power + tangential_ * contact.tangential_power)};
+            if (!now_.empty() && now_.back().key() == one.key()) {
+                now_.back().energy += one.energy;
                 continue;
             }
-            for (; before != lasting_.cend() && before->key() < contact.key(); ++before) end(*before);
-            now_[kept] = contact;
-            if (before != lasting_.cend() && before->key() == contact.key()) now_[kept].energy += before++->energy;
-            ++kept;
+            for (; before != lasting_.cend() && before->key() < one.key(); ++before) end(*before);
+            now_.push_back(one);
+            if (before != lasting_.cend() && before->key() == one.key()) now_.back().energy += before++->energy;
         }
         for (; before != lasting_.cend(); ++before) end(*before);
-        now_.resize(kept);
         lasting_.swap(now_);
     }
 
@@ -84,7 +79,7 @@ private:
     struct Lasting {
         std::int32_t first = 0, second = 0;  // ids, the larger first; or a particle and -1 - w of a wall
         double energy = 0;                   // J
-        [[nodiscard]] std::pair<std::int32_t, std::int32_t> key() const { return {first, second}; }
+        [[nodiscard]] std::uint64_t key() const { return partner_key(first, second); }
     };
 
     [[nodiscard]] bool of_these(const Sight& sight, std::int32_t id) const {
