@@ -37,9 +37,14 @@ int accuracy(const AccuracyRequest& request, report::Format format) {
         return end.exit_code;
     }
     const auto document = report::accuracy_document(end.campaign, end.costs, request.observables, request.tolerance);
-    if (!request.file.output.empty())
-        write_figure(request.file,
-                     report::accuracy_figure(end.costs, drawn_observables(request, end), request.tolerance), database);
+    if (!request.file.output.empty()) {
+        const auto figure = report::accuracy_figure(end.costs, drawn_observables(request, end), request.tolerance);
+        if (figure.panels.empty())
+            throw campaign::wrong_question("-o", request.file.output,
+                                           "there is nothing to draw: errors are shown relative to the mean, which is "
+                                           "0 or missing; name another with --observable");
+        write_figure(request.file, figure, database);
+    }
     report::write(std::cout, document, format);
     return end.exit_code;
 }

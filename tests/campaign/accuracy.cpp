@@ -105,6 +105,11 @@ TEST(Accuracy, ErrorAgainstCostIsDrawn) {
             }
     ASSERT_EQ(run_program(arguments, folder.path()).code, 0);
     EXPECT_EQ(text_of(folder / "a.svg"), drawn) << "the same numbers, the same bytes";
+    arguments[7] = "tool_force";
+    const auto nothing = run_program(arguments, folder.path());
+    EXPECT_EQ(nothing.code, 2) << "the force on the tool is 0 in every case";
+    EXPECT_THAT(nothing.err, HasSubstr("there is nothing to draw"));
+    arguments[7] = "mfr";
     std::filesystem::remove(folder / "a_accuracy.db");
     arguments[10] = "a.txt";
     const auto refused = run_program(arguments, folder.path());
