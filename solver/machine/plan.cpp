@@ -18,8 +18,9 @@ namespace {
 
 using kit::sentence;
 
-constexpr double early = 0.5;                          // of a phase that may end before its time
-constexpr double at_steps = 2.8e-7, another = 1.3e-8;  // s per particle and step with a probe at every step, or more
+constexpr double early = 0.5;  // of a phase that may end before its time
+// s per particle and step with a probe at every step, by precision, and with another one.
+constexpr double at_steps_mixed = 2.8e-7, at_steps_double = 1.6e-7, another = 1.3e-8;
 constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
 constexpr double softest = 0.1;                        // overlap over diameter
 constexpr double most_loose = 0.35;                    // solid fraction of particles placed at random
@@ -212,6 +213,8 @@ void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
 
 /// Returns the time in which probes read the contacts of every step, s per particle.
 double cost_of_step_probes(const Spec& spec) {
+    const bool mixed = spec.method.precision == dem::Method::Precision::mixed;
+    const double one = mixed ? at_steps_mixed : at_steps_double;
     double seconds = 0;
     for (std::size_t p = 0; p < spec.phases.size(); ++p) {
         const auto probes = std::ranges::count_if(spec.measures, [&](const Measure& measure) {
@@ -219,7 +222,7 @@ double cost_of_step_probes(const Spec& spec) {
         });
         if (probes == 0) continue;
         const double steps = length_of(spec.phases[p]) / spec.time_step;
-        seconds += steps * (at_steps + another * static_cast<double>(probes - 1));
+        seconds += steps * (one + another * static_cast<double>(probes - 1));
     }
     return seconds;
 }
