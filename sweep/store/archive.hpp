@@ -66,9 +66,11 @@ struct Store::Impl {
     void require_sound();
     /// Checks every row, independent of the file's checksum. Returns false if rows belong to no case.
     [[nodiscard]] bool check_rows() const;
+    /// Does the same with a second connection, which sees only what is committed.
+    [[nodiscard]] bool check_rows_on_two_cores() const;
+    [[nodiscard]] bool check_contents() const;
     /// Checks one case.
     void require_sound(std::int64_t key);
-    void require_order() const;
     void refuse_damage(const std::vector<DamagedTable>& tables, const std::vector<DamagedCase>& cases) const;
     /// Returns the key of a campaign. Throws WrongQuestion with the nearest name if there is none.
     [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;

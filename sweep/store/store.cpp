@@ -327,7 +327,7 @@ void Store::remember_file() {
         store::remember_file(impl_->db, [&] {
             const Transaction one_state(impl_->db, Transaction::Kind::read);
             try {
-                return impl_->check_rows();
+                return impl_->check_rows_on_two_cores();
             } catch (const BrokenWorld& found) {
                 damage = found;
                 return false;
