@@ -15,7 +15,7 @@ using study::Bias;
 using study::NumericsCost;
 
 constexpr double fewest = 8, most = 1e5;  // points of a campaign
-constexpr int places = 60;                // of a curve
+constexpr int places = 24;                // of a curve
 constexpr double room = 1.15;             // beyond the numbers
 constexpr double normal_975 = 1.96;       // half-width of 95 % in standard errors
 
@@ -45,7 +45,7 @@ struct Shown {
     [[nodiscard]] double percent(double x) const { return 100 * x / std::abs(of.mean); }
 };
 
-std::vector<Shown> shown_of(std::span<const NumericsCost> costs, const std::string& observable) {
+std::vector<Shown> settings_with(std::span<const NumericsCost> costs, const std::string& observable) {
     std::vector<Shown> all;
     const auto styles = styles_of(costs);
     for (std::size_t k = 0; k < costs.size(); ++k) {
@@ -109,7 +109,7 @@ plot::Figure accuracy_figure(std::span<const NumericsCost> costs, std::span<cons
                              double tolerance) {
     plot::Figure figure;
     for (const auto& observable : observables) {
-        const auto shown = shown_of(costs, observable);
+        const auto shown = settings_with(costs, observable);
         if (shown.empty()) continue;
         figure.panels.push_back(bias_panel(shown, observable, tolerance));
         if (std::ranges::any_of(shown, [](const Shown& one) { return std::isfinite(one.of.spread); }))

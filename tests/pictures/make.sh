@@ -161,7 +161,8 @@ costed() {
     cat >"acc_$1.json" <<JSON
 {"campaign": "acc_$1", $4, "factors": [$5], "fixed": {$6}, "seed": 5, "design": {"kind": "halton", "points": 32}}
 JSON
-    "$program" accuracy "acc_$1.json" --points 24 --observable "$2" --tolerance "$3" --quiet -o "$pictures/accuracy_$1.svg" --width 170mm
+    "$program" accuracy "acc_$1.json" --points 24 --observable "$2" --tolerance "$3" --quiet -o "accuracy_$1.svg" --width 170mm
+    shoot "accuracy_$1.svg" "accuracy_$1" 643 "$(awk -F'height="' '/<svg/ {print int($2 * 4 / 3 + 1)}' "accuracy_$1.svg")" 1.6
 }
 accuracy() {
     local sizes='"size_distribution": "uniform", "size_spread": 0.1'
