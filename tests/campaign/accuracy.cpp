@@ -98,11 +98,15 @@ TEST(Accuracy, ErrorAgainstCostIsDrawn) {
         run_program({"query", "a_accuracy.db", "SELECT mfr FROM a_fast", "--format", "json"}, folder.path());
     const auto values = json::parse(query.out);
     const double apart = double(values[0]["mfr"]) - double(values[1]["mfr"]);
-    for (const auto& setting : json::parse(ended.out)["settings"])
+    int compared = 0;
+    const auto settings = json::parse(ended.out)["settings"];
+    for (const auto& setting : settings)
         for (const auto& of : setting["biases"])
             if (setting["setting"] == "fast" && of["observable"] == "mfr") {
                 EXPECT_NEAR(of["spread"], std::abs(apart) / std::sqrt(2.0), 1e-12);
+                ++compared;
             }
+    EXPECT_EQ(compared, 1);
     ASSERT_EQ(run_program(arguments, folder.path()).code, 0);
     EXPECT_EQ(text_of(folder / "a.svg"), drawn) << "the same numbers, the same bytes";
     arguments[7] = "tool_force";
