@@ -126,7 +126,7 @@ struct SceneInfo {
 
 /// Returns the solver's own scenes, in the order of display.
 [[nodiscard]] std::span<const SceneInfo> scene_catalogue();
-/// A scene that stays for whoever holds it.
+/// Handle of a scene. The scene exists until its last handle is gone.
 using SharedScene = std::shared_ptr<const SceneInfo>;
 /// Registers another scene in this process; it replaces a scene of the same name.
 SharedScene enter_scene(SceneInfo scene);
