@@ -134,9 +134,10 @@ std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& a
     const std::vector<std::string> common(numerical.begin(), numerical.end());
     std::vector<Numerics> all;
     const auto add = [&](const std::string& name, const std::string& says, const std::string& accuracy, Inputs fixed) {
+        const bool moved = !fixed.empty();
         const campaign::OtherNumerics other{name, fmt::format("{} at {}, by grainsweep accuracy.", campaign.name, says),
                                             accuracy, std::move(fixed), common};
-        all.push_back({name, says, campaign::with_other_numerics(campaign.text, other, rows)});
+        all.push_back({name, says, campaign::with_other_numerics(campaign.text, other, rows), moved});
     };
     for (const auto& level : offered)
         if (level != against) add(fmt::format("{}_{}", campaign.name, level), level, level, {});
@@ -166,7 +167,7 @@ AccuracyEnd run_accuracy(const AccuracyRun& run) {
         request.quiet = run.quiet;
         request.goes_on = !campaigns.empty();
         const auto report = run_campaign(request);
-        campaigns.push_back({one.name, one.says});
+        campaigns.push_back({one.name, one.says, one.moved});
         constexpr int interrupted = 130;
         if (report.exit_code == interrupted) {
             end.exit_code = report.exit_code;

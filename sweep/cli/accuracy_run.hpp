@@ -20,7 +20,8 @@ namespace grainsweep::cli {
 struct Numerics {
     std::string name;  ///< of its campaign
     std::string says;
-    std::string text;  ///< its campaign file
+    std::string text;    ///< its campaign file
+    bool moved = false;  ///< one input differs from the setting that it names
 };
 
 /// The settings of the campaign's scene, then single inputs, then `against`. Throws WrongQuestion for a scene without

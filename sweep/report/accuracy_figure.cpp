@@ -29,7 +29,7 @@ std::vector<Style> styles_of(std::span<const NumericsCost> costs) {
     std::vector<Style> styles;
     std::size_t named = 0, moves = 0;
     for (const auto& cost : costs) {
-        const bool moved = cost.numerics.says.find(' ') != std::string::npos;
+        const bool moved = cost.numerics.moved;
         styles.push_back({plot::category(moved ? moves++ : named++), moved});
     }
     styles.back().tone = plot::black;

@@ -21,7 +21,8 @@ namespace grainsweep::study {
 /// Campaign of the database with one setting of the numerics.
 struct NumericsCampaign {
     std::string campaign;
-    std::string says;  ///< "fast", "reference with precision = mixed"
+    std::string says;    ///< "fast", "reference with precision = mixed"
+    bool moved = false;  ///< a setting with one other input
 };
 
 struct Bias {
