@@ -32,7 +32,7 @@ for headers in libeigen3-dev libboost-dev nlohmann-json3-dev libcli11-dev libhwy
 done
 
 # The newest symbol version of the C library that a file needs decides where the archive runs.
-needed=$(find "$stage" -type f \( -name grainsweep -o -name '*.so*' \) -exec objdump -T {} + |
+needed=$(find "$stage/bin" "$stage/lib" -type f \( -name grainsweep -o -name '*.so*' \) -exec objdump -T {} + |
     grep -oE 'GLIBC_[0-9]+\.[0-9]+' | sed 's/GLIBC_//' | sort -uV | tail -n 1)
 if [ "$(printf '%s\n' "$needed" "$oldest_glibc" | sort -V | tail -n 1)" != "$oldest_glibc" ]; then
     echo "archive: it needs glibc $needed, and docs/install.md promises $oldest_glibc" >&2

@@ -82,8 +82,8 @@ kill %1
 
 echo '$ the folder moves'
 mv "$folder" "$HOME/moved"
-run "$HOME/moved/bin/grainsweep" figure quickstart.db moments -o moments.svg || run "$HOME/moved/bin/grainsweep" figure quickstart.db effects -o moments.svg
-[ -s moments.svg ]
+run "$HOME/moved/bin/grainsweep" figure quickstart.db sensitivity -o sensitivity.svg
+[ -s sensitivity.svg ]
 test -s "$HOME/moved/share/man/man1/grainsweep.1"
 test -s "$HOME/moved/share/bash-completion/completions/grainsweep"
 test -s "$HOME/moved/share/doc/grainsweep/docs/install.md"
