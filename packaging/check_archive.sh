@@ -61,7 +61,7 @@ run grainsweep solve powder.json --watch case.html
 run grainsweep draw v_blender -o blender.html
 run grainsweep verify quickstart.db
 
-echo '$ workers on two emulated hosts, killed and resumed'
+echo '$ workers on two emulated hosts, stopped and resumed'
 sed 's/"campaign"/"execution": {"hosts": 2, "workers_per_host": 2}, "campaign"/' "$configs/rehearsal_small.json" >hosts.json
 run grainsweep run hosts.json --db hosts.db --max-cases 50 || true
 run grainsweep run hosts.json --db hosts.db
