@@ -322,13 +322,14 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                            "fewer than two frames in a block"});
     }
     if (all.empty()) measures.refuse("a machine needs a measurement");
-    const auto automatic = [&all](const char* name, const char* meaning) {
+    const auto automatic = [&all](const char* name, const char* meaning, const char* unit = "1") {
         if (std::ranges::find(all, name, &ObservableSpec::name) == all.end())
-            all.push_back({name, "1", meaning, Shape::scalar, {}, {}});
+            all.push_back({name, unit, meaning, Shape::scalar, {}, {}});
     };
     automatic("particles", "particles present at the end");
     automatic("lost", "particles that passed an open face of the domain");
     automatic("max_overlap", "deepest overlap of two particles over the diameter of the smaller one");
+    automatic("smallest_step", "shortest time step; steps are halved where loaded contacts demand it", "s");
     if (const auto feeds = top.find("feed")) {
         std::set<std::string> feeders;
         for (const auto& feed : feeds->elements()) {
