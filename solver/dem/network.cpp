@@ -78,6 +78,18 @@ void Network::add_at_wall(Bond bond, const Vec3& point) {
     bonds_.push_back(bond);
 }
 
+std::vector<std::uint64_t> Network::keys() const {
+    std::vector<std::uint64_t> all;
+    all.reserve(bonds_.size());
+    for (const Bond& bond : bonds_) all.push_back(bond.key);
+    std::ranges::sort(all);
+    return all;
+}
+
+void Network::keep(const std::vector<std::uint64_t>& keys) {
+    std::erase_if(bonds_, [&](const Bond& bond) { return !std::ranges::binary_search(keys, bond.key); });
+}
+
 double Network::bound(double time_step) const {
     const double of_springs = time_step * time_step, of_dampers = 2 * time_step;
     load_.assign(inverse_mass_.size() + freedoms_.size(), 0.0);

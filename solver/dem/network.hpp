@@ -23,6 +23,7 @@ namespace grainsweep::dem {
 
 /// Contact of the network.
 struct Bond {
+    std::uint64_t key = 0;  ///< of the two bodies: the same in every step, see key_of()
     std::int32_t first = 0;
     std::int32_t second = -1;                     ///< sphere; -1: a wall, or a frozen sphere
     std::int32_t columns = -1, columns_end = -1;  ///< range of Network::columns, if the partner is a free wall
@@ -30,6 +31,13 @@ struct Bond {
     double lever_first = 0, lever_second = 0;     ///< distances of the contact from the centres, m
     Springs springs{};
 };
+
+/// Returns the key of a contact, from the ids of its bodies in any order; -1 - w for wall w.
+[[nodiscard]] constexpr std::uint64_t key_of(std::int32_t one, std::int32_t other) {
+    const auto low = static_cast<std::uint32_t>(one < other ? one : other);
+    const auto high = static_cast<std::uint32_t>(one < other ? other : one);
+    return static_cast<std::uint64_t>(low) << 32U | high;
+}
 
 /// Degree of freedom of a free wall: velocity + spin x (x - pivot) is the velocity of its point x at unit speed.
 struct Freedom {
@@ -62,7 +70,11 @@ public:
     /// Adds a contact at a point with the wall added last.
     void add_at_wall(Bond bond, const Vec3& point);
 
-    [[nodiscard]] bool empty() const { return bonds_.empty(); }
+    /// Returns the keys of all contacts, ascending.
+    [[nodiscard]] std::vector<std::uint64_t> keys() const;
+    /// Removes the contacts whose keys are not in an ascending list.
+    void keep(const std::vector<std::uint64_t>& keys);
+
     /// Returns an upper bound of the largest eigenvalue for a time step, s: that of the single contacts with the masses
     /// of their partners shared out among all their contacts (Fried 1972, Comput. Struct. 2, 125).
     [[nodiscard]] double bound(double time_step) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace grainsweep::dem {
 
@@ -13,6 +14,10 @@ constexpr std::size_t few_spheres = 100;
 constexpr double grown_overlap = 1.2;  ///< divided by that at the last check: an early check
 constexpr double same_bound = 0.1;     ///< relative change of the bound within which the last share is scaled
 constexpr int most_guesses = 8;        ///< checks with a scaled share in a row
+/// Looks in a row at which the share is exceeded: before steps are halved, and before a fixed step is reported, which
+/// may be somewhat too long while powder falls into place.
+constexpr int looks_to_halve = 3, looks_to_report = 8;
+constexpr double far_beyond = 1.2;  ///< share of a fixed step that is reported as early
 /// Parts are doubled after `calm_checks` at which they would have been below this share of the largest one.
 constexpr double well_below = 0.75;
 constexpr int calm_checks = 4;
@@ -31,31 +36,38 @@ bool StepControl::take_parts() {
 
 bool StepControl::due(std::int64_t steps, double overlap, std::size_t spheres) const {
     if (steps % (spheres > few_spheres ? check_interval : check_interval_of_few) == 0) return true;
-    return steps % early_interval == 0 && overlap > grown_overlap * state_.overlap;
+    return steps % early_interval == 0 && (!seen_.empty() || overlap > grown_overlap * state_.overlap);
 }
 
-bool StepControl::look(const Network& network, double part, double overlap) {
+bool StepControl::look(Network& network, double part, double overlap) {
     state_.overlap = overlap;
+    const bool again = !seen_.empty();
+    if (again) network.keep(seen_);
     const double bound = network.bound(part);
     // Without dampers the eigenvalue is 4 share^2, with dampers it is larger.
     const auto below = [bound](double share) { return bound <= 4 * share * share; };
-    if (state_.halvings == 0 && below(allowed_)) return false;
-    if (state_.halvings > 0 && below(well_below * allowed_ / 2)) {
+    if (below(state_.halvings > 0 ? well_below * allowed_ / 2 : allowed_)) {
+        seen_.clear();
+        state_.over = 0;
         rest_or_double(0);
         return false;
     }
-    if (state_.guesses >= most_guesses || !(std::abs(bound - state_.bound) <= same_bound * state_.bound)) {
-        state_.bound = bound;
-        return true;
+    if (!again) {
+        seen_ = network.keys();
+        return false;
     }
-    const double share = state_.share * std::sqrt(bound / state_.bound);
-    if (share > allowed_) {
-        state_.bound = bound;
-        return true;
+    if (state_.over == 0 && state_.guesses < most_guesses &&
+        std::abs(bound - state_.bound) <= same_bound * state_.bound) {
+        const double share = state_.share * std::sqrt(bound / state_.bound);
+        if (share <= allowed_) {
+            ++state_.guesses;
+            seen_.clear();
+            rest_or_double(share);
+            return false;
+        }
     }
-    ++state_.guesses;
-    rest_or_double(share);
-    return false;
+    state_.bound = bound;
+    return true;
 }
 
 /// After a check at which the parts need not be halved.
@@ -68,25 +80,35 @@ void StepControl::rest_or_double(double share) {
     }
 }
 
-bool StepControl::judge(const StepShare& found) {
+bool StepControl::judge(const StepShare& found, const Network& lasting) {
     state_.share = found.share;
     state_.guesses = 0;
+    seen_.clear();
     if (!(found.share > allowed_)) {
+        state_.over = 0;
         rest_or_double(found.share);
         return false;
     }
+    const int needed = follows_ || found.share > far_beyond ? looks_to_halve : looks_to_report;
+    if (++state_.over < needed) {
+        seen_ = lasting.keys();
+        return false;
+    }
+    state_.over = 0;
     if (!follows_) return true;
     double share = found.share;
     for (; share > allowed_ && state_.wanted < most_halvings; share /= 2) ++state_.wanted;
     return !(share <= 1);
 }
 
-bool StepControl::restore(const State& state) {
+bool StepControl::restore(const State& state, std::vector<std::uint64_t> lasting) {
     const auto sound = [](std::int32_t x, std::int32_t most) { return x >= 0 && x <= most; };
     state_ = state;
-    return sound(state.halvings, most_halvings) && sound(state.wanted, most_halvings) &&
-           sound(state.most, most_halvings) && sound(state.calm, calm_checks) && sound(state.guesses, most_guesses) &&
-           std::isfinite(state.overlap) && std::isfinite(state.bound) && std::isfinite(state.share) &&
+    seen_ = std::move(lasting);
+    return std::ranges::is_sorted(seen_) && sound(state.halvings, most_halvings) &&
+           sound(state.wanted, most_halvings) && sound(state.most, most_halvings) && sound(state.calm, calm_checks) &&
+           sound(state.guesses, most_guesses) && sound(state.over, looks_to_report) && std::isfinite(state.overlap) &&
+           std::isfinite(state.bound) && std::isfinite(state.share) &&
            (follows_ || (state.halvings == 0 && state.wanted == 0));
 }
 

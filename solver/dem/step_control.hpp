@@ -7,7 +7,9 @@
 // slices or checkpoints.
 //
 // Checks are made every check_interval steps, and early_interval steps after the largest overlap has grown: the
-// frequency of contacts grows with the sixth root of the load (Hertz).
+// frequency of contacts grows with the sixth root of the load (Hertz). Where the bound of the network exceeds the
+// share, further looks follow, early_interval steps apart, at the contacts that last: an impact is over by then, and is
+// too short for an oscillation to grow. Only a share that is exceeded at several looks in a row counts.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -36,23 +38,27 @@ public:
     /// Returns whether a check is due after `steps` steps, the last of which had this largest overlap, divided by the
     /// diameter. `spheres`: few are checked more often.
     [[nodiscard]] bool due(std::int64_t steps, double overlap, std::size_t spheres) const;
-    /// Returns whether the share must be computed: the bound of the network, for parts of `part` s, does not decide.
-    [[nodiscard]] bool look(const Network& network, double part, double overlap);
+    /// Looks at the network, for parts of `part` s. Returns whether the share of its lasting contacts must be computed.
+    /// The engine then gives the network again, with the slides of contacts, of which only lasting() count.
+    [[nodiscard]] bool look(Network& network, double part, double overlap);
+    [[nodiscard]] const std::vector<std::uint64_t>& lasting() const { return seen_; }
     /// Decides on the parts of the next steps by the share of the present parts. Returns whether these are beyond the
     /// limit and may not be halved.
-    [[nodiscard]] bool judge(const StepShare& found);
+    [[nodiscard]] bool judge(const StepShare& found, const Network& lasting);
+
     /// State of a checkpoint.
     struct State {
         std::int32_t halvings = 0, wanted = 0, most = 0;
         std::int32_t calm = 0;     ///< checks in a row at which fewer parts would do
+        std::int32_t over = 0;     ///< looks in a row at which the share of lasting contacts was exceeded
         std::int32_t guesses = 0;  ///< checks since the share was last computed
         double overlap = 0;        ///< at the last check
         double bound = 0;          ///< of the network when the share was last computed
         double share = 0;          ///< then
     };
     [[nodiscard]] const State& state() const { return state_; }
-    /// Sets the state of a checkpoint; returns whether it is possible.
-    [[nodiscard]] bool restore(const State& state);
+    /// Sets the state of a checkpoint, with lasting(); returns whether it is possible.
+    [[nodiscard]] bool restore(const State& state, std::vector<std::uint64_t> lasting);
 
 private:
     void rest_or_double(double share);
@@ -60,6 +66,7 @@ private:
     bool follows_;
     double allowed_;  ///< largest share
     State state_;
+    std::vector<std::uint64_t> seen_;  ///< keys of the contacts of the last look that lasted since the first one
 };
 
 /// Returns the fault of a part of `part` s that is beyond the limit, for the sphere with this id and the present

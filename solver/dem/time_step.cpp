@@ -30,7 +30,7 @@ double shortest_time(const Material& m, double radius, double speed) {
 }
 
 double step_share(double fraction) {
-    return std::min(4 * fraction, 0.9);
+    return std::min(4 * fraction, 0.95);
 }
 
 }  // namespace grainsweep::dem

@@ -69,6 +69,7 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
     out.put(time_step_);
     out.put(shaking_);
     out.put(control_.state());
+    out.put(control_.lasting());
     visit_state(*this, [&out](const auto& value) { out.put(value); });
     list_.save(out);
     out.put(static_cast<std::uint64_t>(walls_.size()));
@@ -184,7 +185,9 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     expect(shaking_);
     StepControl::State control;
     in.get(control);
-    in.require(control_.restore(control));
+    std::vector<std::uint64_t> lasting;
+    in.get(lasting);
+    in.require(control_.restore(control, std::move(lasting)));
     use_parts();
     visit_state(*this, [&in](auto& value) { in.get(value); });
     const auto within = [&in](const std::vector<double>& column, double least, double most) {

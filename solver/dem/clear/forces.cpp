@@ -288,9 +288,10 @@ void ClearEngine::gather_network(bool slides) {
     constexpr double rounding = 1e-12;
     network_.clear();
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
-    const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, const auto& t, const double* memory,
-                          auto&& motion) {
-        Bond b{.first = static_cast<std::int32_t>(i),
+    const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
+                          const double* memory, auto&& motion) {
+        Bond b{.key = key_of(p_.id[i], id),
+               .first = static_cast<std::int32_t>(i),
                .second = j,
                .normal = t.normal,
                .lever_first = t.radius_i - t.overlap / 2,
@@ -302,7 +303,7 @@ void ClearEngine::gather_network(bool slides) {
         return b;
     };
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
-        network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), t, memory,
+        network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), p_.id[j], t, memory,
                           [&] { return relative(t, half_a_step_before(i), half_a_step_before(j)); }));
     });
     std::size_t last = walls_.size();
@@ -311,7 +312,7 @@ void ClearEngine::gather_network(bool slides) {
         if (w != last) network_.add_wall(freedoms_of(wall, wall_time()));
         last = w;
         const Vec3 x = wall.image().of(p_.position[i]);
-        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, t, memory,
+        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, -1 - static_cast<std::int32_t>(w), t, memory,
                                   [&] { return relative(t, half_a_step_before(i), velocity); }),
                              x - t.distance * t.normal);
     });

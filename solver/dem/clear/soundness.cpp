@@ -119,9 +119,10 @@ void ClearEngine::check_network() {
     gather_network(false);
     if (!control_.look(network_, part_, std::max(largest_overlap_, largest_wall_overlap_))) return;
     gather_network(true);
+    network_.keep(control_.lasting());
     static_cast<void>(network_.bound(part_));
     const StepShare found = network_.share(part_);
-    if (!control_.judge(found)) return;
+    if (!control_.judge(found, network_)) return;
     std::vector<ContactForce> all;
     contacts(all);
     const auto i = static_cast<std::size_t>(found.sphere);

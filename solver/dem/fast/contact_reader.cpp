@@ -209,10 +209,11 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
         const double inverse = static_cast<double>(field_.records[i].inverse_mass) / space_.scale.mass;
         into.add_sphere(inverse, radius(i));
     }
-    const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, const Memory& memory,
-                          auto&& motion) {
+    const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
+                          const Memory& memory, auto&& motion) {
         t.damping_root = std::sqrt(t.root * t.reduced_mass);
-        Bond b{.first = i,
+        Bond b{.key = key_of(id_[i], id),
+               .first = i,
                .second = j,
                .normal = t.normal,
                .lever_first = t.radius_i - t.overlap / 2,
@@ -225,7 +226,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
     };
     for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
         complete(i, j, t);
-        into.add(bond(laws_of(i, j), t, i, j, memory, [&] {
+        into.add(bond(laws_of(i, j), t, i, j, id_[j], memory, [&] {
             return relative(t, before_[static_cast<std::size_t>(i)], before_[static_cast<std::size_t>(j)]);
         }));
     });
@@ -236,9 +237,10 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
         for_each_at_wall(
             walls, w, [&](std::int32_t i, const WallPoint& at, Touch<Partner::wall>& t, const Memory& memory) {
                 complete(i, t);
-                into.add_at_wall(bond(walls.laws(w, field_.kind[i]), t, i, -1, memory,
-                                      [&] { return relative(t, before_[static_cast<std::size_t>(i)], at.velocity); }),
-                                 at.place);
+                into.add_at_wall(
+                    bond(walls.laws(w, field_.kind[i]), t, i, -1, -1 - static_cast<std::int32_t>(w), memory,
+                         [&] { return relative(t, before_[static_cast<std::size_t>(i)], at.velocity); }),
+                    at.place);
             });
     }
 }

@@ -111,6 +111,7 @@ void MixedEngine::save(std::vector<std::byte>& into) const {
     writer.value(seal());
     writer.list(start_laws_);
     writer.value(control_.state());
+    writer.list(control_.lasting());
     pass(*this, writer);
 }
 
@@ -210,7 +211,9 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     if (constants != start_laws_) throw std::invalid_argument("the checkpoint belongs to other materials");
     StepControl::State control;
     reader.value(control);
-    ByteReader::require(control_.restore(control));
+    std::vector<std::uint64_t> lasting;
+    reader.list(lasting);
+    ByteReader::require(control_.restore(control, std::move(lasting)));
     use_parts();
     subdomains_.drop();
     pass(*this, reader);

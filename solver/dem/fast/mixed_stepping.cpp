@@ -84,9 +84,10 @@ void MixedEngine::check_network() {
     gather(false);
     if (!control_.look(network_, space_.scale.time, recent_overlap_)) return;
     gather(true);
+    network_.keep(control_.lasting());
     static_cast<void>(network_.bound(space_.scale.time));
     const StepShare found = network_.share(space_.scale.time);
-    if (!control_.judge(found)) return;
+    if (!control_.judge(found, network_)) return;
     std::vector<ContactForce> all;
     contacts(all);
     fault_ = describe(view(),
