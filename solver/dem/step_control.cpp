@@ -9,11 +9,11 @@ namespace grainsweep::dem {
 
 namespace {
 
-constexpr std::int64_t check_interval = 512, check_interval_of_few = 128, early_interval = 32;
+constexpr std::int64_t check_interval = 1024, check_interval_of_few = 128, early_interval = 32;
 constexpr std::size_t few_spheres = 100;
-constexpr double grown_overlap = 1.2;  ///< divided by that at the last check: an early check
-constexpr double same_bound = 0.1;     ///< relative change of the bound within which the last share is scaled
-constexpr int most_guesses = 8;        ///< checks with a scaled share in a row
+constexpr double grown_overlap = 2;  ///< divided by that at the last check: an early check
+constexpr double same_bound = 0.1;   ///< relative change of the bound within which the last share is scaled
+constexpr int most_guesses = 16;     ///< checks with a scaled share in a row
 /// Looks in a row at which the share is exceeded: before steps are halved, and before a fixed step is reported, which
 /// may be somewhat too long while powder falls into place.
 constexpr int looks_to_halve = 3, looks_to_report = 8;
@@ -44,34 +44,35 @@ bool StepControl::look(Network& network, double part, double overlap) {
     const bool again = !seen_.empty();
     if (again) network.keep(seen_);
     const double bound = network.bound(part);
-    // Without dampers the eigenvalue is 4 share^2, with dampers it is larger.
-    const auto below = [bound](double share) { return bound <= 4 * share * share; };
-    if (below(state_.halvings > 0 ? well_below * allowed_ / 2 : allowed_)) {
-        seen_.clear();
-        state_.over = 0;
-        rest_or_double(0);
+    const double most = std::sqrt(bound) / 2;  // without dampers the eigenvalue is 4 share^2, with dampers it is larger
+    if (most <= (state_.halvings > 0 ? well_below * allowed_ / 2 : allowed_)) {
+        rest(most);
         return false;
     }
-    if (!again) {
-        seen_ = network.keys();
-        return false;
-    }
-    if (state_.over == 0 && state_.guesses < most_guesses &&
-        std::abs(bound - state_.bound) <= same_bound * state_.bound) {
-        const double share = state_.share * std::sqrt(bound / state_.bound);
-        if (share <= allowed_) {
+    if (again) return true;
+    if (state_.guesses < most_guesses && std::abs(bound - state_.bound) <= same_bound * state_.bound) {
+        const double guess = state_.share * std::sqrt(bound / state_.bound);
+        if (guess <= allowed_) {
             ++state_.guesses;
-            seen_.clear();
-            rest_or_double(share);
+            double_if_calm(guess);
             return false;
         }
     }
     state_.bound = bound;
-    return true;
+    seen_ = network.keys();
+    return false;
 }
 
-/// After a check at which the parts need not be halved.
-void StepControl::rest_or_double(double share) {
+/// Takes a share of lasting contacts that is allowed.
+void StepControl::rest(double share) {
+    state_.share = share;
+    state_.guesses = 0;
+    state_.over = 0;
+    seen_.clear();
+    double_if_calm(share);
+}
+
+void StepControl::double_if_calm(double share) {
     if (state_.halvings == 0 || 2 * share > well_below * allowed_) {
         state_.calm = 0;
     } else if (++state_.calm == calm_checks) {
@@ -81,12 +82,8 @@ void StepControl::rest_or_double(double share) {
 }
 
 bool StepControl::judge(const StepShare& found, const Network& lasting) {
-    state_.share = found.share;
-    state_.guesses = 0;
-    seen_.clear();
     if (!(found.share > allowed_)) {
-        state_.over = 0;
-        rest_or_double(found.share);
+        rest(found.share);
         return false;
     }
     const int needed = follows_ || found.share > far_beyond ? looks_to_halve : looks_to_report;
@@ -95,6 +92,7 @@ bool StepControl::judge(const StepShare& found, const Network& lasting) {
         return false;
     }
     state_.over = 0;
+    seen_.clear();
     if (!follows_) return true;
     double share = found.share;
     for (; share > allowed_ && state_.wanted < most_halvings; share /= 2) ++state_.wanted;

@@ -53,15 +53,16 @@ public:
         std::int32_t over = 0;     ///< looks in a row at which the share of lasting contacts was exceeded
         std::int32_t guesses = 0;  ///< checks since the share was last computed
         double overlap = 0;        ///< at the last check
-        double bound = 0;          ///< of the network when the share was last computed
-        double share = 0;          ///< then
+        double bound = 0;          ///< of all contacts at the first look before share
+        double share = 0;          ///< last one of lasting contacts
     };
     [[nodiscard]] const State& state() const { return state_; }
     /// Sets the state of a checkpoint, with lasting(); returns whether it is possible.
     [[nodiscard]] bool restore(const State& state, std::vector<std::uint64_t> lasting);
 
 private:
-    void rest_or_double(double share);
+    void rest(double share);
+    void double_if_calm(double share);
 
     bool follows_;
     double allowed_;  ///< largest share

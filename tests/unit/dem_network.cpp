@@ -166,36 +166,50 @@ TEST(DemNetwork, TheBoundIsAboveTheEigenvalueAndBelowThriceOfIt) {
     }
 }
 
-TEST(StepControl, HalvesAtOnceAndDoublesAfterFourCalmChecks) {
+/// Judges a share `looks` times in a row; returns whether one of them was beyond the limit.
+bool judged(StepControl& control, double share, int looks) {
+    const Network none;
+    bool beyond = false;
+    for (int k = 0; k < looks; ++k) beyond = control.judge({.share = share}, none) || beyond;
+    return beyond;
+}
+
+TEST(StepControl, HalvesAtTheThirdLookAndDoublesAfterFourCalmChecks) {
     StepControl control(0.8);
-    EXPECT_FALSE(control.judge({.share = 0.79}));
+    EXPECT_FALSE(judged(control, 0.79, 10));
     EXPECT_FALSE(control.take_parts());
-    EXPECT_FALSE(control.judge({.share = 1.7}));  // 0.85 in halves, 0.425 in quarters
+    EXPECT_FALSE(judged(control, 1.7, 2));  // an impact may last so long
+    EXPECT_FALSE(judged(control, 0.5, 1));
+    EXPECT_FALSE(judged(control, 1.7, 2));
+    EXPECT_FALSE(control.take_parts());
+    EXPECT_FALSE(judged(control, 1.7, 1));  // 0.85 in halves, 0.425 in quarters
     EXPECT_TRUE(control.take_parts());
     EXPECT_EQ(control.parts(), 4);
-    for (int k = 0; k < 4; ++k) {
-        EXPECT_FALSE(control.take_parts());
-        EXPECT_FALSE(control.judge({.share = 0.29}));
-    }
+    EXPECT_FALSE(judged(control, 0.29, 3));
+    EXPECT_FALSE(control.take_parts());
+    EXPECT_FALSE(judged(control, 0.29, 1));
     EXPECT_TRUE(control.take_parts());
     EXPECT_EQ(control.parts(), 2);
-    for (int k = 0; k < 20; ++k) EXPECT_FALSE(control.judge({.share = 0.31}));
+    EXPECT_FALSE(judged(control, 0.31, 20));
     EXPECT_FALSE(control.take_parts());
     EXPECT_EQ(control.most_parts(), 4);
 }
 
 TEST(StepControl, AFixedStepIsBeyondItsLimitAboveOne) {
     StepControl control(std::nullopt);
-    EXPECT_FALSE(control.judge({.share = 0.99}));
-    EXPECT_TRUE(control.judge({.share = 1.01}));
+    EXPECT_FALSE(judged(control, 0.99, 100));
+    EXPECT_FALSE(judged(control, 1.01, 7));  // powder falls into place
+    EXPECT_TRUE(judged(control, 1.01, 1));
     EXPECT_FALSE(control.take_parts());
+    StepControl far(std::nullopt);
+    EXPECT_TRUE(judged(far, 1.25, 3));
     StepControl follows(0.8);
-    EXPECT_TRUE(follows.judge({.share = 65}));  // not even in 64 parts
+    EXPECT_TRUE(judged(follows, 65, 3));  // not even in 64 parts
 }
 
 TEST(StepControl, ChecksEarlyWhereOverlapsHaveGrown) {
     const StepControl control(0.8);
-    EXPECT_TRUE(control.due(512, 0, 1000));
+    EXPECT_TRUE(control.due(1024, 0, 1000));
     EXPECT_FALSE(control.due(128, 0, 1000));
     EXPECT_TRUE(control.due(128, 0, 50));
     EXPECT_TRUE(control.due(96, 0.01, 1000));
