@@ -88,7 +88,7 @@ struct Setup {
 /// Method of computing a Setup. It does not change the result beyond the stated error of the precision.
 struct Method {
     enum class Precision { mixed, double_precision };
-    enum class Path { best, baseline, avx2, avx512 };  ///< best: the widest that this processor has
+    enum class Path { best, baseline, avx2, avx512 };  ///< best: the widest of this processor; baseline: not on x86
     Precision precision = Precision::double_precision;
     Path path = Path::best;
     double skin = 0;  ///< m; skin of the neighbour list, 0: chosen by the engine
