@@ -5,13 +5,14 @@
 #   ./bootstrap.sh sanitize               ... build with the sanitizers, run what reads bytes, steps particles or has threads
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
 #   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
+#   ./bootstrap.sh package                ... build, then write a Debian package and a relocatable archive to build
 #   ./bootstrap.sh docs                   write the documents as a static site to build/site
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 jobs=$(nproc)
 
 usage() {
-    sed -n '2,8p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
+    sed -n '2,9p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
     exit 2
 }
 
@@ -100,12 +101,23 @@ run)
     [ $# -ge 2 ] || usage
     shift
     build_program
+    program=$here/build/grainsweep
+    [ "$PWD" != "$here" ] || program=build/grainsweep  # as the reader would type it
     said=$(mktemp) code=0
-    "$here/build/grainsweep" run "$@" | tee -i "$said" || code=$?
-    database=$(sed -n 's/^next: grainsweep report //p' "$said")
+    "$program" run "$@" | tee -i "$said" || code=$?
+    database=$(sed -n 's/^database \(.*\) ([^()]*)$/\1/p' "$said")
     rm -f "$said"
-    [ -z "$database" ] || "$here/build/grainsweep" report "$database"
+    [ -n "$database" ] || exit "$code"
+    echo
+    "$program" report "$database"
+    printf 'then type: %s solve %q --watch case.html\n' "$program" "$1"
     exit "$code"
+    ;;
+package)
+    build_program
+    quiet "making the Debian package" cmake -E chdir "$here/build" cpack -G DEB
+    (cd "$here/build" && ls -t "$PWD"/grainsweep_*.deb | head -n 1)
+    "$here/packaging/archive.sh" "$here/build"
     ;;
 build)
     build_program

@@ -75,6 +75,11 @@ SceneInfo powder_spreading_scene() {
     info.stiffness = "youngs_modulus";
     info.parameters = spreading::question::parameters();
     info.observables = spreading::record::observables();
+    info.main = {{"packing_fraction", "solid share of the layer"},
+                 {"empty_share", "bare share of the plate"},
+                 {"layer_roughness", "unevenness, in diameters"},
+                 {"tool_force", "force against the tool"},
+                 {"mfr", "mass flow; 1: gap full"}};
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
                     const Files& files) -> std::unique_ptr<Scene> {
         return std::make_unique<spreading::Experiment>(spreading::study_of(inputs, files), seed,

@@ -86,6 +86,11 @@ struct CostEstimate {
     double bytes = 0;           ///< largest memory; 0: little
 };
 
+/// Scalar observable that text output shows first, with its meaning in at most about 26 characters.
+struct MainObservable {
+    std::string name, words;
+};
+
 /// Description of a kind of scene.
 struct SceneInfo {
     std::string name;
@@ -94,6 +99,8 @@ struct SceneInfo {
     int revision = 1;        ///< part of every case id; raised whenever results or defaults change on purpose
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
+    /// Scalars that most users need, most important first. Empty: the first ones of `observables`.
+    std::vector<MainObservable> main = {};
     /// Named sets of numerical inputs: "fast", "balanced", "fine" (`reference` in mixed precision), "reference". Empty:
     /// the scene offers none.
     std::map<std::string, Inputs, std::less<>> accuracy;

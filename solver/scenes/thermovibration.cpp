@@ -234,6 +234,11 @@ SceneInfo thermovibration_scene() {
     info.revision = 7;
     info.parameters = parameters();
     info.observables = thermovibration_observables();
+    info.main = {{"accumulation_excess", "gathering; 0: none, 1: all"},
+                 {"structures", "groups of particles"},
+                 {"formation_time", "time until they gathered"},
+                 {"nusselt", "heat; 1: conduction alone"},
+                 {"peak_velocity", "fastest velocity of the fluid"}};
     info.accuracy = {
         {"fast", accuracy(20, 1.5, 16)}, {"balanced", accuracy(28, 1.5, 24)}, {"reference", accuracy(48, 1.5, 64)}};
     info.maker = make;

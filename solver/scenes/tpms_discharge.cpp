@@ -336,6 +336,11 @@ SceneInfo tpms_discharge_scene() {
     info.revision = 4;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_record::observables();
+    info.main = {{"retention", "share that stays in the cell"},
+                 {"time_to_half", "time until half has left"},
+                 {"discharge_rate", "share that leaves per time"},
+                 {"max_force", "largest force, in weights"},
+                 {"max_overlap", "deepest overlap, in diameters"}};
     // Twice the study's step has 0.6 of the cost. It changes the retention at 1 t* by -0.1 +- 0.07 %, and the retention
     // of a jammed cell at 3 t* by -0.5 +- 1.4 %. But such a cell comes to rest later, and with a step of 3 us never
     // (solver/dem/README.md).

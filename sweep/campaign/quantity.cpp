@@ -1,6 +1,7 @@
 #include "sweep/campaign/quantity.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/beside_program.hpp"
 
 #include <fmt/format.h>
 #include <udunits2.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <numbers>
@@ -91,9 +93,11 @@ class UnitDatabase {
 public:
     UnitDatabase() {
         ut_set_error_message_handler(ut_ignore);
+        // The user's own (a variable of the environment) or the system's; else that of the archive of the program.
         system_ = ut_read_xml(nullptr);
-        // A variable of the environment can name a file that is not there.
-        if (system_ == nullptr) system_ = ut_read_xml("/usr/share/xml/udunits/udunits2.xml");
+        for (const auto& file : {std::filesystem::path("/usr/share/xml/udunits/udunits2.xml"),
+                                 files::beside_program("udunits/udunits2.xml")})
+            if (system_ == nullptr) system_ = ut_read_xml(file.c_str());
         if (system_ == nullptr) return;
         name("deg", "degree");
         name("rev", "turn");

@@ -81,6 +81,7 @@ void declare_run(Parser& parser, RunArguments& request) {
         ->check(whole_number(1));
     parser.add_flag("--network-disk", request.network_disk,
                     "allow a database on a network file system; only one node may write it at a time");
+    parser.add_flag("--all", request.all, "print every observable and moment at the end, not only the main ones");
     parser.add_flag("--quiet", request.quiet, "print no progress and no tables");
     declare_path(parser, request.path);
 }
@@ -94,7 +95,7 @@ int run(RunArguments& request, Format format) {
     for (auto* limit : {&request.stop_after_failures, &request.max_cases})
         if (*limit == 0) limit->reset();
     const RunReport report = run_file(request);
-    if (!request.quiet || format != Format::text) show_run(report, format);
+    if (!request.quiet || format != Format::text) show_run(report, format, request.all);
     forgive_a_reader_that_is_gone();
     return report.exit_code;
 }

@@ -107,10 +107,11 @@ int serve(const ServeRequest& request, report::Format) {
     if (!request.control.empty()) control = live::Control{campaign_files_at(request.control)};
     const auto token = live::new_token();
     std::unique_ptr<live::Served> served;
-    live::HttpServer server(static_cast<std::uint16_t>(request.port),
-                            [&](const live::HttpQuestion& question) { return served->answer(question); });
+    const auto server =
+        live::open_http_server(static_cast<std::uint16_t>(request.port),
+                               [&](const live::HttpQuestion& question) { return served->answer(question); });
     served = std::make_unique<live::Served>(databases, control, token);
-    const auto address = fmt::format("http://127.0.0.1:{}/?token={}", server.port(), token);
+    const auto address = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), token);
     std::cout << address << '\n' << std::flush;
     std::cerr << fmt::format("{} database{}; Ctrl-C ends the page, not the run\n", databases.size(),
                              databases.size() == 1 ? "" : "s");
@@ -119,8 +120,8 @@ int serve(const ServeRequest& request, report::Format) {
     std::signal(SIGTERM, [](int) { asked_to_end = 1; });
     auto listed = std::chrono::steady_clock::now();
     while (asked_to_end == 0) {
-        server.run(200ms);
-        server.publish(served->look());
+        server->run(200ms);
+        server->publish(served->look());
         if (std::chrono::steady_clock::now() - listed < 2s) continue;
         listed = std::chrono::steady_clock::now();
         auto found = databases_at(place, databases);
@@ -128,7 +129,7 @@ int serve(const ServeRequest& request, report::Format) {
         databases = std::move(found);
         try {
             served = std::make_unique<live::Served>(databases, control, token, served->work());
-            server.publish(served->changed());
+            server->publish(served->changed());
         } catch (const BrokenWorld& error) {  // of one of them; the others stay on the page as they are
             std::cerr << "grainsweep: " << error.what() << '\n';
         }

@@ -14,7 +14,9 @@
 #include "sweep/cli/pictures.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/program_case.hpp"
+#include "sweep/cli/solved_text.hpp"
 #include "sweep/cli/threads_option.hpp"
+#include "sweep/report/next_command.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/workers/compute.hpp"
@@ -47,6 +49,7 @@ struct SolveRequest {
     std::string keep;                   ///< folder that a program's case is answered in; empty: none
     std::string path;                   ///< instruction path; empty: the widest there is
     std::int64_t threads = 0;           ///< 0: one for each core
+    bool all = false;                   ///< the text has every observable and input
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
 };
 
@@ -119,6 +122,8 @@ bool show_progress(const Scene& scene) {
 struct Asked {
     campaign::Case question;
     std::optional<double> limit_seconds;
+    std::vector<std::string> shown_inputs;  ///< names of the factors and of what --set gives
+    std::string campaign;                   ///< name; empty: of a machine alone
 };
 
 /// A campaign file; or a machine, which is a campaign without factors.
@@ -147,7 +152,14 @@ Asked question_of(const SolveRequest& request) {
     if (!filter(inputs))
         std::cerr << "grainsweep: the campaign excludes this point by its 'where': " << campaign.where << '\n';
     const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
-    return {campaign::make_case(campaign.scene(), inputs, seed), campaign.limits.wall_seconds};
+    Asked asked{campaign::make_case(campaign.scene(), inputs, seed), campaign.limits.wall_seconds, {}, {}};
+    for (const auto& factor : declared.factors) asked.shown_inputs.push_back(factor.name);
+    for (const auto& setting : request.settings) {
+        const auto name = setting.substr(0, setting.find('='));
+        if (std::ranges::find(asked.shown_inputs, name) == asked.shown_inputs.end()) asked.shown_inputs.push_back(name);
+    }
+    if (!declared.factors.empty()) asked.campaign = campaign.name;
+    return asked;
 }
 
 CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& pictures) {
@@ -165,16 +177,6 @@ Json sample_json(const Sample& sample) {
     if (!std::isnan(sample.time)) object.add("time", sample.time);
     if (!std::isnan(sample.bin)) object.add("bin", sample.bin);
     return object.add("value", sample.value);
-}
-
-/// Scalars that the scene declares and a finished case has no value of.
-std::vector<ObservableSpec> absent(const campaign::Case& question, const CaseResult& result) {
-    std::vector<ObservableSpec> missing;
-    if (result.outcome != Outcome::completed) return missing;
-    for (const auto& observable : find_scene(question.scene)->observables)
-        if (observable.shape == Shape::scalar && !result.observations.scalars.contains(observable.name))
-            missing.push_back(observable);
-    return missing;
 }
 
 /// Those the scene declares, then others; null: undefined in this case.
@@ -223,6 +225,28 @@ Json answer_json(const campaign::Case& question, const CaseResult& result) {
                          {"phases", phases}}}});
 }
 
+/// Prints the case: what most users need, or with --all everything.
+void print_case(const Asked& asked, const SolveRequest& request, const CaseResult& result) {
+    if (request.all)
+        write_whole_case(std::cout, asked.question, result);
+    else
+        write_main_case(std::cout, asked.question, asked.shown_inputs, result);
+}
+
+/// Suggests the next command.
+void say_next(const Asked& asked, const SolveRequest& request, const CaseResult& result) {
+    const auto config = report::shell_word(request.config);
+    const bool answered = result.outcome == Outcome::completed || result.outcome == Outcome::skipped;
+    if (answered)
+        std::cout << fmt::format("every observable and input, with its meaning: {}\n",
+                                 report::next_command(fmt::format("solve {} --all", config)));
+    if (!asked.campaign.empty())
+        std::cout << fmt::format("all cases of the campaign: {}\n", report::next_command("run " + config));
+    else if (answered)
+        std::cout << fmt::format("its walls and motions: {}\n",
+                                 report::next_command(fmt::format("draw {} -o drawing.html", config)));
+}
+
 /// Returns all results in one table: kind (input, outcome, scalar, series, cost), name, place, value.
 store::Table table_of(const campaign::Case& question, const CaseResult& result) {
     store::Table table{{"kind", "name", "time", "bin", "value"}, {}};
@@ -248,44 +272,6 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
     return table;
 }
 
-void show_answer(const campaign::Case& question, const CaseResult& result) {
-    const auto& scene = *find_scene(question.scene);
-    store::Table table{{"name", "value", "unit", "meaning"}, {}};
-    for (const auto& parameter : scene.parameters) {
-        const Value& value = question.inputs.at(parameter.name);
-        if (value == parameter.default_value) continue;
-        table.rows.push_back({parameter.name, campaign::to_text(value), parameter.unit, parameter.meaning});
-    }
-    table.rows.push_back({std::string("seed"), std::to_string(question.seed), std::string(), std::string()});
-    report::write(std::cout, table, Format::text);
-    std::cout << fmt::format("\n{}{}{}\n\n", campaign::to_string(result.outcome), result.message.empty() ? "" : ": ",
-                             result.message);
-    store::Table answers{{"observable", "value", "unit", "meaning"}, {}};
-    for (const auto& observable : scene.observables) {
-        Cell value;
-        if (const auto found = result.observations.scalars.find(observable.name);
-            found != result.observations.scalars.end()) {
-            value = report::to_cell(found->second);
-        } else if (const auto series = result.observations.series.find(observable.name);
-                   series != result.observations.series.end()) {
-            value = fmt::format("{} values", series->second.size());
-        } else {
-            continue;
-        }
-        answers.rows.push_back({observable.name, value, observable.unit, observable.meaning});
-    }
-    if (!answers.rows.empty()) report::write(std::cout, answers, Format::text);
-    const auto missing = absent(question, result);
-    if (!missing.empty()) std::cout << "\nwithout a value\n";
-    for (const auto& observable : missing) std::cout << fmt::format("  {}: {}\n", observable.name, observable.absent);
-    std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor time", result.cost.wall_seconds,
-                             result.cost.cpu_seconds);
-    if (result.program)
-        std::cout << fmt::format(", {:.3g} MB\n", 1e-6 * result.program->peak_memory);
-    else
-        std::cout << fmt::format(", {:.3g} particle steps\n", result.cost.particle_steps);
-}
-
 int solve(const SolveRequest& request, Format format) {
     use_path(request.path);
     use_threads(request.threads);
@@ -297,10 +283,11 @@ int solve(const SolveRequest& request, Format format) {
     const CaseResult result = answer_of(asked, request, pictures);
     if (::isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
     pictures.finish(result);
-    if (format == Format::text) show_answer(question, result);
+    if (format == Format::text) print_case(asked, request, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
     if (format == Format::json) report::write(std::cout, answer_json(question, result));
     pictures.say(format == Format::text);
+    if (format == Format::text && !request.all) say_next(asked, request, result);
     return result.outcome == Outcome::completed || result.outcome == Outcome::skipped ? 0 : 1;
 }
 
@@ -321,6 +308,8 @@ std::vector<Command> solve_commands() {
             ->grouped_digits();
         declare_pictures(parser, request.pictures);
         parser.add_option("--keep DIR", request.keep, "new folder in which a program computes the case; it is kept");
+        parser.add_flag("--all", request.all,
+                        "print every observable and input with its meaning, not only the main ones");
         declare_path(parser, request.path);
         declare_threads(parser, request.threads);
     };

@@ -61,13 +61,14 @@ void declare_collect(Parser& parser, RunRequest& request) {
     parser.add_option("DIR", request.spool, "folder that the tasks shared");
     parser.add_flag("--network-disk", request.network_disk,
                     "allow a database on a network file system; only one node may write it at a time");
+    parser.add_flag("--all", request.all, "print every observable and moment, not only the main ones");
     parser.add_flag("--quiet", request.quiet, "print no summary");
 }
 
 int collect(const RunRequest& request, Format format) {
     std::signal(SIGPIPE, SIG_IGN);
     const RunReport report = run_campaign(request);
-    if (!request.quiet || format != Format::text) show_run(report, format);
+    if (!request.quiet || format != Format::text) show_run(report, format, request.all);
     return report.exit_code;
 }
 

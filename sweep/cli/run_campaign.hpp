@@ -30,6 +30,7 @@ struct RunRequest {
     std::filesystem::path spool;
     bool network_disk = false;  ///< the database may lie on a network file system
     bool quiet = false;
+    bool all = false;         ///< the summary shows every observable and moment
     bool calibrates = false;  ///< the campaign file must give a calibration
     bool powder = false;      ///< for a calibration: its powder is written beside the database
     std::string path;         ///< instruction path of the workers; empty: the widest of each

@@ -10,10 +10,10 @@
 
 namespace grainsweep::cli {
 
-void show_run(const RunReport& run, report::Format format) {
+void show_run(const RunReport& run, report::Format format, bool all) {
     if (format == report::Format::text) {
         const store::Store archive(run.database, store::Store::Mode::read);
-        auto summary = report::closing_summary(archive, run.campaign, run.database);
+        auto summary = report::closing_summary(archive, run.campaign, run.database, all);
         return report::write(std::cout, summary.say().say(run.ending), format);
     }
     std::error_code none;

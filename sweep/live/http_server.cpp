@@ -42,9 +42,19 @@ void add_common_fields(MHD_Response* response, const std::string& type, const st
     if (!policy.empty()) add("Content-Security-Policy", policy.c_str());
 }
 
-}  // namespace
+class MicroServer final : public HttpServer {
+public:
+    MicroServer(std::uint16_t port, Respond respond);
+    ~MicroServer() override;
+    MicroServer(const MicroServer&) = delete;
+    MicroServer& operator=(const MicroServer&) = delete;
 
-struct HttpServer::Impl {
+    [[nodiscard]] std::uint16_t port() const override;
+    void run(std::chrono::milliseconds at_most) override;
+    void publish(std::string_view events) override;
+    [[nodiscard]] std::size_t streams() const override { return readers_.size(); }
+
+private:
     /// A connection that stays open for events.
     struct EventReader {
         MHD_Connection* connection = nullptr;
@@ -74,10 +84,6 @@ struct HttpServer::Impl {
         }
     };
 
-    Respond respond;
-    std::list<EventReader> readers;
-    MHD_Daemon* daemon = nullptr;
-
     MHD_Result send(MHD_Connection* connection, const HttpAnswer& answer) const {
         static const auto nothing = std::make_shared<const std::string>();
         const auto& body = answer.body ? answer.body : nothing;
@@ -98,10 +104,10 @@ struct HttpServer::Impl {
     }
 
     MHD_Result open(MHD_Connection* connection, HttpStream stream) {
-        auto& reader = readers.emplace_back();
+        auto& reader = readers_.emplace_back();
         reader.connection = connection;
         reader.waiting = std::move(stream.first);
-        reader.all = &readers;
+        reader.all = &readers_;
         MHD_Response* response =
             MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, piece, &EventReader::read, &reader, &EventReader::end);
         add_common_fields(response, "text/event-stream", "");
@@ -113,7 +119,7 @@ struct HttpServer::Impl {
     MHD_Result answer(MHD_Connection* connection, const HttpQuestion& question) {
         HttpReply reply;
         try {
-            reply = respond(question);
+            reply = respond_(question);
         } catch (const std::exception& error) {
             reply = HttpAnswer{.status = MHD_HTTP_INTERNAL_SERVER_ERROR,
                                .body = std::make_shared<const std::string>(error.what())};
@@ -143,51 +149,54 @@ struct HttpServer::Impl {
             *size = 0;
             return MHD_YES;
         }
-        return static_cast<Impl*>(self)->answer(connection, question);
+        return static_cast<MicroServer*>(self)->answer(connection, question);
     }
 
     static void completed(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
         delete static_cast<HttpQuestion*>(*state);
         *state = nullptr;
     }
+
+    Respond respond_;
+    std::list<EventReader> readers_;
+    MHD_Daemon* daemon_ = nullptr;
 };
 
-HttpServer::HttpServer(std::uint16_t port, Respond respond) : impl_(std::make_unique<Impl>()) {
-    impl_->respond = std::move(respond);
+MicroServer::MicroServer(std::uint16_t port, Respond respond) : respond_(std::move(respond)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     errno = 0;
-    impl_->daemon = MHD_start_daemon(MHD_ALLOW_SUSPEND_RESUME, port, nullptr, nullptr, &Impl::handle, impl_.get(),
-                                     MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, most_connections,
-                                     MHD_OPTION_CONNECTION_TIMEOUT, silent_seconds, MHD_OPTION_NOTIFY_COMPLETED,
-                                     &Impl::completed, nullptr, MHD_OPTION_END);
-    if (impl_->daemon == nullptr)
+    daemon_ = MHD_start_daemon(MHD_ALLOW_SUSPEND_RESUME, port, nullptr, nullptr, &MicroServer::handle, this,
+                               MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, most_connections,
+                               MHD_OPTION_CONNECTION_TIMEOUT, silent_seconds, MHD_OPTION_NOTIFY_COMPLETED,
+                               &MicroServer::completed, nullptr, MHD_OPTION_END);
+    if (daemon_ == nullptr)
         throw BrokenWorld(fmt::format("port {} of this machine cannot be opened: {}; --port names another", port,
                                       errno == 0 ? "it is taken" : std::strerror(errno)));
 }
 
-HttpServer::~HttpServer() {
-    for (auto& reader : impl_->readers) {
+MicroServer::~MicroServer() {
+    for (auto& reader : readers_) {
         reader.closed = true;
         reader.wake();
     }
-    MHD_stop_daemon(impl_->daemon);
+    MHD_stop_daemon(daemon_);
 }
 
-std::uint16_t HttpServer::port() const {
-    return MHD_get_daemon_info(impl_->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+std::uint16_t MicroServer::port() const {
+    return MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
-void HttpServer::run(std::chrono::milliseconds at_most) {
-    if (MHD_run_wait(impl_->daemon, static_cast<std::int32_t>(at_most.count())) != MHD_YES)
+void MicroServer::run(std::chrono::milliseconds at_most) {
+    if (MHD_run_wait(daemon_, static_cast<std::int32_t>(at_most.count())) != MHD_YES)
         throw BrokenWorld("the server cannot go on: its connections cannot be waited for");
 }
 
-void HttpServer::publish(std::string_view events) {
+void MicroServer::publish(std::string_view events) {
     if (events.empty()) return;  // waking a connection for nothing would turn the loop without rest
-    for (auto& reader : impl_->readers) {
+    for (auto& reader : readers_) {
         if (reader.closed) continue;
         if (reader.waiting.size() + events.size() > most_waiting) {
             reader.closed = true;
@@ -199,8 +208,10 @@ void HttpServer::publish(std::string_view events) {
     }
 }
 
-std::size_t HttpServer::streams() const {
-    return impl_->readers.size();
+}  // namespace
+
+std::unique_ptr<HttpServer> open_http_server(std::uint16_t port, Respond respond) {
+    return std::make_unique<MicroServer>(port, std::move(respond));
 }
 
 }  // namespace grainsweep::live

@@ -40,25 +40,26 @@ using HttpReply = std::variant<HttpAnswer, HttpStream>;
 
 class HttpServer {
 public:
+    HttpServer() = default;
+    HttpServer(const HttpServer&) = delete;
+    HttpServer& operator=(const HttpServer&) = delete;
+    virtual ~HttpServer() = default;
+
     static constexpr std::size_t most_body = 64U << 10U;
     static constexpr unsigned most_connections = 200;
     static constexpr std::size_t most_waiting = 8U << 20U;  ///< most pending bytes of a stream
 
-    using Respond = std::function<HttpReply(const HttpQuestion&)>;
-    /// Port 0: any free port. Throws BrokenWorld if the port is not available.
-    HttpServer(std::uint16_t port, Respond respond);
-    ~HttpServer();
-
-    [[nodiscard]] std::uint16_t port() const;
+    [[nodiscard]] virtual std::uint16_t port() const = 0;
     /// Answers pending requests; waits at most this time for the first one.
-    void run(std::chrono::milliseconds at_most);
+    virtual void run(std::chrono::milliseconds at_most) = 0;
     /// Sends events to every open stream. A stream with a slow reader is closed.
-    void publish(std::string_view events);
-    [[nodiscard]] std::size_t streams() const;
-
-private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    virtual void publish(std::string_view events) = 0;
+    [[nodiscard]] virtual std::size_t streams() const = 0;
 };
+
+using Respond = std::function<HttpReply(const HttpQuestion&)>;
+
+/// Opens a server. Port 0: any free port. Throws BrokenWorld if the port is not available.
+[[nodiscard]] std::unique_ptr<HttpServer> open_http_server(std::uint16_t port, Respond respond);
 
 }  // namespace grainsweep::live

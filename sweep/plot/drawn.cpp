@@ -146,13 +146,6 @@ std::string as_vectors(const Figure& figure, const Layout& layout, double width,
 
 }  // namespace
 
-std::optional<FileType> file_type(std::string_view file_name) {
-    if (file_name.ends_with(".pdf")) return FileType::pdf;
-    if (file_name.ends_with(".svg")) return FileType::svg;
-    if (file_name.ends_with(".png")) return FileType::png;
-    return std::nullopt;
-}
-
 std::string drawn(const Figure& figure, double width_mm, FileType type) {
     const auto layout = layout_of(figure, width_mm);
     const double width = width_mm * points_per_mm;

@@ -1,33 +1,17 @@
 // Figure for print as data: panels with axes and marks, independent of the origin of the numbers. Numbers are already
 // in the unit of the title.
-//
-// Colours of categories: Okabe & Ito, "Color Universal Design" (2008), which readers with any colour vision can
-// distinguish. Colour scale: viridis (van der Walt & Smith 2015), whose lightness increases uniformly, also in a grey
-// print.
 #pragma once
 
-#include <cstddef>
+#include "sweep/plot/colours.hpp"
+
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 namespace grainsweep::plot {
-
-struct Colour {
-    double red = 0, green = 0, blue = 0, alpha = 1;
-};
-inline constexpr Colour black{0, 0, 0}, blue{0, 0.447, 0.698}, vermilion{0.835, 0.369, 0}, grey{0.6, 0.6, 0.6};
-
-/// Returns the colour of a category: eight different colours, then the same again.
-[[nodiscard]] Colour category(std::size_t k);
-/// Returns a colour of viridis: 0 dark blue, 1 yellow.
-[[nodiscard]] Colour along_scale(double share);
-[[nodiscard]] inline Colour faded(Colour tone, double alpha) {
-    tone.alpha = alpha;
-    return tone;
-}
 
 /// Axis from `low` at the left or lower end to `high`; low > high reverses it.
 struct Axis {
@@ -37,7 +21,10 @@ struct Axis {
     std::vector<std::string> words = {};  ///< words at 0, 1, ...; empty: numbers
 };
 /// Returns an axis of words, each in the middle of its interval.
-[[nodiscard]] Axis axis_of_words(std::string title, std::vector<std::string> words);
+[[nodiscard]] inline Axis axis_of_words(std::string title, std::vector<std::string> words) {
+    const double high = static_cast<double>(words.size()) - 0.5;
+    return {std::move(title), -0.5, high, false, std::move(words)};
+}
 
 /// Points of one colour, or with one colour each.
 struct Points {
@@ -104,7 +91,12 @@ struct Figure {
 
 /// File types of a figure, the extension of a file.
 enum class FileType { pdf, svg, png };
-[[nodiscard]] std::optional<FileType> file_type(std::string_view file_name);
+[[nodiscard]] inline std::optional<FileType> file_type(std::string_view file_name) {
+    if (file_name.ends_with(".pdf")) return FileType::pdf;
+    if (file_name.ends_with(".svg")) return FileType::svg;
+    if (file_name.ends_with(".png")) return FileType::png;
+    return std::nullopt;
+}
 
 /// Returns the bytes of the file. At any width text is 7 to 8 points high and lines are 0.5 to 1 point wide; panels are
 /// side by side if there is room. PNG has 600 dots per inch. The same figure gives the same bytes on one machine,

@@ -101,6 +101,17 @@ Quantity quantity_of(std::string_view name, std::string_view unit, double larges
     return {shown.empty() ? words : fmt::format("{} ({})", words, shown), factor};
 }
 
+std::string quantity_text(double value, std::string_view unit) {
+    double factor = 1;
+    std::string shown = printed_unit(unit);
+    if (takes_prefix(unit) && std::isfinite(value) && value != 0) {
+        const auto scaled = quantity_of("", unit, std::abs(value));
+        factor = scaled.factor;
+        shown = scaled.title.substr(2, scaled.title.size() - 3);  // " (mm)"
+    }
+    return fmt::format("{:.4g}{}{}", factor * value, shown.empty() ? "" : " ", shown);
+}
+
 Quantity Variable::quantity() const {
     if (!levels.empty()) {
         double largest = 0;

@@ -28,6 +28,9 @@ struct Quantity {
 /// spaces.
 [[nodiscard]] Quantity quantity_of(std::string_view name, std::string_view unit, double largest);
 
+/// Returns a number with its unit and an engineering prefix: 0.0036 m as "3.6 mm". Four digits.
+[[nodiscard]] std::string quantity_text(double value, std::string_view unit);
+
 /// Variable of a campaign for an axis: factor, response or number of the point.
 struct Variable {
     std::string name, unit;

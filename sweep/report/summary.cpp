@@ -2,6 +2,8 @@
 
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/findings.hpp"
+#include "sweep/report/main_observables.hpp"
+#include "sweep/report/next_command.hpp"
 #include "sweep/study/error_text.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +17,7 @@ using namespace study;
 
 namespace {
 
-constexpr std::size_t extremes_in_text = 3;
+constexpr std::size_t extremes_in_text = 3, extremes_in_main_text = 1;
 
 std::vector<const ResponseColumn*> main_first(const Responses& responses) {
     std::vector<const ResponseColumn*> order;
@@ -42,12 +44,58 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
     table.rows.push_back(std::move(cells));
 }
 
-std::string moments_heading(const Responses& responses, const History& history) {
-    if (!history.provisional) return fmt::format("moments over {} points, 95 % errors", responses.counted_points());
+std::string moments_heading(const Responses& responses, const History& history, std::string_view what) {
+    if (!history.provisional) return fmt::format("{} of {} points, 95 % errors", what, responses.counted_points());
     return fmt::format(
-        "provisional moments over all {} finished cases, 95 % errors; the settled beginning has {} points, and only "
-        "that is judged",
-        responses.finished(), responses.counted_points());
+        "provisional {} of all {} finished cases, 95 % errors; the settled beginning has {} points, and only that is "
+        "judged",
+        what, responses.finished(), responses.counted_points());
+}
+
+/// Mean and standard deviation of the main observables, with their meaning.
+store::Table main_moments(const Responses& responses, const std::vector<MainObservable>& shown) {
+    store::Table table{{"observable", "unit", "mean", "sd", "meaning"}, {}};
+    for (const auto& one : shown) {
+        const auto& response = responses.observable(one.name);
+        const auto history = figures_of(responses, response);
+        const auto& all = history.provisional ? *history.provisional : history.all;
+        const auto text = [&](stats::Statistic statistic) {
+            return with_error(all.of(statistic).value, all.of(statistic).error);
+        };
+        table.rows.push_back({one.name, response.unit == "1" ? "" : response.unit, text(stats::Statistic::mean),
+                              text(stats::Statistic::sd), one.words});
+    }
+    return table;
+}
+
+/// The observable whose extremes are shown: the deciding one, else the first main one with a value.
+const ResponseColumn& leading(const Responses& responses, const std::vector<MainObservable>& shown) {
+    if (const auto* deciding = responses.deciding_observable()) return *deciding;
+    for (const auto& one : shown) {
+        const auto& response = responses.observable(one.name);
+        if (std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); })) return response;
+    }
+    return *responses.main_observable();
+}
+
+void show_all_moments(Document& shown, const Responses& responses, const History& history) {
+    shown.say()
+        .say(moments_heading(responses, history, "moments"))
+        .show(moments_table(responses))
+        .say()
+        .show(extremes_table(responses, *responses.main_observable(), extremes_in_text));
+}
+
+void show_main_moments(Document& shown, const Responses& responses, const History& history) {
+    const auto names = main_observables(responses);
+    shown.say()
+        .say(moments_heading(responses, history, "mean and standard deviation"))
+        .show(main_moments(responses, names))
+        .say()
+        .show(extremes_table(responses, leading(responses, names), extremes_in_main_text));
+    const auto others = responses.observables.size() - names.size();
+    shown.say(fmt::format("{}skewness and kurtosis: run again with --all",
+                          others == 0 ? "" : fmt::format("{} other observables, ", others)));
 }
 
 }  // namespace
@@ -118,8 +166,8 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     return table;
 }
 
-Document closing_summary(const store::Store& store, const std::string& campaign,
-                         const std::filesystem::path& database) {
+Document closing_summary(const store::Store& store, const std::string& campaign, const std::filesystem::path& database,
+                         bool all) {
     const auto responses = read_responses(store, find_campaigns(store, campaign).front());
     Document shown;
     shown.say(fmt::format("{}: {} cases of {}: {}", campaign, responses.rows(), shown_scene(responses.campaign.scene),
@@ -132,18 +180,14 @@ Document closing_summary(const store::Store& store, const std::string& campaign,
     } else if (const auto* main = responses.main_observable()) {
         const bool has_rule = responses.campaign.convergence.has_value();
         const auto history = has_rule ? history_of(responses, *main) : figures_of(responses, *main);
-        if (history.has_rule) shown.say(fmt::format("{}: {}", main->name, history.verdict));
+        if (all && history.has_rule) shown.say(fmt::format("{}: {}", main->name, history.verdict));
         shown.say_notes(history.warnings);
-        if (responses.finished() > 0)
-            shown.say()
-                .say(moments_heading(responses, history))
-                .show(moments_table(responses))
-                .say()
-                .show(extremes_table(responses, *main, extremes_in_text));
+        if (responses.finished() > 0) (all ? show_all_moments : show_main_moments)(shown, responses, history);
     }
-    shown.say(
-        fmt::format("\ndatabase {2}\nnext: grainsweep report {0}\n      grainsweep query {0} \"SELECT * FROM {1}\"",
-                    database.string(), campaign, named_with_size(database)));
+    const auto file = shell_word(database.string());
+    shown.say(fmt::format("\ndatabase {}\nnext: {}", named_with_size(database), next_command("report " + file)));
+    if (responses.ordered_sample()) shown.say("      " + next_command("sensitivity " + file));
+    shown.say("      " + next_command(fmt::format("query {} \"SELECT * FROM {}\"", file, campaign)));
     return shown;
 }
 

@@ -29,8 +29,9 @@ namespace grainsweep::report {
 [[nodiscard]] store::Table extremes_table(const study::Responses& responses, const study::ResponseColumn& response,
                                           std::size_t count);
 
-/// Returns the last text of `run`. `campaign` must be in the store.
+/// Returns the last text of `run`: mean and standard deviation of the main observables, or with `all` every moment of
+/// every observable. `campaign` must be in the store.
 [[nodiscard]] Document closing_summary(const store::Store& store, const std::string& campaign,
-                                       const std::filesystem::path& database);
+                                       const std::filesystem::path& database, bool all);
 
 }  // namespace grainsweep::report

@@ -3,18 +3,12 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/visible_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/report/sheet_file.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <xlsxwriter.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
 namespace grainsweep::report {
@@ -24,15 +18,6 @@ using Cell = store::Table::Cell;
 
 constexpr std::int64_t longest_text = 32'767, most_rows = 1'048'575;
 constexpr std::size_t narrowest_column = 7, widest_column = 48, digits_in_view = 11;
-constexpr std::time_t no_time = 315'532'800;  // 1980-01-01, the first day of a ZIP archive
-
-BrokenWorld unwritten(std::string_view why) {
-    return BrokenWorld(fmt::format("the workbook cannot be written: {}", why));
-}
-
-void require(lxw_error error) {
-    if (error != LXW_NO_ERROR) throw unwritten(lxw_strerror(error));
-}
 
 /// The first `most` characters of a UTF-8 text.
 std::string beginning(const std::string& text, std::int64_t most) {
@@ -48,42 +33,15 @@ std::string beginning(const std::string& text, std::int64_t most) {
 
 // Not in the namespace without a name: Parts, which has linkage, holds them.
 
-/// File without a name, which disappears when it is closed.
-class WorkbookFile {
-public:
-    WorkbookFile() : file_(std::tmpfile()) {
-        if (file_ == nullptr) throw unwritten(std::strerror(errno));
-    }
-    WorkbookFile(const WorkbookFile&) = delete;
-    WorkbookFile& operator=(const WorkbookFile&) = delete;
-    ~WorkbookFile() { std::fclose(file_); }
-
-    /// A path that this process can open.
-    [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", ::fileno(file_)); }
-    [[nodiscard]] std::string contents() const {
-        struct stat facts {};
-        if (::fstat(::fileno(file_), &facts) != 0) throw unwritten(std::strerror(errno));
-        std::string bytes(static_cast<std::size_t>(facts.st_size), '\0');
-        std::rewind(file_);
-        if (std::fread(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throw unwritten(std::strerror(errno));
-        return bytes;
-    }
-
-private:
-    std::FILE* file_;
-};
-
 /// A sheet in which rows are written from top to bottom, and how wide its columns have to be.
 class WorkbookSheet {
 public:
-    WorkbookSheet(lxw_workbook* book, const char* name) : sheet_(workbook_add_worksheet(book, name)) {
-        if (sheet_ == nullptr) throw unwritten("out of memory");
-    }
+    WorkbookSheet(SheetFile& file, const char* name) : file_(&file), sheet_(file.add_sheet(name)) {}
 
-    void begin(const std::vector<std::string>& titles, lxw_format* bold) {
+    void begin(const std::vector<std::string>& titles) {
         widths_.assign(titles.size(), narrowest_column);
-        for (std::size_t j = 0; j < titles.size(); ++j) write_text(j, titles[j], bold);
-        worksheet_freeze_panes(sheet_, 1, 0);
+        for (std::size_t j = 0; j < titles.size(); ++j) write_text(j, titles[j], SheetFile::Weight::bold);
+        file_->freeze_first_row(sheet_);
         ++row_;
     }
     void add(const std::vector<Cell>& row) {
@@ -96,10 +54,8 @@ public:
         ++row_;
     }
     void set_widths() {
-        for (std::size_t j = 0; j < widths_.size(); ++j) {
-            const auto column = static_cast<lxw_col_t>(j);
-            require(worksheet_set_column(sheet_, column, column, static_cast<double>(widths_[j]) + 2, nullptr));
-        }
+        for (std::size_t j = 0; j < widths_.size(); ++j)
+            file_->set_width(sheet_, j, static_cast<double>(widths_[j]) + 2);
     }
     [[nodiscard]] std::int64_t cut_texts() const { return cut_; }
 
@@ -107,60 +63,41 @@ private:
     void write(std::size_t, std::monostate) {}
     void write(std::size_t column, std::int64_t whole) {
         constexpr std::int64_t exact = std::int64_t{1} << 53U;
-        if (whole < -exact || whole > exact) return write_text(column, std::to_string(whole), nullptr);
+        if (whole < -exact || whole > exact) return write_text(column, std::to_string(whole));
         write_number(column, static_cast<double>(whole), std::to_string(whole).size());
     }
     void write(std::size_t column, double real) {
         if (std::isnan(real)) return;
-        if (std::isinf(real)) return write_text(column, real > 0 ? "inf" : "-inf", nullptr);
+        if (std::isinf(real)) return write_text(column, real > 0 ? "inf" : "-inf");
         write_number(column, real, std::min(campaign::shortest(real).size(), digits_in_view));
     }
     void write(std::size_t column, const std::string& text) {
-        write_text(column, campaign::valid_utf8(campaign::visible(text)), nullptr);
+        write_text(column, campaign::valid_utf8(campaign::visible(text)));
     }
 
     void write_number(std::size_t column, double number, std::size_t width) {
         widen(column, width);
-        require(worksheet_write_number(sheet_, static_cast<lxw_row_t>(row_), static_cast<lxw_col_t>(column), number,
-                                       nullptr));
+        file_->write_number({sheet_, row_, column}, number);
     }
-    void write_text(std::size_t column, const std::string& text, lxw_format* format) {
+    void write_text(std::size_t column, const std::string& text, SheetFile::Weight weight = SheetFile::Weight::plain) {
         const std::string held = beginning(text, longest_text);
         if (held.size() < text.size()) ++cut_;
         widen(column, held.find('\n') == std::string::npos ? held.size() : widest_column);
-        require(worksheet_write_string(sheet_, static_cast<lxw_row_t>(row_), static_cast<lxw_col_t>(column),
-                                       held.c_str(), format));
+        file_->write_text({sheet_, row_, column}, held, weight);
     }
     void widen(std::size_t column, std::size_t width) {
         widths_[column] = std::max(widths_[column], std::min(width, widest_column));
     }
 
-    lxw_worksheet* sheet_;
+    SheetFile* file_;
+    std::size_t sheet_;
     std::vector<std::size_t> widths_;
     std::int64_t row_ = 0, cut_ = 0;
 };
 
 struct Workbook::Parts {
-    struct Free {
-        void operator()(lxw_workbook* unfinished) const { lxw_workbook_free(unfinished); }
-    };
-    WorkbookFile file;
-    std::unique_ptr<lxw_workbook, Free> book;
-    lxw_format* bold;
-    std::unique_ptr<WorkbookSheet> rows;
-
-    Parts() {
-        lxw_workbook_options options{};
-        options.constant_memory = LXW_TRUE;  // rows go to a temporary file, not to memory
-        book.reset(workbook_new_opt(file.path().c_str(), &options));
-        if (book == nullptr) throw unwritten("out of memory");
-        lxw_doc_properties properties{};
-        properties.created = no_time;
-        require(workbook_set_properties(book.get(), &properties));
-        bold = workbook_add_format(book.get());
-        format_set_bold(bold);
-        rows = std::make_unique<WorkbookSheet>(book.get(), "rows");
-    }
+    std::unique_ptr<SheetFile> file = new_sheet_file();
+    WorkbookSheet rows{*file, "rows"};
 };
 
 Workbook::Workbook() : parts_(std::make_unique<Parts>()) {}
@@ -170,24 +107,23 @@ void Workbook::begin(const std::vector<std::string>& columns, const std::vector<
     std::vector<std::string> titles;
     for (std::size_t j = 0; j < columns.size(); ++j)
         titles.push_back(units[j].empty() ? columns[j] : fmt::format("{} ({})", columns[j], units[j]));
-    parts_->rows->begin(titles, parts_->bold);
+    parts_->rows.begin(titles);
 }
 
 void Workbook::add(const std::vector<Cell>& row) {
-    parts_->rows->add(row);
+    parts_->rows.add(row);
 }
 
 std::int64_t Workbook::cut_texts() const {
-    return parts_->rows->cut_texts();
+    return parts_->rows.cut_texts();
 }
 
 std::string Workbook::finish(const store::Table& provenance) {
-    WorkbookSheet second(parts_->book.get(), "provenance");
-    second.begin(provenance.columns, parts_->bold);
+    WorkbookSheet second(*parts_->file, "provenance");
+    second.begin(provenance.columns);
     for (const auto& row : provenance.rows) second.add(row);
-    for (WorkbookSheet* sheet : {parts_->rows.get(), &second}) sheet->set_widths();
-    require(workbook_close(parts_->book.release()));
-    return parts_->file.contents();
+    for (WorkbookSheet* sheet : {&parts_->rows, &second}) sheet->set_widths();
+    return parts_->file->finish();
 }
 
 }  // namespace grainsweep::report

@@ -136,13 +136,18 @@ std::int64_t Responses::counted_points() const {
     return static_cast<std::int64_t>(std::set<std::int64_t>(judged.begin(), judged.end()).size());
 }
 
-const ResponseColumn* Responses::main_observable() const {
+const ResponseColumn* Responses::deciding_observable() const {
     std::vector<std::string> asked;
     if (campaign.convergence) asked.push_back(campaign.convergence->observable);
     if (asked.empty() && design().rests_on) asked = design().rests_on(campaign::request_of(campaign));
     for (const auto& name : asked)
         if (const auto named = std::ranges::find(observables, name, &ResponseColumn::name); named != observables.end())
             return &*named;
+    return nullptr;
+}
+
+const ResponseColumn* Responses::main_observable() const {
+    if (const auto* deciding = deciding_observable()) return deciding;
     const auto measured = std::ranges::find_if(observables, [](const ResponseColumn& response) {
         return std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); });
     });

@@ -95,9 +95,11 @@ struct Responses {
     /// Returns the number of points of the design that the `where` clause excludes.
     [[nodiscard]] std::int64_t dropped() const;
     [[nodiscard]] const designs::DesignInfo& design() const;
-    /// Returns the main observable; nullptr without scalars. It is the observable of the convergence rule. Without one
-    /// it is the observable that decides later points of the design (a calibration's first target), else the scene's
-    /// first observable with a value, else its first.
+    /// Returns the observable of the convergence rule. Without a rule it is the observable that decides later points of
+    /// the design (a calibration's first target). nullptr: nothing decides.
+    [[nodiscard]] const ResponseColumn* deciding_observable() const;
+    /// Returns the main observable; nullptr without scalars. It is the deciding observable, else the scene's first
+    /// observable with a value, else its first.
     [[nodiscard]] const ResponseColumn* main_observable() const;
     /// Returns the observable of this name; empty name: the main observable. Throws WrongQuestion with the nearest
     /// name.

@@ -122,6 +122,9 @@ const std::vector<Rule>& rules() {
         {"sweep/live/",
          {"sweep/live/", "sweep/report/", "sweep/store/", "sweep/campaign/", "sweep/files/",
           "sweep/workers/process_start.hpp", "solver/plain_text.hpp"}},
+        {"sweep/media/",
+         {"sweep/media/", "sweep/files/", "sweep/plot/plot.hpp", "sweep/report/sheet_file.hpp",
+          "sweep/live/http_server.hpp"}},
         {"sweep/cli/run_campaign",  // a run computes and shows nothing
          {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/store/", "sweep/study/",
           "sweep/workers/"}},
@@ -149,8 +152,9 @@ const std::vector<Library>& libraries() {
         {"Eigen/", {"solver/", "stats/"}},
         {"muParser.h", {"sweep/campaign/formula.cpp"}},
         {"udunits2.h", {"sweep/campaign/quantity.cpp"}},
-        {"xlsxwriter.h", {"sweep/report/workbook.cpp"}},
+        {"xlsxwriter.h", {"sweep/report/sheet_file.cpp"}},
         {"cairo", {"sweep/plot/"}},
+        {"dlfcn.h", {"sweep/media/loaded.cpp"}},
         {"nlopt", {"stats/response/climb.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler

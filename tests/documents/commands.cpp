@@ -252,8 +252,12 @@ TEST(Bootstrap, RunsACampaignAndWritesItsPage) {
                               "printf '#!/bin/sh\\n' > tools/cmake\n"
                               "chmod +x tools/cmake\n"
                               "export PATH=\"$PWD/tools:$PATH\"\n"
-                              "./bootstrap.sh run configs/rehearsal_small.json -j 1\n"
+                              "./bootstrap.sh run configs/rehearsal_small.json -j 1 > printed\n"
                               "test -s rehearsal_small.html\n"
+                              "grep -q '^next: build/grainsweep report rehearsal_small.db$' printed\n"
+                              "grep -q '^rehearsal_small.html .*: open it in a browser$' printed\n"
+                              "grep -q '^then type: build/grainsweep solve configs/rehearsal_small.json' printed\n"
+                              "test \"$(wc -l < printed)\" -le 25\n"
                               "./bootstrap.sh run configs/rehearsal_small.json -j 1 --db 'a first try.db'\n"
                               "test -s 'a first try.html'\n"),
                    "bootstrap.sh run");

@@ -1,12 +1,27 @@
-#include "sweep/plot/plot.hpp"
+// Colours of figures for print.
+//
+// Categories: Okabe & Ito, "Color Universal Design" (2008), which readers with any colour vision can distinguish.
+// Colour scale: viridis (van der Walt & Smith 2015), whose lightness increases uniformly, also in a grey print.
+#pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 
 namespace grainsweep::plot {
 
-Colour category(std::size_t k) {
+struct Colour {
+    double red = 0, green = 0, blue = 0, alpha = 1;
+};
+inline constexpr Colour black{0, 0, 0}, blue{0, 0.447, 0.698}, vermilion{0.835, 0.369, 0}, grey{0.6, 0.6, 0.6};
+
+[[nodiscard]] inline Colour faded(Colour tone, double alpha) {
+    tone.alpha = alpha;
+    return tone;
+}
+
+/// Returns the colour of a category: eight different colours, then the same again.
+[[nodiscard]] inline Colour category(std::size_t k) {
     static constexpr std::array<Colour, 8> tones = {{{0, 0.447, 0.698},
                                                      {0.835, 0.369, 0},
                                                      {0, 0.62, 0.451},
@@ -18,7 +33,8 @@ Colour category(std::size_t k) {
     return tones[k % tones.size()];
 }
 
-Colour along_scale(double share) {
+/// Returns a colour of viridis: 0 dark blue, 1 yellow.
+[[nodiscard]] inline Colour along_scale(double share) {
     static constexpr std::array<Colour, 9> stops = {{{0.267, 0.005, 0.329},
                                                      {0.282, 0.156, 0.471},
                                                      {0.243, 0.290, 0.538},
@@ -35,11 +51,6 @@ Colour along_scale(double share) {
         return stops[k].*part + rest * (stops[k + 1].*part - stops[k].*part);
     };
     return {mixed(&Colour::red), mixed(&Colour::green), mixed(&Colour::blue)};
-}
-
-Axis axis_of_words(std::string title, std::vector<std::string> words) {
-    const double high = static_cast<double>(words.size()) - 0.5;
-    return {std::move(title), -0.5, high, false, std::move(words)};
 }
 
 }  // namespace grainsweep::plot
