@@ -82,6 +82,11 @@ configure() {  # PRESET OPTIONS...
     quiet "configuring" cmake -S "$here" --preset "$preset" -DCMAKE_UNITY_BUILD=ON "$@"
 }
 
+longest_tests() {  # JUNIT_FILE
+    echo "the ten longest tests, in seconds:"
+    sed -n 's/.*<testcase name="\([^"]*\)".* time="\([0-9.]*\)".*/\2 \1/p' "$1" | sort -rn | sed -n '1,10p'
+}
+
 build_program() {
     install_missing "${program_packages[@]}"
     local tests=OFF
@@ -122,7 +127,10 @@ test)
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build" -j "$jobs"
     # in thirds of a core: tests/CMakeLists.txt
-    (cd "$here" && ctest --preset release -j "$((3 * jobs))")
+    code=0
+    (cd "$here" && ctest --preset release -j "$((3 * jobs))" --output-junit "$here/build/tests.xml") || code=$?
+    longest_tests "$here/build/tests.xml"
+    exit "$code"
     ;;
 sanitize)
     install_missing "${program_packages[@]}" "${test_packages[@]}" "${sanitize_packages[@]}"

@@ -8,7 +8,7 @@
 // The level adds an Interaction: SolidsPressure<AlgebraicTemperature> (ddpm), SolidsPressure<TransportedTemperature>
 // (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem).
 // Terms with phi_p and dV_p/dt lag by one step. Their error is of first order in the step, with the factor phi_p. For
-// phi_p -> 0 the scheme equals that of suspension.hpp with TwoWay<ForceForm>.
+// phi_p -> 0 the scheme equals that of suspension.hpp with TwoWay.
 #pragma once
 
 #include "solver/coupling/levels.hpp"

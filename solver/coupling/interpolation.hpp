@@ -1,22 +1,9 @@
 // Interpolation from staggered faces to a particle, and its transpose: the force of a particle onto the faces.
 //
 // Trilinear: linear between faces along the component's own axis, and between cell centres across it. On a no-slip wall
-// the value equals the value of the wall.
-//
-// Solenoidal: with s the smooth grid coordinate (faces at integers), the volume fluxes F = U h_j h_k are interpolated
-// by a quadratic B-spline along their own axis and linearly across it, and u = F/(y'(s) z'(s)). The derivative of the
-// spline is a sum of flux differences times linear hats, so
-//     div u (x) = 1/(x' y' z') sum over cells of (net flux out of the cell) hat(s_x) hat(s_y) hat(s_z) = 0:
-// The interpolated field has exactly the divergence of the discrete field, and no flow through walls. In the half cell
-// beside a wall, the factor along the own axis is linear and the factors across are constant. The interpolation is of
-// second order; the spline smooths by h^2/8 u''.
-//
-// Closer than h/2 to a no-slip wall, trilinear interpolation has the right shear but is not free of divergence.
-// Solenoidal interpolation conserves volume but slips. Both are in closed form in
-// tests/unit/coupling_interpolation.cpp. The difference matters for particles whose centres touch walls. Example:
-// thermovibration run 21 (uniform 40^3, W/Omega = 0.45 h), t = 0.32, four clouds with scatter 0.006. K on 10^3 cells is
-// 0.249 trilinear and 0.264 solenoidal. A normal velocity quadratic in the wall's cell, with the right shear and volume
-// within h/2, gives 0.259 (six clouds).
+// the value equals the value of the wall. Closer than h/2 to a no-slip wall the field has the right shear but is not
+// free of divergence, which matters for particles whose centres touch walls: a normal velocity quadratic in the wall's
+// cell changes K of thermovibration run 21 on 10^3 cells from 0.249 to 0.259.
 #pragma once
 
 #include "solver/coupling/spreading.hpp"
@@ -54,30 +41,6 @@ struct Trilinear {
         const int first = x < axis.centre(cell) ? cell - 1 : cell;
         const double share = (x - axis.centre(first)) * axis.per_spacing(first + 1);
         return {first, {1 - share, share}};
-    }
-};
-
-struct Solenoidal {
-    static constexpr Hats hats = Hats::metric;
-    [[nodiscard]] static flow::Place find(const flow::Axis& axis, double x) { return axis.locate(x); }
-    [[nodiscard]] static AxisWeights<3> own(const flow::Axis& axis, bool periodic, double /*x*/, flow::Place place) {
-        const int n = axis.cells();
-        const double s = place.cell - 1 + place.offset;  // 0 ... n, face f at f - 1
-        int nearest = static_cast<int>(s + 0.5);
-        double d = s - nearest;
-        if (!periodic && nearest == 0) return {1, {0, s, 0}};
-        if (!periodic && nearest == n) return {n - 1, {0, n - s, 0}};
-        if (nearest == n) nearest = 0;  // the same face, whose neighbours are stored beside face 1
-        return {nearest, {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)}};
-    }
-    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool periodic, double x, flow::Place place) {
-        const int n = axis.cells();
-        const int first = place.offset < 0.5 ? place.cell - 1 : place.cell;
-        double share = place.offset < 0.5 ? place.offset + 0.5 : place.offset - 0.5;
-        if (!periodic && first == 0) share = 1;
-        if (!periodic && first == n) share = 0;
-        const double scale = 1 / axis.stretch(x);
-        return {first, {(1 - share) * axis.width(first) * scale, share * axis.width(first + 1) * scale}};
     }
 };
 

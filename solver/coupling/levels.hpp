@@ -54,28 +54,17 @@ struct OneWayMirrored {
     }
 };
 
-struct ForceForm {
-    static constexpr bool per_fluid_volume = false;
-    static Vec3 force_on_fluid(const Sphere& sphere, const Vec3& rate, double vibration) {
-        Vec3 force;
-        for (std::size_t d = 0; d < 3; ++d) force[d] = -sphere.volume() * sphere.density_ratio * rate[d];
-        force[static_cast<std::size_t>(sphere.direction)] +=
-            sphere.volume() * (sphere.density_ratio - 1) * sphere.acceleration * vibration;
-        return force;
-    }
-};
-
-struct EquationNine {
-    static constexpr bool per_fluid_volume = true;
-    static Vec3 force_on_fluid(const Sphere& sphere, const Vec3& rate, double /*vibration*/) {
-        Vec3 force;
-        for (std::size_t d = 0; d < 3; ++d) force[d] = -sphere.volume() * sphere.density_ratio * rate[d];
-        return force;
-    }
-};
+/// Returns what a particle gives the fluid: its reaction, with the vibrational buoyancy.
+inline Vec3 force_on_fluid(const Sphere& sphere, const Vec3& rate, double vibration) {
+    Vec3 force;
+    for (std::size_t d = 0; d < 3; ++d) force[d] = -sphere.volume() * sphere.density_ratio * rate[d];
+    force[static_cast<std::size_t>(sphere.direction)] +=
+        sphere.volume() * (sphere.density_ratio - 1) * sphere.acceleration * vibration;
+    return force;
+}
 
 /// Momentum budget: sums over all particles along the vibration, in units of rho alpha^2. They are the force on the
-/// fluid in the last step, and the vibrational buoyancy (xi - 1) gamma s N v_p. In the force form the difference is the
+/// fluid in the last step, and the vibrational buoyancy (xi - 1) gamma s N v_p. The difference is the
 /// inertia of the particles, sum xi v_p dV_p/dt.
 struct MomentumBudget {
     double given = 0;
@@ -83,13 +72,10 @@ struct MomentumBudget {
 };
 
 /// Two-way coupling: deposits particle forces on the faces as accelerations of the fluid.
-template <class Form>
 class TwoWay {
 public:
     static constexpr bool acts_on_fluid = true;
     static constexpr bool mirrored = false;
-    /// Smallest share of fluid in a cell: 1 - 0.63, random close packing.
-    static constexpr double least_fluid = 0.37;
 
     /// kernel_width, hats: see spreading.hpp.
     TwoWay(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles,
@@ -98,9 +84,7 @@ public:
           deposit_(grid, sides, kernel_width, hats),
           planes_(grid.cells(2) + 2),
           rate_(particles, Vec3{}),
-          source_(flow::face_vectors(grid)) {
-        if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
-    }
+          source_(flow::face_vectors(grid)) {}
 
     /// Sets the threads that compute; no bit depends on their number.
     void use(const Slabs& slabs) {
@@ -115,24 +99,12 @@ public:
         budget_ = {0, static_cast<double>(rate_.size()) * sphere_.volume() * (sphere_.density_ratio - 1) *
                           sphere_.acceleration * vibration};
         for (const Vec3& rate : rate_)
-            budget_.given +=
-                Form::force_on_fluid(sphere_, rate, vibration)[static_cast<std::size_t>(sphere_.direction)];
+            budget_.given += force_on_fluid(sphere_, rate, vibration)[static_cast<std::size_t>(sphere_.direction)];
         cuts_.make(rate_.size(), planes_, slabs_, [&](std::size_t p) { return stencils[p].planes(); });
         cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
-            stencils[p].scatter(Form::force_on_fluid(sphere_, rate_[p], vibration), source_, own);
+            stencils[p].scatter(force_on_fluid(sphere_, rate_[p], vibration), source_, own);
         });
         deposit_.spread(source_);
-        if constexpr (Form::per_fluid_volume) {
-            FaceDeposit::clear(solid_, slabs_);
-            const double v = sphere_.volume();
-            cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
-                stencils[p].scatter({v, v, v}, solid_, own);
-            });
-            deposit_.spread(solid_);
-            for (std::size_t d = 0; d < 3; ++d)
-                each_of(source_[d].size(), slabs_,
-                        [&](std::size_t m) { source_[d].data()[m] /= std::max(1 - solid_[d].data()[m], least_fluid); });
-        }
         return source_;
     }
 
@@ -142,7 +114,7 @@ public:
 
     /// Returns the force of particle p on the fluid in this step.
     [[nodiscard]] Vec3 force(std::size_t p, double vibration) const {
-        return Form::force_on_fluid(sphere_, rate_[p], vibration);
+        return force_on_fluid(sphere_, rate_[p], vibration);
     }
 
     void save(std::vector<std::byte>& into) const { append_bytes<Vec3>(into, rate_); }
@@ -157,7 +129,6 @@ private:
     MomentumBudget budget_;
     std::vector<Vec3> rate_;  // dV_p/dt of the last step
     flow::FaceVectors source_;
-    flow::FaceVectors solid_;  // per_fluid_volume only
 };
 
 }  // namespace grainsweep::coupling

@@ -65,16 +65,15 @@ private:
     Values rate_{}, weight_{};
 };
 
-/// Two-way coupling in which the drag of a particle does not include its own wake. Form: see levels.hpp.
-template <class Form>
-class TwoWayWithoutOwnWake : public TwoWay<Form> {
+/// Two-way coupling in which the drag of a particle does not include its own wake.
+class TwoWayWithoutOwnWake : public TwoWay {
 public:
     static constexpr bool subtracts_own_wake = true;
 
     /// dt: time step; other arguments as of TwoWay.
     TwoWayWithoutOwnWake(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles,
                          double kernel_width, double dt, Hats hats = Hats::linear)
-        : TwoWay<Form>(grid, sides, sphere, particles, kernel_width, hats),
+        : TwoWay(grid, sides, sphere, particles, kernel_width, hats),
           grid_(grid),
           sphere_(sphere),
           width_(kernel_width),
@@ -108,11 +107,11 @@ public:
     }
 
     void save(std::vector<std::byte>& into) const {
-        TwoWay<Form>::save(into);
+        TwoWay::save(into);
         append_bytes<Wake>(into, wakes_);
     }
     void restore(std::span<const std::byte>& from) {
-        TwoWay<Form>::restore(from);
+        TwoWay::restore(from);
         take_bytes<Wake>(from, wakes_);
     }
 

@@ -38,7 +38,7 @@ enum class Nodes {
 /// Returns the lengths of the nodes: deposit = density x length; 0 for a face on a wall, 1 for Nodes::flux.
 [[nodiscard]] Eigen::VectorXd node_lengths(const flow::Axis& axis, bool periodic, Nodes nodes);
 
-/// Deposit of a uniform cloud on cells of unequal width (Trilinear, Solenoidal).
+/// Deposit of a uniform cloud on cells of unequal width.
 enum class Hats {
     linear,  ///< weights linear between centres: levelling is needed
     metric   ///< weights scaled with the widths: no levelling

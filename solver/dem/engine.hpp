@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,6 +73,9 @@ struct Setup {
     Vec3 gravity{0, 0, -9.81};  ///< m/s2
     Shaking shaking;
     double time_step = 1e-5;  ///< s
+    /// Largest share, in (0, 1], of the longest stable step of the contacts: the engine computes a step in parts where
+    /// it is longer (step_control.hpp). Empty: the step is fixed, and a step beyond the limit is a fault.
+    std::optional<double> step_share{};
     std::vector<Sphere> spheres;
     std::vector<ToCome> to_come;  ///< spheres that may be added later
     std::vector<Wall> walls;
@@ -84,7 +88,7 @@ struct Setup {
 /// Method of computing a Setup. It does not change the result beyond the stated error of the precision.
 struct Method {
     enum class Precision { mixed, double_precision };
-    enum class Path { best, baseline, avx2, avx512 };  ///< best: the widest that this processor has
+    enum class Path { best, baseline, avx2, avx512 };  ///< best: the widest of this processor; baseline: not on x86
     Precision precision = Precision::double_precision;
     Path path = Path::best;
     double skin = 0;  ///< m; skin of the neighbour list, 0: chosen by the engine
@@ -133,10 +137,11 @@ struct WallLoad {
 
 /// Counts of work, for cost and benchmarks.
 struct Work {
-    std::int64_t steps = 0;
-    double particle_steps = 0;  ///< mobile particles times steps
-    double resting_steps = 0;   ///< of these, steps of particles at rest (Method::rest_speed)
-    double pair_visits = 0;     ///< list entries evaluated
+    std::int64_t steps = 0;       ///< time steps completed
+    std::int64_t most_parts = 1;  ///< largest number of parts of a step
+    double particle_steps = 0;    ///< mobile particles times steps, or parts of steps
+    double resting_steps = 0;     ///< of these, steps of particles at rest (Method::rest_speed)
+    double pair_visits = 0;       ///< list entries evaluated
     std::int64_t rebuilds = 0;
     std::map<std::string, double, std::less<>> seconds;  ///< by phase, if measured
 };
@@ -150,6 +155,12 @@ public:
 
     /// Advances by `steps` time steps; stops as soon as the state is not sound (fault()).
     virtual void run(std::int64_t steps) = 0;
+    /// Advances by one part of a time step, the whole step if it has one part (Setup::step_share).
+    virtual void run_part() = 0;
+    /// Returns the length of the last part, s.
+    [[nodiscard]] virtual double part() const = 0;
+    /// Returns whether the last part has completed a step.
+    [[nodiscard]] virtual bool at_step() const = 0;
     /// Sets the largest number of threads of the next run(), including the calling thread; 0: one for each core. With
     /// few particles, fewer threads are used. No bit depends on the number. The double-precision engine always uses
     /// one. Returns the number that suits the present particles.

@@ -29,4 +29,8 @@ double shortest_time(const Material& m, double radius, double speed) {
                                              : std::min(rayleigh_time(m, radius), hertz_contact_time(m, radius, speed));
 }
 
+double step_share(double fraction) {
+    return std::min(4 * fraction, 0.95);
+}
+
 }  // namespace grainsweep::dem

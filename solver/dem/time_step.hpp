@@ -25,4 +25,8 @@ namespace grainsweep::dem {
 /// Returns the shortest of the times that limit a step with the material's law, s.
 [[nodiscard]] double shortest_time(const Material& material, double radius, double speed);
 
+/// Returns the largest share of the longest stable step of the contacts (step_control.hpp) for a step that is a
+/// fraction of shortest_time(): 4 times the fraction, so that finer settings stay finer under load; at most 0.95.
+[[nodiscard]] double step_share(double fraction);
+
 }  // namespace grainsweep::dem

@@ -66,13 +66,6 @@ public:
         const double offset = in_cells - cell;
         return {cell + 1, offset >= 0 ? offset : 0};
     }
-    /// Returns dx/ds of the smooth map at a position (the local cell width).
-    [[nodiscard]] double stretch(double x) const {
-        const double equal = 2 * half_ / mapped_;
-        if (clustering_ == 0) return equal;
-        const double a = std::clamp((x - middle_) / half_, -1.0, 1.0) * tanh_;
-        return equal * clustering_ / tanh_ * (1 - a * a);
-    }
 
 private:
     Axis(int cells, double low, double high, double clustering);

@@ -106,9 +106,27 @@ std::int64_t Run::next_stop() const {
 void Run::advance(double until) {
     while (!finished() && health().stable() && time() < until) {
         const std::int64_t stop = next_stop();
-        step_ = kit::run_towards(*engine_, step_, stop, spec_.time_step, until);
+        if (at_steps_[phase_].empty())
+            step_ = kit::run_towards(*engine_, step_, stop, spec_.time_step, until);
+        else
+            step_ += run_watched_step();
         if (health().stable() && step_ == stop) stop_here();
     }
+}
+
+/// Runs a step, part by part, and shows each part to the probes that attend to it. Returns the number of completed
+/// steps: 0 after a fault.
+std::int64_t Run::run_watched_step() {
+    do {
+        engine_->run_part();
+        if (!health().stable()) return 0;
+        Sight sight = look(Contacts::of_step);
+        sight.time = spec_.time_step * static_cast<double>(step_ + 1);
+        sight.time_step = engine_->part();
+        sight.by_partners = partner_order_.of(contacts_);
+        for (Probe* probe : at_steps_[phase_]) probe->step(sight);
+    } while (!engine_->at_step());
+    return 1;
 }
 
 void Run::begin_phase() {
@@ -138,11 +156,6 @@ void Run::end_phase(std::uint8_t condition) {
 }
 
 void Run::stop_here() {
-    if (!at_steps_[phase_].empty()) {
-        Sight sight = look(Contacts::of_step);
-        sight.by_partners = partner_order_.of(contacts_);
-        for (Probe* probe : at_steps_[phase_]) probe->step(sight);
-    }
     if (step_ > phase_begin_) feed();
     const bool framed = frame_ <= phase().frames && step_ == step_of_frame(frame_);
     if (framed) take_frame();

@@ -58,6 +58,7 @@ private:
     /// Returns the future steps with which a feed has already been credited.
     [[nodiscard]] std::int64_t credited_ahead(const Feed& feed) const;
     void take_frame();
+    std::int64_t run_watched_step();
     /// Returns the number of the condition that ends the phase now, from 1; 0: none.
     [[nodiscard]] std::uint8_t ended_by();
     /// Returns whether the conditions of the phase are checked in this step.

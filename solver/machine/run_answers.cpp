@@ -65,6 +65,7 @@ void Run::observe(Observations& into) const {
     into.scalars["particles"] = static_cast<double>(engine_->size()) - static_cast<double>(glued_);
     into.scalars["lost"] = static_cast<double>(species_.size()) - static_cast<double>(engine_->size());
     into.scalars["max_overlap"] = std::max(peak_overlap_, engine_->peak_overlap());
+    into.scalars["smallest_step"] = spec_.time_step / static_cast<double>(engine_->work().most_parts);
     for (std::size_t k = 0; k < feeders_.size(); ++k) {
         into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();
         into.scalars[spec_.feeds[k].name + "_waiting"] = std::max(0.0, feeders_[k].waiting());

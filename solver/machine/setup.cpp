@@ -119,6 +119,7 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     if (spec.densities.size() > 1) setup.kinds = {spec.densities, spec.pairs};
     setup.gravity = spec.gravity;
     setup.time_step = spec.time_step;
+    setup.step_share = spec.step_share;
     setup.spheres = filled.spheres;
     setup.deepest_in_walls = deepest_in_walls;
     setup.walls = walls_in(spec, 0, {{0.0}, {}});

@@ -159,8 +159,9 @@ struct Spec {
     std::vector<Measure> measures;
     std::vector<TimeOf> times;
     std::vector<Derived> derived;
-    std::vector<Warning> warnings;  ///< warnings about the machine file
-    double time_step = 0;           ///< s
+    std::vector<Warning> warnings;     ///< warnings about the machine file
+    double time_step = 0;              ///< s
+    std::optional<double> step_share;  ///< of dem::Setup
     dem::Method method;
 };
 

@@ -75,8 +75,13 @@ std::string shown_scene(std::string_view name) {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> path_words = {"baseline", "avx2", "avx512"};
-constexpr std::array paths = {dem::Method::Path::baseline, dem::Method::Path::avx2, dem::Method::Path::avx512};
+#if defined(__x86_64__)
+constexpr std::array<std::string_view, 2> path_words = {"avx2", "avx512"};
+constexpr std::array paths = {dem::Method::Path::avx2, dem::Method::Path::avx512};
+#else
+constexpr std::array<std::string_view, 1> path_words = {"baseline"};
+constexpr std::array paths = {dem::Method::Path::baseline};
+#endif
 
 }  // namespace
 
@@ -111,18 +116,17 @@ int allowed_threads() {
 }
 
 std::string_view instruction_path() {
-    switch (dem::fast::best_path()) {
-        case dem::Method::Path::avx512:
-            return "avx512";
-        case dem::Method::Path::avx2:
-            return "avx2";
-        default:
-#if defined(__x86_64__)
-            return "x86-64-v2";
-#else
-            return "baseline";
-#endif
-    }
+    const auto at = std::ranges::find(paths, dem::fast::best_path());
+    return path_words[static_cast<std::size_t>(at - paths.begin())];
+}
+
+bool processor_suffices() {
+    return dem::fast::supports(dem::Method::Path::best);
+}
+
+std::string unsupported_processor(bool suffices) {
+    if (suffices) return "";
+    return "this processor lacks AVX2, which the program needs: Intel Core has it since 2013, AMD since 2015.";
 }
 
 }  // namespace grainsweep

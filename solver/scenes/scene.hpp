@@ -146,15 +146,19 @@ SharedScene enter_scene(SceneInfo scene);
 /// Returns the label of the scene of this name; the name if it has no label.
 [[nodiscard]] std::string shown_scene(std::string_view name);
 
-/// Returns the instruction set of the solver's inner loops in this process: "x86-64-v2", "avx2", "avx512"; on other
-/// processors "baseline".
+/// Returns the instruction set of the solver's inner loops in this process, one of instruction_path_words().
 [[nodiscard]] std::string_view instruction_path();
-/// Returns the words of choose_instruction_path: "baseline" (x86-64-v2, NEON), "avx2", "avx512".
+/// Returns the words of choose_instruction_path: "avx2" and "avx512"; on other processors than x86 "baseline".
 [[nodiscard]] std::span<const std::string_view> instruction_path_words();
 /// Makes the particle loops of this process use a narrower instruction set than the widest available, for tests and
 /// benchmarks. Call it before a scene is made. Returns false without a change if this processor lacks the set. Throws
 /// std::invalid_argument for any other word.
 [[nodiscard]] bool choose_instruction_path(std::string_view word);
+
+/// Returns whether this processor has an instruction set of the particle loops.
+[[nodiscard]] bool processor_suffices();
+/// Returns why the program cannot run on a processor; empty if it can.
+[[nodiscard]] std::string unsupported_processor(bool suffices = processor_suffices());
 
 /// Sets the largest number of threads of a case in this process; 0: one for each core; initially 1. May be called from
 /// any thread; the case uses the number from its next slice on.

@@ -82,13 +82,10 @@ std::vector<ParameterSpec> parameters() {
              "their volume, with solids pressure from an algebraic (ddpm) or transported (ddpm_ktgf) granular "
              "temperature; or with resolved contacts (cfd_dem)",
              level_names([](const LevelInfo&) { return true; }), {with_particles}),
-        word("source_form",
-             "two-way force on the fluid: all that the fluid does to the particles, or the literal -m dV/dt of eq. 9",
-             {"force", "eq9"}, {with_particles, two_way}),
         word("own_wake",
              "what a particle does to the fluid at its own place: felt as if others had done it, or taken out of the "
              "fluid it feels",
-             {"kept", "subtracted"}, {with_particles, two_way, {"source_form", Condition::is_word, {"force"}}}),
+             {"kept", "subtracted"}, {with_particles, two_way}),
         word("wall_contact", "a particle meets a wall with its surface or with its centre", {"radius", "centre"},
              {with_particles}),
         real("restitution", "1", "of the rebound from walls", 1, between(0, 1), {with_particles, without_contacts}),
@@ -106,8 +103,6 @@ std::vector<ParameterSpec> parameters() {
         word("particle_start",
              "particles start with the flow, from rest, or are released into the flow once it is periodic",
              {"with_flow", "periodic_flow"}, {with_particles, vibrated, one_way}),
-        word("interpolation", "of the fluid velocity at a particle: linear, or quadratic and exactly divergence-free",
-             {"trilinear", "solenoidal"}, {with_particles}),
         real("kernel_width", "diameters",
              "standard deviation of the Gaussian over which a particle's force and volume are spread; no narrower than "
              "the cells of the grid",

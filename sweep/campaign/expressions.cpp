@@ -68,7 +68,9 @@ std::vector<Expression> in_order(std::vector<Expression> expressions) {
 void evaluate_expressions(std::span<const Expression> expressions, Inputs& inputs) {
     for (const auto& [name, formula, whole] : expressions) {
         const double x = formula([&](std::string_view other) { return as_number(inputs.find(other)->second); });
-        inputs.find(name)->second = coerced(Value{x}, whole ? Value{std::int64_t{0}} : Value{0.0});
+        Value kind = 0.0;
+        if (whole) kind = std::int64_t{0};
+        inputs.find(name)->second = coerced(Value{x}, kind);
     }
 }
 

@@ -13,8 +13,6 @@
 namespace grainsweep::campaign {
 namespace {
 
-using machine::OptionSpec;
-
 /// Kind of an entry of "measure".
 enum class EntryKind { probe, time_of, expression };
 
@@ -69,25 +67,26 @@ const machine::ReductionInfo& reduction_of(const Cursor& place, const machine::P
     return *machine::find_reduction(place["as"].word(words));
 }
 
-machine::OptionValue option_value(const Cursor& place, const OptionSpec& option, const MachineReading& reading) {
+machine::OptionValue option_value(const Cursor& place, const machine::OptionSpec& option,
+                                  const MachineReading& reading) {
     switch (option.kind) {
-        case OptionSpec::Kind::number:
+        case machine::OptionSpec::Kind::number:
             return reading.scope.number(place, option.unit, option.bounds);
-        case OptionSpec::Kind::vector:
+        case machine::OptionSpec::Kind::vector:
             return reading.scope.vector(place, option.unit);
-        case OptionSpec::Kind::direction:
+        case machine::OptionSpec::Kind::direction:
             return reading.scope.direction(place);
-        case OptionSpec::Kind::region:
+        case machine::OptionSpec::Kind::region:
             return reading.scope.region(place);
-        case OptionSpec::Kind::species:
+        case machine::OptionSpec::Kind::species:
             return reading.scope.places_in(place, reading.species, "species");
-        case OptionSpec::Kind::walls: {
+        case machine::OptionSpec::Kind::walls: {
             std::vector<std::size_t> walls;
             for (const std::size_t named : reading.scope.places_in(place, reading.walls, "wall"))
                 for (const std::size_t one : reading.repeats[named]) walls.push_back(one);
             return walls;
         }
-        case OptionSpec::Kind::word:
+        case machine::OptionSpec::Kind::word:
             break;
     }
     return reading.scope.word(place, option.words);
@@ -98,7 +97,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
     const WordList known = names_of(probe.options);
     for (const auto& [key, here] :
          place.members(fmt::format("must be an object with the options of '{}'", probe.name))) {
-        const auto option = std::ranges::find(probe.options, key, &OptionSpec::name);
+        const auto option = std::ranges::find(probe.options, key, &machine::OptionSpec::name);
         if (option == probe.options.end())
             throw wrong_question(
                 here.path(), "",
@@ -106,7 +105,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
                 nearest_word(key, known));
         options.set(key, option_value(here, *option, reading));
     }
-    for (const OptionSpec& option : probe.options)
+    for (const machine::OptionSpec& option : probe.options)
         if (option.required && !options.has(option.name))
             throw wrong_question(place.path(), "", fmt::format("key '{}' is missing: {}", option.name, option.meaning));
     if (probe.flaw != nullptr)
@@ -322,13 +321,14 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                            "fewer than two frames in a block"});
     }
     if (all.empty()) measures.refuse("a machine needs a measurement");
-    const auto automatic = [&all](const char* name, const char* meaning) {
+    const auto automatic = [&all](const char* name, const char* meaning, const char* unit = "1") {
         if (std::ranges::find(all, name, &ObservableSpec::name) == all.end())
-            all.push_back({name, "1", meaning, Shape::scalar, {}, {}});
+            all.push_back({name, unit, meaning, Shape::scalar, {}, {}});
     };
     automatic("particles", "particles present at the end");
     automatic("lost", "particles that passed an open face of the domain");
     automatic("max_overlap", "deepest overlap of two particles over the diameter of the smaller one");
+    automatic("smallest_step", "shortest time step; steps are halved where loaded contacts demand it", "s");
     if (const auto feeds = top.find("feed")) {
         std::set<std::string> feeders;
         for (const auto& feed : feeds->elements()) {

@@ -1,4 +1,5 @@
 // Main function, and the only place that catches all exceptions.
+#include "solver/scenes/scene.hpp"
 #include "stats/several_responses.hpp"
 #include "sweep/campaign/visible_stream.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -58,6 +59,7 @@ int main(int argc, char** argv) {
     occupy_standard_descriptors();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     stats::allow_fits_at_once(workers::job_cores());
+    if (const auto why = unsupported_processor(); !why.empty()) return complain(broken_world, why);
     const campaign::VisibleStream output(std::cout), errors(std::cerr);
     try {
         return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());

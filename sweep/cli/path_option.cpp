@@ -4,6 +4,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>
@@ -11,9 +12,9 @@
 namespace grainsweep::cli {
 
 void declare_path(Parser& parser, std::string& word, std::string_view otherwise) {
-    parser.add_option(
-        "--path WORD", word,
-        fmt::format("instruction set of the particle loops: baseline, avx2 or avx512; default: {}", otherwise));
+    parser.add_option("--path WORD", word,
+                      fmt::format("instruction set of the particle loops: {}; default: {}",
+                                  fmt::join(instruction_path_words(), " or "), otherwise));
 }
 
 void use_path(const std::string& word) {
@@ -21,7 +22,7 @@ void use_path(const std::string& word) {
     const auto words = instruction_path_words();
     if (std::ranges::find(words, word) == words.end()) {
         const std::vector<std::string> known(words.begin(), words.end());
-        throw campaign::wrong_question("--path", word, "must be 'baseline', 'avx2' or 'avx512'",
+        throw campaign::wrong_question("--path", word, fmt::format("must be '{}'", fmt::join(known, "' or '")),
                                        campaign::nearest_word(word, known));
     }
     if (!choose_instruction_path(word))
@@ -31,9 +32,8 @@ void use_path(const std::string& word) {
 }
 
 void use_path_of_old(std::string_view path) {
-    const std::string_view word = path == "x86-64-v2" ? "baseline" : path;
-    if (std::ranges::find(instruction_path_words(), word) != instruction_path_words().end())
-        (void)choose_instruction_path(word);  // a processor without it keeps its widest; the comparison says so
+    if (std::ranges::find(instruction_path_words(), path) != instruction_path_words().end())
+        (void)choose_instruction_path(path);  // a processor without it keeps its widest; the comparison says so
 }
 
 }  // namespace grainsweep::cli

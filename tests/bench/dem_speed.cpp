@@ -1,6 +1,6 @@
 // Cost of a DEM step: one JSON line per scene and instruction path.
 //
-//   bench_dem [--scene NAME] [--path baseline|avx2|avx512] [--steps N] [--bed FILE --angle DEGREES]
+//   bench_dem [--scene NAME] [--path avx2|avx512] [--steps N] [--bed FILE --angle DEGREES]
 //
 // Besides the scenes: `laws`, the step of one settled bed under every combination of laws that is compiled; `rebuild`,
 // making the lists anew; `pairs`, what a particle costs by itself and what a contact adds; `kinds`, the drum with one

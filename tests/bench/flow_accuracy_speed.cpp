@@ -197,7 +197,6 @@ int main(int argc, char** argv) {
                     steps * step);
         for (const double clustering : {0.0, 1.5}) {
             interpolate<coupling::Trilinear>("trilinear", cells, clustering);
-            interpolate<coupling::Solenoidal>("solenoidal", cells, clustering);
         }
     }
     tests::mark_dominated(settings);

@@ -109,10 +109,7 @@ int main(int argc, char** argv) {
             mirrored(half, heat.vibration, motion, box, cloud, coupling::OneWayMirrored{});
         measure("one_way_mirrored", [&] { mirrored.step(); });
     }
-    auto solenoidal = suspension(coupling::Solenoidal{}, coupling::OneWay{});
-    measure("one_way_solenoidal", [&] { solenoidal.step(); });
-    auto two_way =
-        suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 0.03));
+    auto two_way = suspension(coupling::Trilinear{}, coupling::TwoWay(grid, walls, sphere, particles, 0.03));
     measure("two_way_force", [&] { two_way.step(); });
 
     const auto dense = [&]<class Interaction>(const char* what, Interaction interaction) {

@@ -130,9 +130,7 @@ int main(int argc, char** argv) {
     const auto& c = cavity;
     compare(o, "flow", [&] { return c.fluid(); });
     compare(o, "one_way", [&] { return c.dilute(coupling::OneWay{}); });
-    compare(o, "two_way", [&] {
-        return c.dilute(coupling::TwoWay<coupling::ForceForm>(c.grid, c.sides, c.sphere, spheres, kernel_width));
-    });
+    compare(o, "two_way", [&] { return c.dilute(coupling::TwoWay(c.grid, c.sides, c.sphere, spheres, kernel_width)); });
     compare(o, "ddpm", [&] { return c.pressed<coupling::AlgebraicTemperature>(); });
     compare(o, "ddpm_ktgf", [&] { return c.pressed<coupling::TransportedTemperature>(); });
     const double stiffness = coupling::SpringContacts::stiffness(c.sphere, 0.01, c.time_step);

@@ -77,7 +77,7 @@ TEST(Checkpoints, ThoseOfAnotherInstructionPathAreSweptWithTheirCase) {
         "fixed": {"wait_seconds": 0.1}, "design": {"kind": "halton", "points": 2},
         "execution": {"workers": 2, "launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0", "sh"]}})");
     {
-        Process run(program_command({"run", "c.json", "--quiet", "--path", "baseline"}), folder.path());
+        Process run(program_command({"run", "c.json", "--quiet", "--path", "avx2"}), folder.path());
         await_checkpoint(run, folder / "c.artefacts");
         run.signal(SIGKILL);
         run.wait();

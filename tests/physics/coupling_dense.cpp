@@ -138,9 +138,9 @@ TEST(DenseSuspension, BecomesTwoWayWhenItsVolumeVanishes) {
         const Walls around = box(closed, sphere.radius());
         const auto cloud = random_cloud(particles, around, stats::Stream(2, 1));
         auto dense = setting.together<NoInteraction>(vibration, cloud);
-        Suspension<flow::NoHeat, TwoWay<ForceForm>, Trilinear, SchillerNaumann> two_way(
+        Suspension<flow::NoHeat, TwoWay, Trilinear, SchillerNaumann> two_way(
             still_fluid(setting.grid, closed, 18, setting.dt), vibration, Motion<SchillerNaumann>(sphere, setting.dt),
-            around, cloud, TwoWay<ForceForm>(setting.grid, closed, sphere, particles, setting.kernel_width));
+            around, cloud, TwoWay(setting.grid, closed, sphere, particles, setting.kernel_width));
         double far = 0;
         double size = 0;
         for (int s = 0; s < 40; ++s) {

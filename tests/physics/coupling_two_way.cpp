@@ -29,9 +29,8 @@ TEST(TwoWay, ConservesMomentumToRoundOff) {
     const flow::Sides sides{periodic, periodic, periodic};
     const std::size_t n = 60;
     for (const double kernel_width : {0.0, 0.1}) {
-        Together<TwoWay<ForceForm>> pair(
-            still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt), box,
-            random_cloud(n, box, stats::Stream(1, 1)), TwoWay<ForceForm>(grid, sides, sphere, n, kernel_width));
+        Together<TwoWay> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt), box,
+                              random_cloud(n, box, stats::Stream(1, 1)), TwoWay(grid, sides, sphere, n, kernel_width));
         const auto fluid_momentum = [&](std::size_t d) {
             double sum = 0;
             for (int k = 1; k <= 8; ++k)
@@ -76,8 +75,8 @@ TEST(TwoWay, AUniformCloudMovesNothing) {
                         {(i + 0.5) / m - 0.5, (j + 0.5) / m - 0.5, squeeze < 1 ? z * squeeze - 0.2 : z});
                     cloud.velocity.push_back({});
                 }
-        Together<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), {}, Motion<SchillerNaumann>(sphere, dt), box,
-                                         cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 0.1, hats));
+        Together<TwoWay> pair(still_fluid(grid, sides, 18, dt), {}, Motion<SchillerNaumann>(sphere, dt), box, cloud,
+                              TwoWay(grid, sides, sphere, cloud.size(), 0.1, hats));
         for (int s = 0; s < 10; ++s) pair.step();
         return observables::peak_velocity(grid, pair.fluid().velocity());
     };
@@ -157,8 +156,8 @@ TEST(TwoWay, ACloudLayerMovesAsAHeavyFluidLayer) {
                 cloud.velocity.push_back({});
             }
     const double phi = 8 * sphere.volume() * n * n * n;
-    Together<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt),
-                                     box, cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 0));
+    Together<TwoWay> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt), box, cloud,
+                          TwoWay(grid, sides, sphere, cloud.size(), 0));
     Boussinesq heat;
     heat.diffusivity = 0;
     heat.buoyancy = -1;
@@ -182,25 +181,6 @@ TEST(TwoWay, ACloudLayerMovesAsAHeavyFluidLayer) {
         }
     }
     EXPECT_GT(largest, 0.1);
-}
-
-// As printed, equation 9 lacks the reaction to the vibrational buoyancy: the fluid hardly notices the same cloud.
-TEST(TwoWay, EquationNineLacksTheBuoyancyOfTheCloud) {
-    const Grid grid = cube(10);
-    const flow::Sides sides{walls, walls, walls};
-    const Sphere sphere{3.49, 3.1e-6, 18, 1.09e9, 1};
-    const double dt = 2 * 3.14159265358979323846 / 2.33e4 / 32;
-    const flow::Vibration vibration{2.33e4, 0};
-    const Walls box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, sphere.radius(), 1};
-    const auto cloud = random_cloud(500, box, stats::Stream(5, 1));
-    const auto run = [&](auto form) {
-        using Form = decltype(form);
-        Together<TwoWay<Form>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt),
-                                    box, cloud, TwoWay<Form>(grid, sides, sphere, cloud.size(), 0.1));
-        for (int s = 0; s < 64; ++s) pair.step();
-        return observables::kinetic_energy(grid, pair.fluid().velocity());
-    };
-    EXPECT_LT(run(EquationNine{}), 1e-3 * run(ForceForm{}));
 }
 
 template <class Level>
@@ -242,9 +222,8 @@ std::vector<std::byte> state_after(int steps, int cut) {
 
 TEST(Suspension, ContinuesBitForBitFromASavedState) {
     EXPECT_EQ(state_after<OneWay>(12, 0), state_after<OneWay>(12, 7));
-    EXPECT_EQ(state_after<TwoWay<ForceForm>>(12, 0), state_after<TwoWay<ForceForm>>(12, 7));
-    EXPECT_EQ(state_after<TwoWay<EquationNine>>(12, 0), state_after<TwoWay<EquationNine>>(12, 7));
-    EXPECT_EQ(state_after<TwoWayWithoutOwnWake<ForceForm>>(12, 0), state_after<TwoWayWithoutOwnWake<ForceForm>>(12, 7));
+    EXPECT_EQ(state_after<TwoWay>(12, 0), state_after<TwoWay>(12, 7));
+    EXPECT_EQ(state_after<TwoWayWithoutOwnWake>(12, 0), state_after<TwoWayWithoutOwnWake>(12, 7));
 }
 
 }  // namespace grainsweep::tests::coupling_two_way_test

@@ -150,7 +150,7 @@ TEST(PowderSpreading, PowderThatLeftTheBoxHasPassedTheBlade) {
             count += x[0] >= 0.015 + travel ? 1 : 0;
             farthest = std::max(farthest, x[0]);
         }
-        EXPECT_LT(farthest, 0.28) << "none has left ahead of the blade";
+        EXPECT_LT(farthest, 0.297) << "none has left by the open face at 0.3 m";
         return count;
     };
     scene->advance(0.05 + 0.02 / 0.2 + 1e-9);  // at or one step beyond t1

@@ -10,8 +10,8 @@
 
 namespace grainsweep::tests::lone_sphere {
 
-using Subtracted = TwoWayWithoutOwnWake<ForceForm>;
-using Kept = TwoWay<ForceForm>;
+using Subtracted = TwoWayWithoutOwnWake;
+using Kept = TwoWay;
 
 inline constexpr double dt = 1e-5, acceleration = 9e4;
 

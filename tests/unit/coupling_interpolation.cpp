@@ -36,50 +36,13 @@ flow::Flow<flow::NoHeat> projected(const Grid& grid, const flow::Sides& sides) {
     return fluid;
 }
 
-template <class Kernel>
 Vec3 gather(const Grid& grid, const std::array<bool, 3>& wraps, const flow::FaceVectors& field, const Vec3& x) {
-    return Stencil<Kernel>(grid, wraps, x).gather(field);
-}
-
-template <class Kernel>
-double largest_divergence(const Grid& grid, const flow::Sides& sides) {
-    const auto fluid = projected(grid, sides);
-    std::array<bool, 3> wraps{};
-    for (std::size_t d = 0; d < 3; ++d) wraps[d] = std::holds_alternative<flow::Periodic>(sides[d][0]);
-    double worst = 0;
-    for (std::uint64_t p = 0; p < 2000; ++p) {
-        Vec3 x = random_place(grid, p);
-        double divergence = 0;
-        for (std::size_t d = 0; d < 3; ++d) {
-            const Axis& axis = grid[static_cast<int>(d)];
-            const double e = 1e-5 * axis.length();
-            x[d] = std::min(std::max(x[d], axis.low() + e), axis.high() - e);
-            Vec3 after = x;
-            Vec3 before = x;
-            after[d] += e;
-            before[d] -= e;
-            divergence += (gather<Kernel>(grid, wraps, fluid.velocity(), after)[d] -
-                           gather<Kernel>(grid, wraps, fluid.velocity(), before)[d]) /
-                          (2 * e);
-        }
-        worst = std::max(worst, std::abs(divergence));
-    }
-    return worst;
+    return Stencil<Trilinear>(grid, wraps, x).gather(field);
 }
 
 const Grid uniform{{Axis::uniform(9, -0.5, 0.5), Axis::uniform(8, -0.5, 0.5), Axis::uniform(10, -0.5, 0.5)}};
 const Grid clustered{
     {Axis::clustered(9, -0.5, 0.5, 1.3), Axis::clustered(8, -0.5, 0.5, 1.5), Axis::clustered(10, -0.5, 0.5, 1)}};
-
-// The spline is piecewise quadratic, so a central difference inside a piece is exact to its round-off (1e-10); pieces
-// meet with continuous slopes, so straddling a knot leaves a second difference times e, below 1e-3.
-TEST(Solenoidal, HasNoDivergenceBetweenTheNodes) {
-    EXPECT_LT(largest_divergence<Solenoidal>(uniform, {walls, walls, walls}), 2e-3);
-    EXPECT_LT(largest_divergence<Solenoidal>(uniform, {periodic, slip, walls}), 2e-3);
-    EXPECT_LT(largest_divergence<Solenoidal>(clustered, {walls, walls, walls}), 2e-3);
-    // The trilinear field of the same nodes compresses by order one.
-    EXPECT_GT(largest_divergence<Trilinear>(uniform, {walls, walls, walls}), 0.1);
-}
 
 // The nodes of a plane flow against the wall y = 0 that obeys it and div V = 0: u = 2 a x y, v = -a y^2, a = 1.
 flow::FaceVectors stagnation(const Grid& grid) {
@@ -100,41 +63,29 @@ struct BesideWall {
     double divergence;
 };
 
-template <class Kernel>
 BesideWall beside_wall(const Grid& grid, double x, double y) {
     const auto field = stagnation(grid);
     const double e = 1e-3 * grid[1].width(1);
-    const auto at = [&](double px, double py) { return gather<Kernel>(grid, {}, field, {px, py, 0.5}); };
+    const auto at = [&](double px, double py) { return gather(grid, {}, field, {px, py, 0.5}); };
     return {at(x, y), (at(x + e, y)[0] - at(x - e, y)[0] + at(x, y + e)[1] - at(x, y - e)[1]) / (2 * e)};
 }
 
-// In the half cell beside a no-slip wall, at distance y < h/2, both kernels carry the particle towards the wall by
-// v = -a h y instead of -a y^2. Trilinear follows the shear u = 2 a x y exactly and so compresses by a (2 y - h);
-// the solenoidal kernel gives up the shear, u = a x h, and compresses nothing. Which one is asked for shows in the
-// accumulation of particles that may touch the wall with their centres (tests/bench/coupling_slow.cpp).
-TEST(BesideAWall, TrilinearKeepsTheShearAndSolenoidalTheVolume) {
+// In the half cell beside a no-slip wall, at distance y < h/2, the kernel carries the particle towards the wall by
+// v = -a h y instead of -a y^2. It follows the shear u = 2 a x y exactly and so compresses by a (2 y - h).
+TEST(Interpolation, KeepsTheShearBesideAWall) {
     const Axis axis = Axis::uniform(10, 0, 1);
     const Grid grid{{axis, axis, axis}};
     const double h = 0.1;
     const double x = 0.34;
     for (const double y : {0.005, 0.02, 0.04}) {
-        const auto linear = beside_wall<Trilinear>(grid, x, y);
+        const auto linear = beside_wall(grid, x, y);
         EXPECT_NEAR(linear.velocity[0], 2 * x * y, 1e-14);
         EXPECT_NEAR(linear.velocity[1], -h * y, 1e-14);
         EXPECT_NEAR(linear.divergence, 2 * y - h, 1e-10);
-        const auto spline = beside_wall<Solenoidal>(grid, x, y);
-        EXPECT_NEAR(spline.velocity[0], x * h, 1e-14);
-        EXPECT_NEAR(spline.velocity[1], -h * y, 1e-14);
-        EXPECT_NEAR(spline.divergence, 0, 1e-10);
     }
 }
 
-template <class Kernel>
-class EveryKernel : public testing::Test {};
-using Kernels = testing::Types<Trilinear, Solenoidal>;
-TYPED_TEST_SUITE(EveryKernel, Kernels);
-
-TYPED_TEST(EveryKernel, LetsNothingThroughAWall) {
+TEST(Interpolation, LetsNothingThroughAWall) {
     for (const Grid* grid : {&uniform, &clustered}) {
         const auto fluid = projected(*grid, {walls, walls, walls});
         for (std::uint64_t p = 0; p < 50; ++p)
@@ -142,12 +93,12 @@ TYPED_TEST(EveryKernel, LetsNothingThroughAWall) {
                 for (const double side : {-0.5, 0.5}) {
                     Vec3 x = random_place(*grid, p);
                     x[d] = side;
-                    EXPECT_NEAR(gather<TypeParam>(*grid, {}, fluid.velocity(), x)[d], 0, 1e-14);
+                    EXPECT_NEAR(gather(*grid, {}, fluid.velocity(), x)[d], 0, 1e-14);
                 }
     }
 }
 
-TYPED_TEST(EveryKernel, IsContinuousAcrossCells) {
+TEST(Interpolation, IsContinuousAcrossCells) {
     for (const Grid* grid : {&uniform, &clustered}) {
         const auto fluid = projected(*grid, {walls, walls, walls});
         for (std::uint64_t p = 0; p < 50; ++p)
@@ -158,15 +109,15 @@ TYPED_TEST(EveryKernel, IsContinuousAcrossCells) {
                         Vec3 above = below;
                         below[static_cast<std::size_t>(d)] = knot - 1e-9;
                         above[static_cast<std::size_t>(d)] = knot + 1e-9;
-                        const Vec3 a = gather<TypeParam>(*grid, {}, fluid.velocity(), below);
-                        const Vec3 b = gather<TypeParam>(*grid, {}, fluid.velocity(), above);
+                        const Vec3 a = gather(*grid, {}, fluid.velocity(), below);
+                        const Vec3 b = gather(*grid, {}, fluid.velocity(), above);
                         for (std::size_t e = 0; e < 3; ++e) EXPECT_NEAR(a[e], b[e], 1e-6);
                     }
     }
 }
 
 // Second order for a smooth field that satisfies the walls: the error falls fourfold when the cells halve.
-TYPED_TEST(EveryKernel, ConvergesWithSecondOrder) {
+TEST(Interpolation, ConvergesWithSecondOrder) {
     const auto error = [](int n, double clustering) {
         const Axis axis = Axis::clustered(n, 0, 1, clustering);
         const Grid grid{{axis, axis, axis}};
@@ -188,9 +139,8 @@ TYPED_TEST(EveryKernel, ConvergesWithSecondOrder) {
         int count = 0;
         for (std::uint64_t p = 0; p < 4000; ++p) {
             const Vec3 x = random_place(grid, p);
-            // Away from the half cells at walls, where the solenoidal kernel is first order across.
             if (std::ranges::any_of(x, [](double c) { return c < 0.1 || c > 0.9; })) continue;
-            const Vec3 got = gather<TypeParam>(grid, {}, field, x);
+            const Vec3 got = gather(grid, {}, field, x);
             for (std::size_t d = 0; d < 3; ++d) sum += (got[d] - exact(x)[d]) * (got[d] - exact(x)[d]);
             ++count;
         }
@@ -201,7 +151,7 @@ TYPED_TEST(EveryKernel, ConvergesWithSecondOrder) {
 }
 
 // <scatter(F), V> = F . gather(V) for every F and V, spread or not: the pair exchanges power exactly.
-TYPED_TEST(EveryKernel, ScatterIsTheTransposeOfGather) {
+TEST(Interpolation, ScatterIsTheTransposeOfGather) {
     const flow::Sides box{walls, walls, walls};
     struct Case {
         Grid grid;
@@ -216,7 +166,7 @@ TYPED_TEST(EveryKernel, ScatterIsTheTransposeOfGather) {
         flow::FaceVectors spread = fluid.velocity();
         deposit.spread_transposed(spread);
         for (std::uint64_t p = 0; p < 200; ++p) {
-            const Stencil<TypeParam> stencil(grid, periodic_axes(sides), random_place(grid, p));
+            const Stencil<Trilinear> stencil(grid, periodic_axes(sides), random_place(grid, p));
             const Vec3 force{1.3, -0.7, 2.1};
             flow::FaceVectors onto = flow::face_vectors(grid);
             stencil.scatter(force, onto);

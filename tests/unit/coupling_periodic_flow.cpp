@@ -68,7 +68,7 @@ TEST(PeriodicFlow, IsTheSameAfterAStay) {
     std::span<const std::byte> from(bytes);
     found.restore(from);
     EXPECT_TRUE(from.empty());
-    const Stencil<Solenoidal> stencil(grid, {}, {0.1, 0.2, 0.3});
+    const Stencil<Trilinear> stencil(grid, {}, {0.1, 0.2, 0.3});
     EXPECT_EQ(kept.at(stencil, 1.0).velocity, found.at(stencil, 1.0).velocity);
     EXPECT_EQ(kept.at(stencil, 1.0).acceleration, found.at(stencil, 1.0).acceleration);
     std::span<const std::byte> half(bytes.data(), bytes.size() / 2);

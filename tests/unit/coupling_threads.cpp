@@ -103,14 +103,14 @@ struct Box {
         for (auto& v : all.velocity) v = {40, -60, 300};
         return all;
     }
-    template <class Kernel, class Level>
+    template <class Level>
     [[nodiscard]] auto dilute(Level level) const {
-        return coupling::Suspension<Boussinesq, Level, Kernel, coupling::SchillerNaumann>(
+        return coupling::Suspension<Boussinesq, Level, coupling::Trilinear, coupling::SchillerNaumann>(
             fluid(), vibration(), {sphere(), time_step()}, walls, cloud(), std::move(level));
     }
-    template <class Kernel, class Interaction>
+    template <class Interaction>
     [[nodiscard]] auto dense(Interaction interaction) const {
-        return coupling::DenseSuspension<Boussinesq, Interaction, Kernel, coupling::SchillerNaumann>(
+        return coupling::DenseSuspension<Boussinesq, Interaction, coupling::Trilinear, coupling::SchillerNaumann>(
             fluid(), vibration(), {sphere(), time_step()}, walls, cloud(), std::move(interaction), 0.12);
     }
 };
@@ -132,40 +132,33 @@ TEST_P(CouplingThreads, FlowWithAndWithoutHeat) {
 }
 
 TEST_P(CouplingThreads, FromTheFluidToTheParticlesAlone) {
-    using coupling::Solenoidal, coupling::Trilinear;
-    expect_same_bits("trilinear", [&] { return box.dilute<Trilinear>(coupling::OneWay{}); });
-    expect_same_bits("solenoidal", [&] { return box.dilute<Solenoidal>(coupling::OneWay{}); });
+    expect_same_bits("trilinear", [&] { return box.dilute(coupling::OneWay{}); });
 }
 
 TEST_P(CouplingThreads, BothWays) {
-    const auto two_way = [&]<class Kernel, class Form>(Kernel, Form) {
-        return box.dilute<Kernel>(
-            coupling::TwoWay<Form>(box.grid, box.sides, Box::sphere(), box.cloud().size(), 0.12, Kernel::hats));
-    };
-    expect_same_bits("force", [&] { return two_way(coupling::Trilinear{}, coupling::ForceForm{}); });
-    expect_same_bits("without own wake", [&] {
-        return box.dilute<coupling::Trilinear>(coupling::TwoWayWithoutOwnWake<coupling::ForceForm>(
-            box.grid, box.sides, Box::sphere(), box.cloud().size(), 0.12, 0.01));
+    expect_same_bits("force", [&] {
+        return box.dilute(coupling::TwoWay(box.grid, box.sides, Box::sphere(), box.cloud().size(), 0.12));
     });
-    expect_same_bits("equation 9", [&] { return two_way(coupling::Solenoidal{}, coupling::EquationNine{}); });
+    expect_same_bits("without own wake", [&] {
+        return box.dilute(
+            coupling::TwoWayWithoutOwnWake(box.grid, box.sides, Box::sphere(), box.cloud().size(), 0.12, 0.01));
+    });
 }
 
 TEST_P(CouplingThreads, DenseParticles) {
     using namespace coupling;
     const auto grains = Granular::of(Box::sphere(), 0.9, 0.63);
     const auto pressed = [&]<class Temperature>(std::type_identity<Temperature>) {
-        return box.dense<Trilinear>(
-            SolidsPressure<Temperature>(box.grid, box.sides, Box::sphere(), grains, 1e-3, 0.12));
+        return box.dense(SolidsPressure<Temperature>(box.grid, box.sides, Box::sphere(), grains, 1e-3, 0.12));
     };
     expect_same_bits("ddpm", [&] { return pressed(std::type_identity<AlgebraicTemperature>{}); });
     expect_same_bits("ddpm_ktgf", [&] { return pressed(std::type_identity<TransportedTemperature>{}); });
     const double stiffness = SpringContacts::stiffness(Box::sphere(), 0.01, Box::time_step());
     expect_same_bits("springs", [&] {
-        return box.dense<Trilinear>(
-            SpringContacts(Box::sphere(), box.walls, {stiffness, 0.9, 0.3}, box.cloud().size()));
+        return box.dense(SpringContacts(Box::sphere(), box.walls, {stiffness, 0.9, 0.3}, box.cloud().size()));
     });
-    expect_same_bits("projection", [&] { return box.dense<Solenoidal>(ProjectedContacts(Box::sphere(), box.walls)); });
-    expect_same_bits("volume alone", [&] { return box.dense<Trilinear>(NoInteraction{}); });
+    expect_same_bits("projection", [&] { return box.dense(ProjectedContacts(Box::sphere(), box.walls)); });
+    expect_same_bits("volume alone", [&] { return box.dense(NoInteraction{}); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, CouplingThreads, testing::Bool(),

@@ -8,6 +8,7 @@
 
 #include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/scenes/scene.hpp"
 #include "tests/support/granular_scenes.hpp"
 
 namespace grainsweep::tests::fast_engine_test {
@@ -102,12 +103,12 @@ TEST(FastEngine, RestoredEnginesContinueBitForBit) {
 }
 
 TEST(FastEngine, ForeignCheckpointsAreRefused) {
-    const auto a = make_mixed_engine(tests::boxed_lattice(3, 0.5, 0, 4), Method::Path::baseline);
+    const auto a = make_mixed_engine(tests::boxed_lattice(3, 0.5, 0, 4), Method::Path::best);
     std::vector<std::byte> bytes;
     a->save(bytes);
     auto setup = tests::boxed_lattice(3, 0.5, 0, 4);
     setup.material.friction = 0.3;
-    EXPECT_THROW(make_mixed_engine(setup, Method::Path::baseline)->restore(bytes), std::invalid_argument);
+    EXPECT_THROW(make_mixed_engine(setup, Method::Path::best)->restore(bytes), std::invalid_argument);
     for (const std::size_t cut : {std::size_t{0}, std::size_t{10}, bytes.size() / 2, bytes.size() - 1}) {
         const std::span<const std::byte> part(bytes.data(), cut);
         EXPECT_THROW(a->restore(part), std::invalid_argument) << cut;
@@ -116,10 +117,17 @@ TEST(FastEngine, ForeignCheckpointsAreRefused) {
     EXPECT_THROW(a->restore(bytes), std::invalid_argument);
 }
 
+TEST(FastEngine, AProcessorWithoutAnyPathIsRefusedInOneSentence) {
+    EXPECT_TRUE(processor_suffices());
+    EXPECT_EQ(unsupported_processor(), "");
+    EXPECT_EQ(unsupported_processor(false),
+              "this processor lacks AVX2, which the program needs: Intel Core has it since 2013, AMD since 2015.");
+}
+
 TEST(FastEngine, PathsAgreeToSinglePrecision) {
     const dem::Setup setup = tests::boxed_lattice(4, 0.5, 0.1, 5);
     dem::State reference, other;
-    const auto base = make_mixed_engine(setup, Method::Path::baseline);
+    const auto base = make_mixed_engine(setup, Method::Path::best);
     base->run(200);
     base->state(reference);
     for (const auto path : paths()) {

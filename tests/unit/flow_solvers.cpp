@@ -58,11 +58,6 @@ TEST(Axis, LocatesItsOwnFacesAndCentresOfTheMap) {
         EXPECT_EQ(axis.locate(99).cell, 10);
         EXPECT_DOUBLE_EQ(axis.locate(99).offset, 1);
         EXPECT_EQ(axis.locate(-99).cell, 1);
-        // stretch is the derivative of the map.
-        const double x = 1.37;
-        const double step = 1e-6;
-        const auto s = [&](double at) { return axis.locate(at).cell + axis.locate(at).offset; };
-        EXPECT_NEAR(axis.stretch(x), 2 * step / (s(x + step) - s(x - step)), 1e-7);
     }
 }
 

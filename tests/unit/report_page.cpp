@@ -316,7 +316,7 @@ TEST_F(Page, ACampaignWithoutAnswersHasAPageToo) {
     EXPECT_EQ(campaign["settled"], 0);
     EXPECT_EQ(campaign["observables"][0]["history"]["count"], 0);
     EXPECT_EQ(campaign["outcomes"].back(), Json({"not yet", 64}));
-    EXPECT_THAT(tests::text_of(report::closing_summary(store, "new", "a.db")),
+    EXPECT_THAT(tests::text_of(report::closing_summary(store, "new", "a.db", true)),
                 HasSubstr("new: 64 cases of rehearsal: 64 not yet"));
 }
 

@@ -85,7 +85,7 @@ TEST_F(Study, FinishedCasesBehindAnOpenOneGiveProvisionalFigures) {
     EXPECT_THAT(history.verdict, HasSubstr("not converged: first check at 80 points, 0 are settled"));
     EXPECT_THAT(history.warnings, Contains(HasSubstr("only the provisional figures include them")));
 
-    const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db"));
+    const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db", true));
     EXPECT_THAT(text, HasSubstr("provisional moments over all 426 finished cases"));
     EXPECT_THAT(text, Not(HasSubstr("moments over 0 points")));
     EXPECT_THAT(text, HasSubstr("largest"));
@@ -118,7 +118,7 @@ TEST_F(Study, WhatTheConditionLeavesOutIsCounted) {
     EXPECT_EQ(responses.dropped(), 64 - static_cast<std::int64_t>(responses.rows()));
     EXPECT_EQ(points_line(responses), "64 candidates, " + std::to_string(responses.dropped()) + " left out by where, " +
                                           std::to_string(responses.rows()) + " cases asked, 20 finished");
-    EXPECT_THAT(tests::text_of(report::closing_summary(store, "c", folder / "a.db")),
+    EXPECT_THAT(tests::text_of(report::closing_summary(store, "c", folder / "a.db", true)),
                 HasSubstr("where: 64 candidates"));
 }
 
@@ -331,7 +331,7 @@ TEST_F(Study, ExtremesHaveUnits) {
 
 TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
     answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
-    const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db"));
+    const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db", true));
     EXPECT_THAT(text, HasSubstr("c: 64 cases of rehearsal: 64 completed"));
     EXPECT_THAT(text, HasSubstr("largest"));
     EXPECT_THAT(text, HasSubstr("smallest"));

@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000aULL;  // "grnscl", version 10
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000bULL;  // "grnscl", version 11
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(ids(), particles::gone);
@@ -43,6 +43,7 @@ void ClearEngine::visit_state(Self& self, Visit&& visit) {
     visit(self.pairs_.value);
     visit(self.pairs_.live);
     visit(self.wall_steps_);
+    visit(self.parts_done_);
     visit(self.displaced_);
     visit(self.largest_overlap_);
     visit(self.peak_overlap_);
@@ -67,6 +68,8 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
     out.put(static_cast<std::uint64_t>(spheres_at_start_));
     out.put(time_step_);
     out.put(shaking_);
+    out.put(control_.state());
+    out.put(control_.lasting());
     visit_state(*this, [&out](const auto& value) { out.put(value); });
     list_.save(out);
     out.put(static_cast<std::uint64_t>(walls_.size()));
@@ -128,7 +131,8 @@ void ClearEngine::require_possible() const {
         }
         require(contacts.memory.size() == contacts.touches.size() * memories());
     }
-    require(wall_steps_ >= 0 && wall_steps_ < most_steps && work_.steps >= 0 && work_.steps < most_steps);
+    require(wall_steps_ >= 0 && wall_steps_ < most_steps && work_.steps >= 0 && work_.steps < most_steps &&
+            parts_done_ >= 0 && parts_done_ < control_.parts());
 }
 
 void ClearEngine::restore_walls(ByteReader& in) {
@@ -179,6 +183,12 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
     expect(shaking_);
+    StepControl::State control;
+    in.get(control);
+    std::vector<std::uint64_t> lasting;
+    in.get(lasting);
+    in.require(control_.restore(control, std::move(lasting)));
+    use_parts();
     visit_state(*this, [&in](auto& value) { in.get(value); });
     const auto within = [&in](const std::vector<double>& column, double least, double most) {
         for (const double x : column) in.require(x >= least && x <= most);

@@ -13,6 +13,7 @@
 #include "solver/dem/energy_balance.hpp"
 #include "solver/dem/kinds.hpp"
 #include "solver/dem/reading.hpp"
+#include "solver/dem/step_control.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/particles/neighbour_list.hpp"
@@ -44,13 +45,16 @@ public:
     ClearEngine(const Setup& setup, const Method& method, const AnyContact& laws, bool equal);
 
     void run(std::int64_t steps) override;
+    void run_part() override { step(); }
+    [[nodiscard]] double part() const override { return part_; }
+    [[nodiscard]] bool at_step() const override { return parts_done_ == 0; }
     void set_walls(std::vector<Wall> walls) override;
     void change_walls(std::vector<Wall> walls) override;
     void add(std::span<const Sphere> spheres) override;
     void remove(std::span<const std::int32_t> ids) override;
 
     [[nodiscard]] std::size_t size() const override { return p_.size(); }
-    [[nodiscard]] double wall_time() const override { return time_step_ * static_cast<double>(wall_steps_); }
+    [[nodiscard]] double wall_time() const override { return time_after(wall_steps_); }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return largest_overlap_; }
     [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
@@ -63,7 +67,11 @@ public:
         return walls_.at(wall).wall.energy();
     }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
-    [[nodiscard]] Work work() const override { return work_; }
+    [[nodiscard]] Work work() const override {
+        Work done = work_;
+        done.most_parts = control_.most_parts();
+        return done;
+    }
     void save(std::vector<std::byte>& into) const override;
     void restore(std::span<const std::byte> from) override;
 
@@ -117,6 +125,11 @@ private:
 
     // stepping.cpp
     void step();
+    void use_parts();
+    /// Returns the time after a count of completed steps and the parts of the present one, s.
+    [[nodiscard]] double time_after(std::int64_t steps) const {
+        return part_ * static_cast<double>(steps * control_.parts() + parts_done_);
+    }
     [[nodiscard]] double inverse_mass_of(const Sphere& sphere) const;
     void append(std::span<const Sphere> spheres, std::size_t id);
     void restart_forces();
@@ -137,6 +150,8 @@ private:
     // soundness.cpp
     [[nodiscard]] bool sound();
     void check_energy();
+    void check_network();
+    void gather_network(bool slides);
     void set_speed_limit();
     void judge_wall_speeds();
     void judge_passages(const Contacts& contacts);
@@ -160,13 +175,16 @@ private:
     bool shaken_;
     Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
+    StepControl control_;
+    double part_;                  // length of a part of a step, s
+    std::int64_t parts_done_ = 0;  // of the present step
     bool equal_;
     double mass_ = 0;                           // mass of every particle, if equal_
     Radii radii_;                               // of all spheres, including those that may be added
     std::pair<double, double> inverse_masses_;  // least and largest of them
     bool linear_;                               // the normal law
     double deepest_in_walls_;
-    double swing_factor_;  // dt^2 normal_slope() of the first pair; times stiffest_ it is the square of a contact's
+    double swing_factor_;  // part^2 normal_slope() of the first pair; times stiffest_ it is the square of a contact's
                            // phase per step
     double skin_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // largest gap of a lasting contact, m
@@ -202,6 +220,7 @@ private:
     double work_of_shaking_ = 0;   // J, since the start
     double work_of_wrapping_ = 0;  // J, potential energy lost when particles wrap at periodic faces
     EnergyBalance balance_;
+    Network network_;  // scratch of check_network
     std::string fault_;
     Work work_;
 };

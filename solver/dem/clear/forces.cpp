@@ -34,7 +34,7 @@ using namespace geometry;
         t.turning = p_.angular_velocity[i] - p_.angular_velocity[j];
         t.rolling_inertia = rolling_inertia(i, j);
     }
-    t.time_step = time_step_;
+    t.time_step = part_;
     return t;
 }
 
@@ -58,7 +58,7 @@ using namespace geometry;
         t.turning = p_.angular_velocity[i];
         t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
     }
-    t.time_step = time_step_;
+    t.time_step = part_;
     return t;
 }
 
@@ -210,8 +210,8 @@ void ClearEngine::wall_contacts(Contacts& contacts, bool advance) {
     contacts.load.torque = -turn;
     contacts.load_about = twist.pivot;
     if (advance) {
-        contacts.load.work += power * time_step_;
-        work_of_walls_ += power * time_step_;
+        contacts.load.work += power * part_;
+        work_of_walls_ += power * part_;
     }
 }
 
@@ -256,7 +256,7 @@ void ClearEngine::for_each_touched_wall(Visit&& visit) const {
 /// Velocities that the laws saw in the last step.
 Velocities ClearEngine::half_a_step_before(std::size_t i) const {
     if (!mobile(i)) return {};
-    const double half = time_step_ / 2, inverse = inverse_mass(i);
+    const double half = part_ / 2, inverse = inverse_mass(i);
     return {p_.velocity[i] - half * (inverse * p_.force[i] + body_),
             p_.angular_velocity[i] - (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i]};
 }
@@ -280,6 +280,41 @@ void ClearEngine::read_contacts(bool of_step, std::vector<ContactForce>& into) c
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3& velocity) {
         add(*walls_[w].laws[p_.kind[i]], i, -1 - static_cast<std::int32_t>(w), t, memory,
             [&](auto&& of) { return relative(t, of(i), velocity); });
+    });
+}
+
+/// Writes the network of all contacts. `slides`: contacts that the last step has cut have no tangential spring.
+void ClearEngine::gather_network(bool slides) {
+    constexpr double rounding = 1e-12;
+    network_.clear();
+    for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
+    const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
+                          const double* memory, auto&& motion) {
+        Bond b{.key = key_of(p_.id[i], id),
+               .first = static_cast<std::int32_t>(i),
+               .second = j,
+               .normal = t.normal,
+               .lever_first = t.radius_i - t.overlap / 2,
+               .lever_second = t.radius_j - t.overlap / 2,
+               .springs = laws.springs(t)};
+        if (t.apart) b.springs = {};
+        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, motion(), rounding), memory).slides)
+            b.springs.tangential = b.springs.tangential_damper = 0;
+        return b;
+    };
+    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
+        network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), p_.id[j], t, memory,
+                          [&] { return relative(t, half_a_step_before(i), half_a_step_before(j)); }));
+    });
+    std::size_t last = walls_.size();
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3& velocity) {
+        const auto& wall = walls_[w].wall;
+        if (w != last) network_.add_wall(freedoms_of(wall, wall_time()));
+        last = w;
+        const Vec3 x = wall.image().of(p_.position[i]);
+        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, -1 - static_cast<std::int32_t>(w), t, memory,
+                                  [&] { return relative(t, half_a_step_before(i), velocity); }),
+                             x - t.distance * t.normal);
     });
 }
 

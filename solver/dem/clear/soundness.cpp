@@ -24,9 +24,9 @@ bool ClearEngine::sound() {
             p_.velocity[i] = Vec3{};
             p_.angular_velocity[i] = Vec3{};
             report("the motion of a particle is no longer a number", i);
-        } else if (speed * time_step_ > largest_sound_displacement * radius(i)) {
+        } else if (speed * part_ > largest_sound_displacement * radius(i)) {
             std::snprintf(text, sizeof text, "a particle moves %.3g of its radius in one time step (limit %.3g)",
-                          speed * time_step_ / radius(i), largest_sound_displacement);
+                          speed * part_ / radius(i), largest_sound_displacement);
             report(text, i);
         } else if (speed > speed_limit_) {
             std::snprintf(text, sizeof text,
@@ -72,7 +72,7 @@ void ClearEngine::judge_wall_speeds() {
     for (std::size_t i = 0; i < p_.size(); ++i) least = std::min(least, radius(i));
     for (std::size_t w = 0; w < walls_.size() && fault_.empty(); ++w) {
         if (!walls_[w].wall.present()) continue;
-        const double share = walls_[w].wall.fastest_surface() * time_step_ / least;
+        const double share = walls_[w].wall.fastest_surface() * part_ / least;
         char text[200];
         std::snprintf(text, sizeof text,
                       "wall %zu moves %.3g of the smallest radius in one time step (limit %.3g), after %lld steps", w,
@@ -85,16 +85,16 @@ void ClearEngine::judge_wall_speeds() {
 /// wall than both moved.
 void ClearEngine::judge_passages(const Contacts& contacts) {
     const auto& wall = contacts.wall;
-    const double way_of_wall = time_step_ * wall.fastest_surface();
+    const double way_of_wall = part_ * wall.fastest_surface();
     std::size_t t = 0;
     for (std::uint32_t entry = 0; entry < contacts.near.size(); ++entry) {
         const std::size_t i = contacts.near[entry];
         double distance = radius(i);
         for (; t < contacts.touches.size() && contacts.touches[t].entry == entry; ++t)
             distance = std::min(distance, contacts.touches[t].place.distance);
-        const Vec3 moved = time_step_ * p_.velocity[i];
+        const Vec3 moved = part_ * p_.velocity[i];
         if (distance > norm(moved) + way_of_wall) continue;
-        if (wall.passed(wall.pose_before(wall_time() - time_step_), p_.position[i] - moved, p_.position[i]))
+        if (wall.passed(wall.pose_before(wall_time() - part_), p_.position[i] - moved, p_.position[i]))
             report("the centre of a particle passed through wall " + std::to_string(&contacts - walls_.data()), i);
     }
 }
@@ -114,13 +114,28 @@ void ClearEngine::check_energy() {
     report(*flaw, fastest_particle);
 }
 
+/// Compares the length of a part with the longest stable step of the present contacts.
+void ClearEngine::check_network() {
+    gather_network(false);
+    if (!control_.look(network_, part_, std::max(largest_overlap_, largest_wall_overlap_))) return;
+    gather_network(true);
+    network_.keep(control_.lasting());
+    static_cast<void>(network_.bound(part_));
+    const StepShare found = network_.share(part_);
+    if (!control_.judge(found, network_)) return;
+    std::vector<ContactForce> all;
+    contacts(all);
+    const auto i = static_cast<std::size_t>(found.sphere);
+    report(flaw_of_step(found, part_, all, p_.id[i]), i);
+}
+
 /// The first fault stays: later ones follow from it.
 void ClearEngine::report(const std::string& what, std::size_t i) {
     if (!fault_.empty()) return;
     char where[200];
     const Vec3& x = p_.position[i];
     std::snprintf(where, sizeof where, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", p_.id[i],
-                  x[0], x[1], x[2], static_cast<long long>(work_.steps), time_step_ * static_cast<double>(work_.steps));
+                  x[0], x[1], x[2], static_cast<long long>(work_.steps), time_after(work_.steps));
     fault_ = what + where;
 }
 

@@ -43,6 +43,8 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       shaken_(!is_still(setup.shaking)),
       body_(setup.gravity),
       time_step_(setup.time_step),
+      control_(setup.step_share),
+      part_(setup.time_step),
       equal_(equal),
       radii_(radii_of(setup)),
       linear_(table_.pairs().front().normal_law == NormalLaw::linear),
@@ -105,17 +107,30 @@ void ClearEngine::append(std::span<const Sphere> spheres, std::size_t id) {
 }
 
 void ClearEngine::run(std::int64_t steps) {
-    for (std::int64_t k = 0; k < steps && fault_.empty(); ++k) step();
+    const std::int64_t end = work_.steps + steps;
+    while (work_.steps < end && fault_.empty()) step();
 }
 
+/// Sets the length of a part by the number of parts.
+void ClearEngine::use_parts() {
+    part_ = time_step_ / static_cast<double>(control_.parts());
+    swing_factor_ = normal_slope(table_.pairs().front()) * part_ * part_;
+}
+
+/// Advances by a part of a time step.
 void ClearEngine::step() {
-    if (shaken_) work_of_shaking_ += time_step_ / 2 * dot(body_ - gravity_, momentum());
+    if (parts_done_ == 0 && control_.take_parts()) use_parts();
+    if (shaken_) work_of_shaking_ += part_ / 2 * dot(body_ - gravity_, momentum());
     kick_and_drift();
-    ++wall_steps_;
-    ++work_.steps;
+    const bool whole = ++parts_done_ == control_.parts();
+    if (whole) {
+        parts_done_ = 0;
+        ++wall_steps_;
+        ++work_.steps;
+    }
     for (auto& contacts : walls_) {
         if (!contacts.wall.present()) continue;
-        contacts.wall.drift(time_step_);
+        contacts.wall.drift(part_);
         contacts.wall.place(wall_time());
     }
     if (shaken_) shake();
@@ -126,29 +141,31 @@ void ClearEngine::step() {
     evaluate(true);
     if (!fault_.empty()) return;  // before a force beyond its law moves anything
     kick();
-    if (shaken_) work_of_shaking_ += time_step_ / 2 * dot(body_ - gravity_, momentum());
+    if (shaken_) work_of_shaking_ += part_ / 2 * dot(body_ - gravity_, momentum());
     work_.particle_steps += static_cast<double>(std::ranges::count_if(p_.inverse_mass, [](double m) { return m > 0; }));
+    if (!whole) return;
     if (work_.steps % energy_interval == 0) check_energy();
+    const double deepest = std::max(largest_overlap_, largest_wall_overlap_);
+    if (control_.due(work_.steps, deepest, p_.size())) check_network();
 }
 
 /// Half a step of the free ones.
 void ClearEngine::kick_walls() {
     for (auto& contacts : walls_)
         if (contacts.wall.free() && contacts.wall.present())
-            contacts.wall.kick(contacts.load.force, contacts.load.torque, contacts.load_about, wall_time(),
-                               time_step_ / 2);
+            contacts.wall.kick(contacts.load.force, contacts.load.torque, contacts.load_about, wall_time(), part_ / 2);
 }
 
 void ClearEngine::kick_and_drift() {
     kick_walls();
-    const double half = time_step_ / 2;
+    const double half = part_ / 2;
     const double far2 = skin_ * skin_ / 4;
     bool displaced = displaced_;
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double inverse = inverse_mass(i);
         p_.velocity[i] += half * (inverse * p_.force[i] + body_);
-        p_.position[i] += time_step_ * p_.velocity[i];
+        p_.position[i] += part_ * p_.velocity[i];
         p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
         const Vec3 moved = p_.position[i] - position_at_build_[i];
         displaced |= !(dot(moved, moved) <= far2);
@@ -158,7 +175,7 @@ void ClearEngine::kick_and_drift() {
 
 void ClearEngine::kick() {
     kick_walls();
-    const double half = time_step_ / 2;
+    const double half = part_ / 2;
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double inverse = inverse_mass(i);
@@ -168,7 +185,7 @@ void ClearEngine::kick() {
 }
 
 void ClearEngine::shake() {
-    body_ = gravity_ + shaking_acceleration(shaking_, time_step_, work_.steps);
+    body_ = gravity_ + shaking_acceleration(shaking_, part_, work_.steps * control_.parts() + parts_done_);
 }
 
 /// Of all mobile particles.

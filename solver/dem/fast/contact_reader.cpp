@@ -121,6 +121,11 @@ void ContactReader::complete(std::int32_t i, std::int32_t j, Touch<Partner::part
         inertia_about_contact / (1 / (mass(i) * t.radius_i * t.radius_i) + 1 / (mass(j) * t.radius_j * t.radius_j));
 }
 
+void ContactReader::complete(std::int32_t i, Touch<Partner::wall>& t) const {
+    t.reduced_mass = mass(i);
+    t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
+}
+
 void ContactReader::stand_still(ParkedContact& contact) const {
     Touch<Partner::particle> t;
     contact.overlap = 0;
@@ -172,7 +177,8 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
             t.normal = closest.normal;
             t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
             if (!walls.laws(w, field_.kind[i]).begin(t, of_contact.data())) continue;
-            visit(i, wall.twist().at(x - closest.distance * closest.normal), t, of_contact);
+            const Vec3 place = x - closest.distance * closest.normal;
+            visit(i, WallPoint{place, wall.twist().at(place)}, t, of_contact);
         }
     });
 }
@@ -187,16 +193,56 @@ ContactReader::Memory ContactReader::memory_at_wall(const Walls& walls, std::siz
 }
 
 void ContactReader::wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const {
-    for_each_at_wall(
-        walls, w, [&](std::int32_t i, const Vec3& velocity, Touch<Partner::wall>& t, const Memory& memory) {
-            t.reduced_mass = mass(i);
-            t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
-            const auto second = -1 - static_cast<std::int32_t>(w);
-            into.push_back(
-                read(walls.laws(w, field_.kind[i]), t, i, second, memory, [&](std::span<const Velocities> motions) {
-                    return relative(t, motions[static_cast<std::size_t>(i)], velocity);
-                }));
-        });
+    for_each_at_wall(walls, w, [&](std::int32_t i, const WallPoint& at, Touch<Partner::wall>& t, const Memory& memory) {
+        complete(i, t);
+        const auto second = -1 - static_cast<std::int32_t>(w);
+        into.push_back(
+            read(walls.laws(w, field_.kind[i]), t, i, second, memory, [&](std::span<const Velocities> motions) {
+                return relative(t, motions[static_cast<std::size_t>(i)], at.velocity);
+            }));
+    });
+}
+
+void ContactReader::network(const Walls& walls, double time, bool slides, Network& into) const {
+    into.clear();
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        const double inverse = static_cast<double>(field_.records[i].inverse_mass) / space_.scale.mass;
+        into.add_sphere(inverse, radius(i));
+    }
+    const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
+                          const Memory& memory, auto&& motion) {
+        t.damping_root = std::sqrt(t.root * t.reduced_mass);
+        Bond b{.key = key_of(id_[i], id),
+               .first = i,
+               .second = j,
+               .normal = t.normal,
+               .lever_first = t.radius_i - t.overlap / 2,
+               .lever_second = t.radius_j - t.overlap / 2,
+               .springs = laws.springs(t)};
+        if (t.apart) b.springs = {};
+        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, motion(), rounding), memory.data()).slides)
+            b.springs.tangential = b.springs.tangential_damper = 0;
+        return b;
+    };
+    for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
+        complete(i, j, t);
+        into.add(bond(laws_of(i, j), t, i, j, id_[j], memory, [&] {
+            return relative(t, before_[static_cast<std::size_t>(i)], before_[static_cast<std::size_t>(j)]);
+        }));
+    });
+    for (std::size_t w = 0; w < walls.count(); ++w) {
+        if (!walls[w].present()) continue;
+        const std::vector<Freedom> freedoms = freedoms_of(walls[w], time);
+        into.add_wall(freedoms);
+        for_each_at_wall(
+            walls, w, [&](std::int32_t i, const WallPoint& at, Touch<Partner::wall>& t, const Memory& memory) {
+                complete(i, t);
+                into.add_at_wall(
+                    bond(walls.laws(w, field_.kind[i]), t, i, -1, -1 - static_cast<std::int32_t>(w), memory,
+                         [&] { return relative(t, before_[static_cast<std::size_t>(i)], at.velocity); }),
+                    at.place);
+            });
+    }
 }
 
 StoredEnergy ContactReader::stored(const Walls& walls) const {
@@ -210,7 +256,7 @@ StoredEnergy ContactReader::stored(const Walls& walls) const {
         add_energy(laws_of(i, j), t, memory);
     });
     for (std::size_t w = 0; w < walls.count(); ++w)
-        for_each_at_wall(walls, w, [&](std::int32_t i, const Vec3&, const auto& t, const Memory& memory) {
+        for_each_at_wall(walls, w, [&](std::int32_t i, const WallPoint&, const auto& t, const Memory& memory) {
             add_energy(walls.laws(w, field_.kind[i]), t, memory);
         });
     return e;

@@ -15,6 +15,7 @@
 #include "solver/dem/fast/walls.hpp"
 #include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/laws/compiled.hpp"
+#include "solver/dem/network.hpp"
 #include "solver/dem/reading.hpp"
 
 namespace grainsweep::dem::fast {
@@ -42,11 +43,18 @@ public:
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w.
     void wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const;
+    /// Writes the network of all contacts, with spheres in the order of the records. `time`: wall time, s. `slides`:
+    /// contacts that the last step has cut have no tangential spring; then `before` must be given.
+    void network(const Walls& walls, double time, bool slides, Network& into) const;
     /// Returns the energy of all contacts.
     [[nodiscard]] StoredEnergy stored(const Walls& walls) const;
 
 private:
     using Memory = std::array<double, memories_at_most>;
+    /// Place on a wall, and the velocity of its material there.
+    struct WallPoint {
+        Vec3 place, velocity;
+    };
 
     [[nodiscard]] const AnyContact& laws_of(std::int32_t i, std::int32_t j) const;
     [[nodiscard]] double radius(std::int32_t i) const;
@@ -56,11 +64,12 @@ private:
     /// Calls visit(i, j, touch, memory) for touching pairs; only the geometry of the touch is set.
     template <class Visit>
     void for_each_pair(Visit&& visit) const;
-    /// Calls visit(i, touch, memory) for the particles that touch the wall.
+    /// Calls visit(i, point, touch, memory) for the particles that touch the wall.
     template <class Visit>
     void for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const;
     [[nodiscard]] Memory memory_at_wall(const Walls& walls, std::size_t w, std::int32_t i, std::int32_t slot) const;
     void complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
+    void complete(std::int32_t i, Touch<Partner::wall>& t) const;
     [[nodiscard]] Memory memory(const ParkedContact& contact) const;
     template <Partner partner, class MotionIn>
     [[nodiscard]] ContactForce read(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second,

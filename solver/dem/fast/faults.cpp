@@ -23,7 +23,7 @@ std::string where_and_when(const FaultView& s, std::int32_t i) {
         x[a] = s.scale.centre[axis] + s.field.records[i].position[a] * s.scale.unit[axis];
     }
     std::snprintf(text, sizeof text, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", s.id[i], x[0],
-                  x[1], x[2], static_cast<long long>(s.steps), s.scale.time * static_cast<double>(s.steps));
+                  x[1], x[2], static_cast<long long>(s.steps), s.time);
     return text;
 }
 

@@ -39,6 +39,7 @@ struct FaultView {
     float smallest_diameter;
     SoundOverlaps sound;
     std::int64_t steps;
+    double time;  ///< since the start, s
 };
 
 [[nodiscard]] std::string describe_fast_particle(const FaultView& view);

@@ -12,19 +12,25 @@ bool supports(Method::Path path) {
                    __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
                    supports(Method::Path::avx2);
         case Method::Path::avx2:
-            return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-#endif
+        case Method::Path::best:
+            return __builtin_cpu_supports("x86-64-v3") != 0;
+        default:
+            return false;
+#else
         default:
             return path == Method::Path::best || path == Method::Path::baseline;
+#endif
     }
 }
 
 namespace {
 
 Method::Path widest_path() {
-    if (supports(Method::Path::avx512)) return Method::Path::avx512;
-    if (supports(Method::Path::avx2)) return Method::Path::avx2;
+#if defined(__x86_64__)
+    return supports(Method::Path::avx512) ? Method::Path::avx512 : Method::Path::avx2;
+#else
     return Method::Path::baseline;
+#endif
 }
 
 /// A fact of the process like its processor: chosen at its start, before any engine is made.
@@ -49,11 +55,12 @@ const Kernels& kernels_of(Method::Path path, const Needs& needs) {
 #if defined(__x86_64__)
         case Method::Path::avx512:
             return avx512_kernels(needs);
-        case Method::Path::avx2:
+        default:
             return avx2_kernels(needs);
-#endif
+#else
         default:
             return baseline_kernels(needs);
+#endif
     }
 }
 

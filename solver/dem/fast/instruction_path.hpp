@@ -6,7 +6,7 @@
 
 namespace grainsweep::dem::fast {
 
-/// Returns whether this processor can run a path; always true for `best`.
+/// Returns whether this processor can run a path; true for `best` if it can run any.
 [[nodiscard]] bool supports(Method::Path path);
 /// Returns the path that `best` means in this process: the widest one of the processor, unless prefer() has set
 /// another.

@@ -21,6 +21,8 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.space_.skin);
     archive.value(self.tally_);
     archive.value(self.peak_overlap_);
+    archive.value(self.recent_overlap_);
+    archive.value(self.part_);
     Watch::pass(self.watch_, archive);
     archive.value(self.wall_steps_);
     archive.value(self.mobile_);
@@ -76,8 +78,7 @@ Seal MixedEngine::seal() const {
     s.needs.combination = needs_.combination;
     s.needs.unequal = needs_.unequal, s.needs.frozen = needs_.frozen, s.needs.resting = needs_.resting;
     s.needs.skips = needs_.skips, s.needs.several = needs_.several;
-    std::memcpy(static_cast<void*>(&s.constants), &field_.constants, sizeof s.constants);
-    for (std::size_t a = 0; a < 3; ++a) s.constants.gravity[a] = gravity_in_steps(gravity_[a], space_.scale);
+    std::memcpy(static_cast<void*>(&s.constants), &start_constants_, sizeof s.constants);
     s.shaking = shaking_;
     s.rest_speed = rest_speed_;
     return s;
@@ -108,7 +109,9 @@ void MixedEngine::save(std::vector<std::byte>& into) const {
     clear_spare_entries();
     Writer writer(into);
     writer.value(seal());
-    writer.list(constants_);
+    writer.list(start_laws_);
+    writer.value(control_.state());
+    writer.list(control_.lasting());
     pass(*this, writer);
 }
 
@@ -124,7 +127,7 @@ void MixedEngine::require_possible() const {
     require(field_.outer_count >= 0 && field_.inner_count >= 0 && field_.inner_count % width == 0);
     require(space_.skin > 0 && space_.skin <= largest_skin_ && (!adapts_skin_ || space_.skin <= 1));
     require(drift_.steps >= 0 && drift_.steps < most_steps && wall_steps_ >= 0 && wall_steps_ < most_steps);
-    require(work_.steps >= 0 && work_.steps < most_steps);
+    require(work_.steps >= 0 && work_.steps < most_steps && part_ >= 0 && part_ < control_.parts());
     require(watch_.spheres() == static_cast<std::size_t>(ids()));
     require(touches_.fits(c, walls_.count(), n));
     require(!resting_.wanted() || resting_.fits(n));
@@ -205,7 +208,13 @@ void MixedEngine::restore(std::span<const std::byte> from) {
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
     std::vector<double> constants;
     reader.list(constants);
-    if (constants != constants_) throw std::invalid_argument("the checkpoint belongs to other materials");
+    if (constants != start_laws_) throw std::invalid_argument("the checkpoint belongs to other materials");
+    StepControl::State control;
+    reader.value(control);
+    std::vector<std::uint64_t> lasting;
+    reader.list(lasting);
+    ByteReader::require(control_.restore(control, std::move(lasting)));
+    use_parts();
     subdomains_.drop();
     pass(*this, reader);
     reader.finish();

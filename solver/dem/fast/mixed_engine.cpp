@@ -18,6 +18,15 @@ constexpr std::size_t many_particles = 40000;
 /// Beyond these a step's histories have left the last cache before the next step reads them.
 constexpr std::size_t very_many_particles = 120000;
 
+std::array<SoundOverlaps, most_halvings + 1> resolved_in_parts(Setup setup) {
+    std::array<SoundOverlaps, most_halvings + 1> all;
+    for (SoundOverlaps& resolved : all) {
+        resolved = resolved_overlaps(setup);
+        setup.time_step /= 2;
+    }
+    return all;
+}
+
 }  // namespace
 
 MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed, Threads threads)
@@ -34,13 +43,16 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       materials_(materials_of(setup)),
       walls_(setup.walls, setup.domain, space_.scale, needs_.combination, table_, materials_),
       contacts_differ_(contacts_differ(setup)),
-      resolved_(resolved_overlaps(setup)),
+      resolved_in_parts_(resolved_in_parts(setup)),
+      resolved_(resolved_in_parts_.front()),
       sound_(contacts_differ_ ? deepest_overlaps(setup) : resolved_),
       watch_(setup, space_.scale),
       resting_(setup, laws_, space_.scale, rest_speed),
       subdomains_(*kernels_, threads),
       threads_(threads),
       adapts_skin_(!(skin > 0)),
+      control_(setup.step_share),
+      time_step_(setup.time_step),
       spheres_at_start_(static_cast<std::int32_t>(setup.spheres.size())) {
     if (densities_.empty()) densities_ = {setup.material.density};
     field_.constants = make_constants(setup, space_.scale, needs_);
@@ -55,6 +67,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
     space_.skin = std::min(space_.skin, largest_skin_);
     write_pair_laws();
+    start_constants_ = field_.constants;
+    start_laws_ = constants_;
     columns_.histories = static_cast<std::int32_t>(laws_.front()->traits().memory.size());
     std::ranges::transform(laws_.front()->traits().memory, columns_.exchanged,
                            [](const MemoryKind& kind) { return static_cast<float>(kind.exchanged); });

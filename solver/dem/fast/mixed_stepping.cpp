@@ -26,17 +26,24 @@ constexpr double outer_skin_least = 0.2, outer_skin_most = 0.7;
 
 }  // namespace
 
-void MixedEngine::run(std::int64_t steps) {
+/// Advances by whole steps, or by one part of a step.
+void MixedEngine::advance(std::int64_t steps, bool one_part) {
     use_wanted_subdomains();
     bool advanced = false;  // the sweep before has moved the particles on
-    for (std::int64_t s = 0; s < steps && fault_.empty(); ++s) {
+    for (std::int64_t s = 0; s < steps && fault_.empty();) {
+        if (part_ == 0 && control_.take_parts()) take_parts();
         if (!advanced) {
             begin_tally();
             walls_.bound_velocities(wall_time(), true, tally_);
             advance_particles();
         }
-        ++work_.steps;
-        ++wall_steps_;
+        const bool whole = ++part_ == control_.parts();
+        if (whole) {
+            part_ = 0;
+            ++s;
+            ++work_.steps;
+            ++wall_steps_;
+        }
         if (shaken_) shake();
         work_.particle_steps += static_cast<double>(mobile_);
         work_.resting_steps += static_cast<double>(resting_.count());
@@ -45,18 +52,90 @@ void MixedEngine::run(std::int64_t steps) {
         walls_.drift();
         stand_walls();
         make_lists();
-        const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
-        const bool goes_on = std::exchange(advanced, s + 1 < steps && !checked);
+        // Checks are made at the full step: no particle is advanced before.
+        const bool energy = whole && watch_.due(work_.steps);
+        const bool network = whole && control_.due(work_.steps, recent_overlap_, size());
+        const bool ends = one_part || s == steps;
+        const bool goes_on = std::exchange(advanced, !ends && !energy && !network);
         begin_tally();
-        walls_.sum_up(s + 1 == steps);
+        walls_.sum_up(ends);
         press_walls(true);
         sweep_pairs(goes_on, advanced, false);
         peak_overlap_ = std::max(peak_overlap_, overlap());
+        recent_overlap_ = static_cast<double>(std::max(overlap(), tally_.wall_overlap));
         work_.pair_visits += field_.inner_count;
         if (beyond(sound_) && fault_.empty()) fault_ = describe_overlap(view(), tally_);
         if (suspicious() && fault_.empty()) fault_ = unsound_contact(view(), advanced);
-        if (checked && fault_.empty()) check_energy();
+        if (energy && fault_.empty()) check_energy();
+        if (network && fault_.empty()) check_network();
+        if (one_part) return;
     }
+}
+
+/// Compares the length of a part with the longest stable step of the present contacts.
+void MixedEngine::check_network() {
+    join_lists();
+    const auto gather = [this](bool slides) {
+        const std::vector<Velocities> before = slides ? motions(0) : std::vector<Velocities>{};
+        const ContactReader reader(laws_, space_, field_, columns_.id.data(), before, kernels_->width,
+                                   resting_.parked(), before);
+        reader.network(walls_, wall_time(), slides, network_);
+    };
+    gather(false);
+    if (!control_.look(network_, space_.scale.time, recent_overlap_)) return;
+    gather(true);
+    network_.keep(control_.lasting());
+    static_cast<void>(network_.bound(space_.scale.time));
+    const StepShare found = network_.share(space_.scale.time);
+    if (!control_.judge(found, network_)) return;
+    std::vector<ContactForce> all;
+    contacts(all);
+    fault_ = describe(view(),
+                      flaw_of_step(found, space_.scale.time, all, columns_.id[static_cast<std::size_t>(found.sphere)]),
+                      found.sphere);
+}
+
+/// Continues with another number of parts: the state in units of the new part, forces computed anew.
+void MixedEngine::take_parts() {
+    join_lists();
+    full_step_velocities();
+    const double before = space_.scale.time;
+    const Scale old = space_.scale;
+    use_parts();
+    const auto factor = static_cast<float>(space_.scale.time / before);  // a power of two: exact
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        Record& r = field_.records[i];
+        Residual residual = left_over(field_, i);
+        for (int a = 0; a < 3; ++a) {
+            r.velocity[a] *= factor;
+            residual.velocity[a] *= factor;
+            set_spin(field_, i, a, factor * r.spin[a]);
+        }
+        leave_over(field_, i, residual);
+    }
+    const auto& memory = laws_.front()->traits().memory;
+    for (std::size_t m = 0; m < memory.size(); ++m) {
+        const auto of_unit =
+            static_cast<float>(unit_of(memory[m].dimension, old) / unit_of(memory[m].dimension, space_.scale));
+        if (of_unit == 1) continue;
+        for (auto* column : {&columns_.history[m], &columns_.wall_history[m], &columns_.touch_memory[m]})
+            for (std::size_t k = 0; k < column->capacity(); ++k) (*column)[k] *= of_unit;
+    }
+    restart_forces();
+    watch_.restart_balance();
+}
+
+/// Sets all units to the length of a part.
+void MixedEngine::use_parts() {
+    space_.scale.time = time_step_ / static_cast<double>(control_.parts());
+    for (int a = 0; a < 3; ++a)
+        field_.constants.gravity[a] = gravity_in_steps(gravity_[static_cast<std::size_t>(a)], space_.scale);
+    write_law_constants(needs_.combination, table_.pairs().front(), space_.scale, field_.constants.laws);
+    write_pair_laws();
+    walls_.use_scale(space_.scale, table_);
+    watch_.use_scale(space_.scale);
+    resolved_ = resolved_in_parts_[static_cast<std::size_t>(control_.state().halvings)];
+    if (!contacts_differ_) sound_ = resolved_;
 }
 
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
@@ -209,7 +288,7 @@ void MixedEngine::begin_tally() {
 
 /// Gives the constants the acceleration of the present step: gravity and the body force of shaking.
 void MixedEngine::shake() {
-    const Vec3 b = shaking_acceleration(shaking_, space_.scale.time, work_.steps);
+    const Vec3 b = shaking_acceleration(shaking_, space_.scale.time, work_.steps * control_.parts() + part_);
     for (std::size_t a = 0; a < 3; ++a)
         field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], space_.scale);
 }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -32,6 +33,7 @@
 #include "solver/dem/fast/wall_touches.hpp"
 #include "solver/dem/fast/walls.hpp"
 #include "solver/dem/fast/watch.hpp"
+#include "solver/dem/step_control.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -48,14 +50,17 @@ class MixedEngine final : public Engine {
 public:
     MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed, Threads threads);
 
-    void run(std::int64_t steps) override;
+    void run(std::int64_t steps) override { advance(steps, false); }
+    void run_part() override { advance(1, true); }
+    [[nodiscard]] double part() const override { return space_.scale.time; }
+    [[nodiscard]] bool at_step() const override { return part_ == 0; }
     int set_threads(int count) override;
     void set_walls(std::vector<Wall> walls) override;
     void change_walls(std::vector<Wall> walls) override;
     void add(std::span<const Sphere> spheres) override;
     void remove(std::span<const std::int32_t> ids) override;
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
-    [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * space_.scale.time; }
+    [[nodiscard]] double wall_time() const override { return time_after(wall_steps_); }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return static_cast<double>(overlap()); }
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
@@ -68,12 +73,24 @@ public:
         return walls_[wall].energy();
     }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
-    [[nodiscard]] Work work() const override { return work_; }
+    [[nodiscard]] Work work() const override {
+        Work done = work_;
+        done.most_parts = control_.most_parts();
+        return done;
+    }
     void save(std::vector<std::byte>& into) const override;
     void restore(std::span<const std::byte> from) override;
 
 private:
     void load(const Setup& setup);
+    void advance(std::int64_t steps, bool one_part);
+    /// Returns the time after a count of completed steps and the parts of the present one, s.
+    [[nodiscard]] double time_after(std::int64_t steps) const {
+        return static_cast<double>(steps * control_.parts() + part_) * space_.scale.time;
+    }
+    void take_parts();
+    void use_parts();
+    void check_network();
     void append(std::span<const Sphere> spheres, std::int32_t id);
     void suit_caches();
     [[nodiscard]] float single_radius(const Sphere& sphere) const;
@@ -102,7 +119,8 @@ private:
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
     [[nodiscard]] FaultView view() const {
         join_lists();
-        return {field_, columns_.id.data(), space_.scale, walls_, table_, smallest_diameter_, sound_, work_.steps};
+        return {field_, columns_.id.data(), space_.scale,           walls_, table_, smallest_diameter_,
+                sound_, work_.steps,        time_after(work_.steps)};
     }
     /// Returns the largest overlap of all pairs divided by the smaller diameter, including parked contacts.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
@@ -145,6 +163,7 @@ private:
     float smallest_diameter_ = 1;
     float lightest_ = 1;  ///< reference density divided by the smallest
     bool contacts_differ_;
+    std::array<SoundOverlaps, most_halvings + 1> resolved_in_parts_;  ///< resolved_ for each number of halvings
     SoundOverlaps resolved_;
     SoundOverlaps sound_;            ///< limits of a sound state: equal to resolved_, unless contacts differ
     bool box_includes_rest_ = true;  ///< displacements are also relative to a body at rest or a face
@@ -163,6 +182,13 @@ private:
     float inner_skin_ = 0;
     float largest_skin_ = std::numeric_limits<float>::infinity();
     bool adapts_skin_;
+    StepControl control_;
+    Network network_;            ///< scratch of check_network()
+    double time_step_;           ///< s
+    Constants start_constants_;  ///< of whole steps
+    std::vector<double> start_laws_;
+    std::int64_t part_ = 0;      ///< parts of the present step that are done
+    double recent_overlap_ = 0;  ///< largest of the last sweep, of pairs and at walls, in diameters
     std::int32_t spheres_at_start_ = 0;
     std::int64_t wall_steps_ = 0;
     std::int64_t mobile_ = 0;

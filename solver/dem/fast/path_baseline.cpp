@@ -1,5 +1,5 @@
-// Kernels compiled for every supported processor: x86-64-v2, or NEON of AArch64. Only the function at the end may have
-// external linkage.
+// Kernels compiled for processors other than x86: NEON of AArch64. Only the function at the end may have external
+// linkage.
 #include "solver/dem/fast/pair_lanes.hpp"
 
 #include "solver/dem/fast/compiled_laws.hpp"

@@ -80,7 +80,12 @@ std::vector<Wall> read_walls(Reader& archive) {
 
 Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& scale, std::int32_t combination,
              const ContactTable& table, std::span<const Material> materials)
-    : scale_(scale), placed_(walls.size()), sums_(walls.size()), pivot_(walls.size()), work_(walls.size()) {
+    : combination_(combination),
+      scale_(scale),
+      placed_(walls.size()),
+      sums_(walls.size()),
+      pivot_(walls.size()),
+      work_(walls.size()) {
     std::vector<Material> together(materials.begin(), materials.end());
     together.emplace_back();
     const auto beyond = [&](const Material& m) { return make_contact(combination, m)->beyond(0.5 * scale.length); };
@@ -107,6 +112,21 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());
         place(w, 0);
+    }
+}
+
+void Walls::use_scale(const Scale& scale, const ContactTable& table) {
+    const double of_time = scale.time / scale_.time, of_force = of_time * of_time;
+    scale_ = scale;
+    for (std::size_t w = 0; w < count(); ++w) {
+        for (std::size_t kind = 0; kind < table.kinds(); ++kind)
+            write_law_constants(combination_, table.at_wall(moving_[w].wall(), kind), scale,
+                                constants_[w].data() + kind * constants_at_most);
+        std::copy_n(constants_[w].data(), constants_at_most, placed_[w].laws);
+        write_twist(moving_[w].twist(), scale_, placed_[w]);
+        for (int a = 0; a < 3; ++a) sums_[w].force[a] *= of_force, sums_[w].torque[a] *= of_force;
+        sums_[w].power *= of_force;
+        work_[w] *= of_force;
     }
 }
 

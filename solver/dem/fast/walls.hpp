@@ -36,6 +36,9 @@ public:
     /// Takes the result of moving_as(), `time` after the walls were set, s.
     void take(std::vector<MovingWall> changed, double time);
 
+    /// Sets the units of another length of steps; place() completes it.
+    void use_scale(const Scale& scale, const ContactTable& table);
+
     /// Sets places and velocities of the walls at `time` after they were set, s.
     void place(double time);
     /// Changes the speeds of free walls by their loads, acting for `steps` steps from `time` on.
@@ -66,6 +69,7 @@ private:
     [[nodiscard]] bool moves(std::size_t w) const { return moving_[w].present() && !moving_[w].at_rest(); }
     void place(std::size_t w, double time);
 
+    std::int32_t combination_;
     Scale scale_;
     bool any_free_ = false;
     std::vector<MovingWall> moving_;

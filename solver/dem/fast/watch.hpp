@@ -45,6 +45,11 @@ public:
     void set_limit(const Moment& now, std::span<const MovingWall> walls);
     /// Adds a particle; its id follows the earlier ids.
     void begin(const Record& record) { seen_.push_back({record.position[0], record.position[1], record.position[2]}); }
+    /// Sets the units of another length of steps.
+    void use_scale(const Scale& scale) {
+        speed_unit_ = scale.speed();
+        energy_unit_ = scale.mass * scale.speed() * scale.speed();
+    }
     /// Restarts the work of the walls.
     void forget_wall_work() { work_of_walls_ = 0; }
     /// Adds a step by the largest component of its velocities, engine's units.

@@ -40,6 +40,9 @@ public:
     [[nodiscard]] virtual Response<double> advance(const Touch<Partner::wall>& t, double* memory) const = 0;
     [[nodiscard]] virtual double energy(const Touch<Partner::particle>& t, const double* memory) const = 0;
     [[nodiscard]] virtual double energy(const Touch<Partner::wall>& t, const double* memory) const = 0;
+    /// Returns the springs and dampers of the pair.
+    [[nodiscard]] virtual Springs springs(const Touch<Partner::particle>& t) const = 0;
+    [[nodiscard]] virtual Springs springs(const Touch<Partner::wall>& t) const = 0;
 
 private:
     Traits traits_;
@@ -76,6 +79,8 @@ public:
     double energy(const Touch<Partner::wall>& t, const double* memory) const override {
         return laws_.energy(t, memory);
     }
+    Springs springs(const Touch<Partner::particle>& t) const override { return laws_.springs(t); }
+    Springs springs(const Touch<Partner::wall>& t) const override { return laws_.springs(t); }
 
 private:
     template <class T>

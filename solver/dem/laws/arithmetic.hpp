@@ -48,11 +48,11 @@ struct Arithmetic<double> {
     static void remember(double* memory, const Vector& v) {
         for (std::size_t k = 0; k < 3; ++k) memory[k] = v[k];
     }
-    static constexpr int iterations = 6;  ///< of Newton's method from a start with one digit
+    static constexpr int iterations = 4;  ///< of Halley's method from a start within 30 %
     static double divided(double a, double b) { return a / b; }
     static double larger(double a, double b) { return a < b ? b : a; }
     static double smaller(double a, double b) { return b < a ? b : a; }
-    static double cbrt(double a) { return std::cbrt(a); }  ///< a > 0
+    static double inverse_cbrt(double a) { return 1 / std::cbrt(a); }  ///< a > 0
     static double product(double a, double b, double c) { return a * b * c; }
     static double fnma(double a, double b, double c) { return c - a * b; }  ///< c - a b
     static double abs(double a) { return std::abs(a); }

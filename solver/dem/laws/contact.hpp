@@ -51,6 +51,14 @@ struct Contact : Laws<Real>... {
         return r;
     }
 
+    /// Returns the springs and dampers of the pair.
+    template <class T>
+    [[nodiscard]] Springs springs(const T& t) const {
+        Springs s;
+        (Laws<Real>::add_springs(t, s), ...);
+        return s;
+    }
+
     /// Returns the energy stored in the pair, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real* memory) const {

@@ -37,6 +37,12 @@ struct Hertz : LawTraits {
         r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
     }
 
+    template <class T>
+    void add_springs(const T& t, Springs& s) const {
+        s.normal = 1.5 * stiffness * t.root;
+        s.normal_damper = t.damped(damping);
+    }
+
     /// Returns the energy stored in the overlap, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {

@@ -9,8 +9,9 @@
 // G* a). With a_0^3 = 9 pi w R*^2/(2 E*) and y = sqrt(a/a_0) the quartic is
 //     y^4 - (2/3) y = s,  s = d R*/a_0^2 > -6^(-1/3)/2
 // and, after Ferrari, y = (k + sqrt(4/(3 k) - k^2))/2 with k^2 = m, m^3 + 4 s m = 4/9. This root is simple and well
-// conditioned for every s: Newton's iteration from a start within 20 % doubles its digits in each step. (The closed
-// form of Parteli et al. (2014), Sci. Rep. 4, 6227, is the same root; it loses digits where |d| is small.)
+// conditioned for every s: Halley's iteration from a start within 28 % triples its digits in each step
+// (3.8e-3, 1.8e-8). (The closed form of Parteli et al. (2014), Sci. Rep. 4, 6227, is the same root; it loses digits
+// where |d| is small.)
 //
 // Coulomb's limit: F_n + 2 F_po (Thornton & Yin (1991), Powder Technol. 65, 153), or the net force
 // (Material::friction_limit). Rolling by constant torque uses 4/3 E* a d minus the attraction plus 2 F_po instead of
@@ -66,11 +67,11 @@ struct Jkr : LawTraits {
     /// Decides whether there is a contact, and computes its radius.
     template <class T>
     [[gnu::always_inline]] void begin(T& t, const Real* lasting) const {
-        const Real root = A::cbrt(t.effective_radius);
-        const Real s = t.overlap * A::divided(inverse_size_squared, root);
+        const Real inverse_root = A::inverse_cbrt(t.effective_radius);  // R*^(-1/3)
+        const Real s = t.overlap * inverse_size_squared * inverse_root;
         t.hold(A::number(least) * lasting[0] < s);
         const Real y = shape(A::larger(s, A::number(least)));
-        t.touch_over(size * root * root * y * y);
+        t.touch_over(size * (t.effective_radius * inverse_root) * y * y);
     }
 
     template <bool advance, class T>
@@ -86,7 +87,7 @@ struct Jkr : LawTraits {
     /// Returns the energy of the contact in addition to Hertz's part 8/15 E* a d^2, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {
-        const Real root = A::cbrt(t.effective_radius), a0 = size * root * root;
+        const Real a0 = size * t.effective_radius * A::inverse_cbrt(t.effective_radius);
         const Real y2 = t.root / a0, y4 = y2 * y2, y7 = y4 * y2 * A::sqrt(y2);
         return -(pull / 3) * a0 * a0 * (0.8 * y7 + y4 / 15 + 0.4 * std::pow(6.0, -4.0 / 3));
     }
@@ -102,8 +103,9 @@ private:
         Real m = A::divided(four_ninths, A::number(0.582) + A::larger(four_s, zero)) -
                  A::number(0.4072) * A::smaller(four_s, zero);
         for (int k = 0; k < A::iterations; ++k) {
-            const Real square = m * m;
-            m = A::divided(A::number(2) * m * square + four_ninths, A::number(3) * square + four_s);
+            const Real square = m * m, slope = A::number(3) * square + four_s;
+            const Real left = m * (square + four_s) - four_ninths;
+            m = m - A::divided(left * slope, slope * slope - A::number(3) * m * left);
         }
         const Real k = A::sqrt(m);
         return A::number(0.5) * (k + A::sqrt(A::larger(A::divided(A::number(4.0 / 3), k) - m, zero)));

@@ -45,6 +45,12 @@ struct Linear : LawTraits {
         r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
     }
 
+    template <class T>
+    void add_springs(const T& t, Springs& s) const {
+        s.normal = stiffness;
+        s.normal_damper = t.damped_by_mass(damping);
+    }
+
     /// Returns the energy stored in the overlap, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real*) const {
@@ -85,6 +91,13 @@ struct LinearSliding : LawTraits {
         r.slides = slides;
         r.resistance = A::spring(stiffness, scale, s, A::drop(slides, over_normal * r.damping), t.slip);
         if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
+    }
+
+    template <class T>
+    void add_springs(const T&, Springs& s) const {
+        if (!(friction > 0)) return;
+        s.tangential = stiffness;
+        s.tangential_damper = over_normal * s.normal_damper;
     }
 
     /// Returns the energy stored in the tangential displacement, J.

@@ -51,6 +51,13 @@ struct Mindlin : LawTraits {
         if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
     }
 
+    template <class T>
+    void add_springs(const T& t, Springs& s) const {
+        if (!(friction > 0)) return;
+        s.tangential = stiffness * t.root;
+        s.tangential_damper = t.damped(damping);
+    }
+
     /// Returns the energy stored in the tangential displacement, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real* displacement) const {

@@ -75,6 +75,12 @@ struct RollingSpring : LawTraits {
         if constexpr (advance) A::remember(moment_of_spring, t.kept(m));
     }
 
+    template <class T>
+    void add_springs(const T& t, Springs& s) const {
+        s.rolling = spring(t);
+        s.rolling_damper = dashpot * std::sqrt(t.rolling_inertia * s.rolling);
+    }
+
     /// Returns the energy stored in the spring, J.
     template <class T>
     [[nodiscard]] Real energy(const T& t, const Real* moment_of_spring) const {

@@ -99,6 +99,12 @@ struct Response {
     Vector rolling{};  ///< minus the moment on i in addition to the moments of the forces; opposite sign on j, N m
 };
 
+/// Springs and dampers of a contact for small motions about its present state.
+struct Springs {
+    double normal = 0, tangential = 0, rolling = 0;                       ///< N/m, N/m, N m
+    double normal_damper = 0, tangential_damper = 0, rolling_damper = 0;  ///< N s/m, N s/m, N m s
+};
+
 /// Moment of inertia of a sphere about a point of its surface, 7/5 m R^2, divided by m R^2.
 inline constexpr double inertia_about_contact = 1.4;
 
@@ -142,6 +148,9 @@ struct LawTraits {
     static double beyond(const Material&, double) { return 0; }
     template <class T>
     void begin(T&, const void*) const {}
+    /// Adds the springs and dampers of the law; in the order of the laws.
+    template <class T>
+    static void add_springs(const T&, Springs&) {}
     /// Whether the memory of a pair survives a separation: until the neighbour list is rebuilt, and longer if the pair
     /// touches again at that moment.
     static constexpr bool remembers_separation = false;

@@ -100,6 +100,11 @@ double Powder::step(const Inputs& inputs, double radius, double speed) const {
     return time_step_fraction(inputs) * dem::shortest_time(of, radius, speed);
 }
 
+std::optional<double> Powder::step_share(const Inputs& inputs) const {
+    if (time_step(inputs) > 0) return std::nullopt;
+    return dem::step_share(time_step_fraction(inputs));
+}
+
 dem::Method Powder::method(const Inputs& inputs) const {
     dem::Method method;
     method.precision = precision(inputs);

@@ -128,6 +128,8 @@ struct Powder {
     /// Returns time_step, or time_step_fraction times the limit for particles of at least `radius` that collide at most
     /// at `speed`.
     [[nodiscard]] double step(const Inputs& inputs, double radius, double speed) const;
+    /// Returns the largest share of the longest stable step (dem::Setup::step_share); empty if time_step is given.
+    [[nodiscard]] std::optional<double> step_share(const Inputs& inputs) const;
     [[nodiscard]] dem::Method method(const Inputs& inputs) const;
 };
 

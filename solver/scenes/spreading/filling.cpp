@@ -156,6 +156,7 @@ dem::Setup settling(const Study& s, std::uint64_t seed, std::int64_t layer, cons
     setup.material = s.material;
     setup.gravity = {0, 0, -s.gravity};
     setup.time_step = s.time_step;
+    setup.step_share = s.step_share;
     setup.walls = {dem::Plane{{0, 0, base}, {0, 0, 1}}, dem::Plane{{first_gate, 0, 0}, {1, 0, 0}},
                    dem::Plane{{second_gate, 0, 0}, {-1, 0, 0}}};
     if (layer > 0) setup.walls.push_back(base_beyond(s, layer));

@@ -118,7 +118,8 @@ std::string key_of_bed(const Inputs& inputs, const Study& s) {
                                                                       "standard_error"};
     std::string key = "powder_spreading: settled bed\nrevision=" + std::to_string(revision) +
                       "\npath=" + std::string(instruction_path()) +
-                      sentence("\ntime step=%.17g\nsteps=%.17g\n", s.time_step, static_cast<double>(s.settle_steps));
+                      sentence("\ntime step=%.17g\nshare=%.17g\nsteps=%.17g\n", s.time_step, s.step_share.value_or(0),
+                               static_cast<double>(s.settle_steps));
     for (const auto& [name, value] : inputs) {
         if (without_effect.contains(name)) continue;
         if (name == question::base.name && s.base == Base::smooth) continue;
@@ -181,6 +182,7 @@ Study study_of(const Inputs& in, const Files& files) {
                      s.vibration_amplitude, s.gap));
 
     s.time_step = ask::powder.step(in, s.sizes.smallest() * s.diameter / 2, fastest_impact(s));
+    s.step_share = ask::powder.step_share(in);
     const double settle = std::round(ask::settle_time(in) / s.time_step);
     const double sweep = std::round(s.travel / s.speed / s.time_step);
     require(settle + sweep <= most_steps,

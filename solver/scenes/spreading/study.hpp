@@ -46,9 +46,10 @@ struct Study {
     Base base = Base::smooth;
     std::int64_t layers = 1;
     double time_step = 0;
-    double standard_error = 0;  ///< of mfr, at which the sweep may end early; 0: never
-    std::int64_t bed_seed = 0;  ///< 0: the case's own
-    std::string bed_key;        ///< canonical text of the data that determine the settled bed; empty: not shared
+    std::optional<double> step_share;  ///< of dem::Setup
+    double standard_error = 0;         ///< of mfr, at which the sweep may end early; 0: never
+    std::int64_t bed_seed = 0;         ///< 0: the case's own
+    std::string bed_key;               ///< canonical text of the data that determine the settled bed; empty: not shared
 
     std::int64_t particles = 0;  ///< for unequal sizes the expected number
     std::int64_t settle_steps = 0, sweep_steps = 0;

@@ -49,65 +49,44 @@ coupling::Motion<Drag> motion_of(const Question& q) {
     return {q.sphere(), q.step()};
 }
 
-template <class Kernel, class Level>
+template <class Level>
 std::unique_ptr<Coupled> dilute(const Question& q, std::uint64_t seed, Level level) {
-    return std::make_unique<CoupledAs<coupling::Suspension<flow::Boussinesq, Level, Kernel, Drag>>>(
+    return std::make_unique<CoupledAs<coupling::Suspension<flow::Boussinesq, Level, coupling::Trilinear, Drag>>>(
         q.fluid(), q.vibration(), motion_of(q), q.walls(), q.cloud(seed), std::move(level));
 }
 
-template <class Kernel, class Interaction>
+template <class Interaction>
 std::unique_ptr<Coupled> dense(const Question& q, std::uint64_t seed, Interaction interaction) {
-    return std::make_unique<CoupledAs<coupling::DenseSuspension<flow::Boussinesq, Interaction, Kernel, Drag>>>(
+    return std::make_unique<
+        CoupledAs<coupling::DenseSuspension<flow::Boussinesq, Interaction, coupling::Trilinear, Drag>>>(
         q.fluid(), q.vibration(), motion_of(q), q.walls(), q.cloud(seed), std::move(interaction), q.kernel());
 }
 
-/// Calls make<Kernel>() with the kernel of the interpolation.
-template <class Make>
-auto with_kernel(const Question& q, Make make) {
-    return q.interpolation == "solenoidal" ? make.template operator()<coupling::Solenoidal>()
-                                           : make.template operator()<coupling::Trilinear>();
-}
-
 std::unique_ptr<Coupled> one_way(const Question& q, std::uint64_t seed) {
-    return with_kernel(q, [&]<class Kernel>() {
-        return q.mirrored() ? dilute<Kernel>(q, seed, coupling::OneWayMirrored{})
-                            : dilute<Kernel>(q, seed, coupling::OneWay{});
-    });
+    return q.mirrored() ? dilute(q, seed, coupling::OneWayMirrored{}) : dilute(q, seed, coupling::OneWay{});
 }
 
 std::unique_ptr<Coupled> two_way(const Question& q, std::uint64_t seed) {
-    return with_kernel(q, [&]<class Kernel>() {
-        const auto particles = static_cast<std::size_t>(q.particles);
-        const auto form = [&]<class Form>(Form) {
-            return dilute<Kernel>(
-                q, seed,
-                coupling::TwoWay<Form>(q.grid(), Question::sides(), q.sphere(), particles, q.kernel(), Kernel::hats));
-        };
-        if (q.source_form == "eq9") return form(coupling::EquationNine{});
-        if (q.own_wake == "kept") return form(coupling::ForceForm{});
-        return dilute<Kernel>(
-            q, seed,
-            coupling::TwoWayWithoutOwnWake<coupling::ForceForm>(q.grid(), Question::sides(), q.sphere(), particles,
-                                                                q.kernel(), q.step(), Kernel::hats));
-    });
+    const auto particles = static_cast<std::size_t>(q.particles);
+    if (q.own_wake == "kept")
+        return dilute(q, seed, coupling::TwoWay(q.grid(), Question::sides(), q.sphere(), particles, q.kernel()));
+    return dilute(
+        q, seed,
+        coupling::TwoWayWithoutOwnWake(q.grid(), Question::sides(), q.sphere(), particles, q.kernel(), q.step()));
 }
 
 template <class Temperature>
 std::unique_ptr<Coupled> granular(const Question& q, std::uint64_t seed) {
-    return with_kernel(q, [&]<class Kernel>() {
-        return dense<Kernel>(q, seed,
-                             coupling::SolidsPressure<Temperature>(q.grid(), Question::sides(), q.sphere(), q.grains(),
-                                                                   q.granular_temperature, q.kernel(), Kernel::hats));
-    });
+    return dense(q, seed,
+                 coupling::SolidsPressure<Temperature>(q.grid(), Question::sides(), q.sphere(), q.grains(),
+                                                       q.granular_temperature, q.kernel()));
 }
 
 std::unique_ptr<Coupled> with_contacts(const Question& q, std::uint64_t seed) {
-    return with_kernel(q, [&]<class Kernel>() {
-        return q.contact == "spring" ? dense<Kernel>(q, seed,
-                                                     coupling::SpringContacts(q.sphere(), q.walls(), q.spring(),
-                                                                              static_cast<std::size_t>(q.particles)))
-                                     : dense<Kernel>(q, seed, coupling::ProjectedContacts(q.sphere(), q.walls()));
-    });
+    return q.contact == "spring" ? dense(q, seed,
+                                         coupling::SpringContacts(q.sphere(), q.walls(), q.spring(),
+                                                                  static_cast<std::size_t>(q.particles)))
+                                 : dense(q, seed, coupling::ProjectedContacts(q.sphere(), q.walls()));
 }
 
 constexpr LevelInfo all_levels[] = {
@@ -144,9 +123,8 @@ const LevelInfo& level_named(std::string_view name) {
 }
 
 CarriedStep* carried_step(const Question& q) {
-    return with_kernel(q, [&]<class Kernel>() -> CarriedStep* {
-        return q.mirrored() ? carry<coupling::OneWayMirrored, Kernel> : carry<coupling::OneWay, Kernel>;
-    });
+    using coupling::Trilinear;
+    return q.mirrored() ? carry<coupling::OneWayMirrored, Trilinear> : carry<coupling::OneWay, Trilinear>;
 }
 
 }  // namespace grainsweep::thermovibration

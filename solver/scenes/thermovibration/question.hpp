@@ -21,7 +21,7 @@ struct Question {
     double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
     std::int64_t particles;
     const LevelInfo* level;  ///< level of the coupling; one-way without particles
-    std::string source_form, own_wake, wall_contact, particle_start, interpolation, contact, symmetry;
+    std::string own_wake, wall_contact, particle_start, contact, symmetry;
     double restitution, collision_restitution, friction, overlap, packing_limit, granular_temperature;
     std::int64_t cells;
     double clustering;
