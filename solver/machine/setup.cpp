@@ -153,6 +153,11 @@ double time_step_of(const Spec& spec, double fraction, double speed) {
     return fraction * shortest;
 }
 
+void take_own_step(Spec& spec, double fraction, double longest) {
+    spec.time_step = fraction * longest;
+    spec.step_share = dem::step_share(fraction);
+}
+
 double fastest_of(const Spec& spec) {
     const double g = norm(spec.gravity);
     double top = 0, initial = 0;

@@ -21,6 +21,8 @@ struct PhaseTimes {
 /// Returns the time step: a fraction of the shortest Rayleigh time and of the shortest Hertz contact time of any two
 /// particles that meet at `speed`, s.
 [[nodiscard]] double time_step_of(const Spec& spec, double fraction, double speed);
+/// Sets the time step to a fraction of the longest one, s, and lets it follow the load (dem::Setup::step_share).
+void take_own_step(Spec& spec, double fraction, double longest);
 /// Returns the fastest impact to be expected: the fall from the top of the fillings and feeds to the lower end of the
 /// domain, with the fastest wall or feed, m/s.
 [[nodiscard]] double fastest_of(const Spec& spec);

@@ -6,7 +6,6 @@
 #include "sweep/campaign/machine_species_powder.hpp"
 #include "sweep/files/whole_file.hpp"
 
-#include "solver/dem/time_step.hpp"
 #include "solver/machine/setup.hpp"
 
 #include <fmt/format.h>
@@ -139,11 +138,7 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string&
             fmt::format("must be at most {:.4g} s, the shortest Rayleigh time or contact time of these "
                         "particles",
                         longest));
-    if (!(spec.time_step > 0)) {
-        const double fraction = input_number(inputs, "time_step_fraction");
-        spec.time_step = fraction * longest;
-        spec.step_share = dem::step_share(fraction);
-    }
+    if (!(spec.time_step > 0)) machine::take_own_step(spec, input_number(inputs, "time_step_fraction"), longest);
     for (std::size_t p = 0; p < spec.phases.size(); ++p)
         if (spec.phases[p].duration > most_steps * spec.time_step)
             throw wrong_question(

@@ -193,7 +193,7 @@ TEST(DemGranular, AChuteFlowsAsInLiggghts) {
     constexpr std::array velocities = {0.0086279, 0.0087529, 0.0080644, 0.010105};  // m/s
     constexpr std::array contacts = {2.6244, 2.7584, 2.7098, 2.7033};               // per mobile particle
     Mean energy, velocity, coordination, their_energy, their_velocity, their_coordination;
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 7; ++seed) {  // further starts for a smaller error of our means
         const dem::Setup setup = tests::small_chute(seed);
         const auto engine = dem::make_engine(setup, mixed());
         engine->run(std::llround(tests::small_chute_time / setup.time_step));
@@ -202,6 +202,7 @@ TEST(DemGranular, AChuteFlowsAsInLiggghts) {
         engine->state(state);
         const auto figures = tests::figures_of(state, setup);
         energy.add(figures.kinetic_energy), velocity.add(figures.velocity_x), coordination.add(figures.coordination);
+        if (seed > energies.size()) continue;
         their_energy.add(energies[seed - 1]), their_velocity.add(velocities[seed - 1]);
         their_coordination.add(contacts[seed - 1]);
     }
