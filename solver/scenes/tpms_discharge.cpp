@@ -333,7 +333,7 @@ SceneInfo tpms_discharge_scene() {
     SceneInfo info;
     info.name = "tpms_discharge";
     info.summary = "powder leaving a cell walled by a triply periodic minimal surface under gravity";
-    info.revision = 4;
+    info.revision = 5;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_record::observables();
     // Twice the study's step has 0.6 of the cost. It changes the retention at 1 t* by -0.1 +- 0.07 %, and the retention
