@@ -34,6 +34,12 @@ double damping_factor(double restitution) {
     return -2 * std::sqrt(5.0 / 6.0) * damping_ratio(restitution);
 }
 
+double pull_back_share(const Material& m) {
+    const double z = -damping_ratio(m.restitution);
+    if (m.tangential_limit == TangentialLimit::spring || !(z > 0)) return 0;
+    return std::sqrt(m.restitution) * std::sinh(z * std::asin(z) / std::sqrt(1 - z * z)) / z;
+}
+
 double sphere_mass(double radius, double density) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
 }

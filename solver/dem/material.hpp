@@ -28,8 +28,13 @@ enum class NormalLaw { hertz, linear };
 /// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp). By liquid bridges: capillary (laws/capillary.hpp).
 enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt, capillary };
 
-/// Normal force in Coulomb's limit: the contact force without the cohesive part, or the net force.
+/// Normal force in Coulomb's limit: the contact force without the cohesive part, or the net force. An attractive one
+/// counts as 0, or with TangentialLimit::spring by its size.
 enum class FrictionLimit { contact, net };
+
+/// What Coulomb's limit, and the limit of a rolling moment, holds for (laws/sliding_limit.hpp). sum: spring and dashpot
+/// together. spring: the spring alone, as in LIGGGHTS 3.8.
+enum class TangentialLimit { sum, spring };
 
 /// Law of rolling resistance. epsd: elastic-plastic spring with a dashpot (laws/rolling.hpp). epsd_liggghts: the same,
 /// with the relative rotation at walls of LIGGGHTS 3.8. cdt: torque of constant size against the relative rotation
@@ -84,6 +89,7 @@ struct Material {
                                   ///< harmonic mean radius
     CohesionLaw cohesion_law = CohesionLaw::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
+    TangentialLimit tangential_limit = TangentialLimit::sum;
 
     bool operator==(const Material&) const = default;
 };
@@ -96,6 +102,11 @@ struct Material {
 /// Returns -2 sqrt(5/6) beta. A damper of this factor times sqrt(S m*), S = dF/dd, makes restitution independent of the
 /// impact speed.
 [[nodiscard]] double damping_factor(double restitution);
+/// Returns the impulse by which a damped impact attracts at its end, divided by the impulse of the damper in approach;
+/// 0 if the tangential limit holds for the spring alone. With z = -beta it is sqrt(e) sinh(z asin(z)/sqrt(1 - z^2))/z:
+/// speeds of an impact over its depth are those of a damped oscillator, for Hertz's law over d^(5/4) (Antypov & Elliott
+/// (2011), EPL 94, 50004).
+[[nodiscard]] double pull_back_share(const Material& material);
 [[nodiscard]] double sphere_mass(double radius, double density);  ///< kg
 
 /// Returns the material of contacts with a wall, or frozen spheres, of this surface.

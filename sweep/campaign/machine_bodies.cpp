@@ -117,6 +117,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
         standard.cohesion_law = law_of(section, reading.scope, "cohesion_law", standard.cohesion_law);
         standard.normal_law = law_of(section, reading.scope, "normal_law", standard.normal_law);
         standard.friction_limit = law_of(section, reading.scope, "friction_limit", standard.friction_limit);
+        standard.tangential_limit = law_of(section, reading.scope, "tangential_limit", standard.tangential_limit);
         if (const auto pairs = section.find("pairs")) {
             if (!pairs->json().is_object()) pairs->refuse("must be an object of pairs: \"glass steel\"");
             for (const auto& [name, value] : pairs->json().items()) {

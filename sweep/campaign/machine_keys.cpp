@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggght
 constexpr std::array<std::string_view, 6> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt", "capillary"};
 constexpr std::array<std::string_view, 2> normal_words = {"hertz", "linear"};
 constexpr std::array<std::string_view, 2> limit_words = {"contact", "net"};
+constexpr std::array<std::string_view, 2> tangential_words = {"sum", "spring"};
 
 constexpr auto top_keys = std::to_array<Key>({
     needed({"name", MachineKey::text, "the name shown everywhere: letters, digits and _"}),
@@ -106,6 +107,12 @@ constexpr auto contact_keys = std::to_array<Key>({
      "\"contact\"",
      {},
      limit_words},
+    {"tangential_limit",
+     MachineKey::word,
+     "sum: friction limits the sum of tangential spring and dashpot; spring: the spring alone, as in LIGGGHTS",
+     "\"sum\"",
+     {},
+     tangential_words},
     {"normal_law",
      MachineKey::word,
      "hertz; linear: spring and dashpot of a given stiffness",

@@ -35,9 +35,9 @@ const std::vector<ParameterSpec>& powder_parameters() {
     static const std::vector<ParameterSpec> all = [] {
         constexpr kit::Powder p;
         return kit::declared(p.density, p.youngs_modulus, p.poisson_ratio, p.restitution, p.friction,
-                             p.rolling_friction, p.rolling_law, p.cohesion, p.cohesion_law, p.surface_energy,
-                             p.wall_friction, p.wall_rolling_friction, p.wall_restitution, p.wall_cohesion,
-                             p.wall_surface_energy);
+                             p.rolling_friction, p.rolling_law, p.tangential_limit, p.cohesion, p.cohesion_law,
+                             p.surface_energy, p.wall_friction, p.wall_rolling_friction, p.wall_restitution,
+                             p.wall_cohesion, p.wall_surface_energy);
     }();
     return all;
 }

@@ -30,6 +30,7 @@ constexpr auto contact_keys = std::to_array<Key>({
     {"friction", PowderKind::value, "Coulomb friction"},
     {"rolling_friction", PowderKind::value, "tangent of the steepest slope a sphere stands on"},
     {"rolling_law", PowderKind::text, "how rolling is resisted, as in the scenes"},
+    {"tangential_limit", PowderKind::text, "form of the limit of friction, as in the scenes"},
     {"cohesion", PowderKind::value, "cohesion energy density, J/m3"},
     {"cohesion_law", PowderKind::text, "attraction, as in the scenes"},
     {"surface_energy", PowderKind::value, "work of adhesion of jkr and dmt, J/m2"},

@@ -74,6 +74,7 @@ Inputs of_powder(const SceneInfo& scene, const Inputs& given) {
     inputs["size_distribution"] = std::string("uniform");
     inputs["size_spread"] = 0.1;
     inputs["time_step"] = 8e-5;
+    inputs["tangential_limit"] = std::string("spring");
     if (const char* precision = std::getenv("GRAINSWEEP_PRECISION")) inputs["precision"] = std::string(precision);
     for (const auto& [name, value] : given) inputs.at(name) = value;
     return inputs;

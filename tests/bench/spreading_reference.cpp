@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
         inputs["gap"] = table.at("gap_mm", row) * 1e-3;
         inputs["speed"] = table.at("v", row);
         inputs["time_step"] = 1e-5;
+        inputs["tangential_limit"] = std::string("spring");
         inputs["precision"] = precision;
         double mfr = 0;
         double window = 0;

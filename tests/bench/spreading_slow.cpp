@@ -88,6 +88,7 @@ TEST(Roller, AgreesWithLiggghts) {
             inputs["layer_area"] = 3000 * std::numbers::pi / 6 * d * d * d / width;
             inputs["settle_time"] = settle_time;
             inputs["time_step"] = 2e-5;
+            inputs["tangential_limit"] = std::string("spring");
             NoArtefacts none;
             const auto scene = info.make(inputs, seed, none);
             const double behind = behind_in_frames(*scene);

@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
     if (argc > 8) inputs["time_step"] = std::stod(argv[8]);
     inputs["end_time"] = times.back();
     inputs["settle_rule"] = std::string("none");
+    inputs["tangential_limit"] = std::string("spring");
 
     NoArtefacts none;
     const auto scene = info.make(inputs, 1, none, files);

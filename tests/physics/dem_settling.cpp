@@ -34,6 +34,7 @@ using Lasting = dem::ContactOf<dem::Contact<double, dem::Hertz, LastingMindlin>>
 
 dem::Setup mini_scene() {
     dem::Setup s;
+    s.material.tangential_limit = dem::TangentialLimit::spring;
     s.domain = {{-0.06, 0, -0.001}, {0.3, 0.03, 0.16}, {false, true, false}};
     s.walls = {dem::Plane{{0, 0, 0}, {0, 0, 1}}, dem::Plane{{0.015, 0, 0}, {1, 0, 0}},
                dem::Plane{{0.105, 0, 0}, {-1, 0, 0}}};

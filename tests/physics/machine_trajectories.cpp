@@ -47,7 +47,7 @@ json machine_of_case(const std::string& name, const json& c, FileTexts& files) {
     json machine = {{"name", name},
                     {"gravity", c["g"]},
                     {"domain", {{"low", {-half, -half, -half}}, {"high", {half, half, half}}}},
-                    {"contacts", {{"pairs", json::object()}}},
+                    {"contacts", {{"pairs", json::object()}, {"tangential_limit", "spring"}}},
                     {"fill", json::array()},
                     {"walls", walls_of(c, files)},
                     {"phases", {{{"name", "all"}, {"for", c["nsteps"].get<double>() * c["dt"].get<double>()}}}},

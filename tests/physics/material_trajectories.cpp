@@ -39,6 +39,7 @@ Material contact_of(const json& c, const std::string& a, const std::string& b) {
     m.partner = dem::Elasticity{other["E"], other["nu"]};
     m.restitution = pair["e"];
     m.friction = pair["mu"];
+    m.tangential_limit = dem::TangentialLimit::spring;
     if (!c["rolling"].is_null()) {
         m.rolling_friction = pair["mur"];
         m.rolling_damping = pair["murv"];

@@ -81,6 +81,16 @@ double PlainDem::kinetic_energy() const {
     return e;
 }
 
+/// The normal force that friction sees: the damper in approach without what it pulls at the end of an impact.
+double PlainDem::of_limit(const dem::Material& m, double force, double damper, double speed) {
+    if (m.tangential_limit == dem::TangentialLimit::spring) return std::abs(force);
+    const double z = -std::log(m.restitution) / std::hypot(std::log(m.restitution), pi), w = std::sqrt(1 - z * z);
+    const double at_depth = std::exp(-z * std::acos(z) / w);  // of an oscillator with a period of 2 pi/w
+    const double pulled = at_depth * at_depth - m.restitution, pushed = 2 * z * at_depth;
+    if (speed < 0 && z > 0) force += pulled / pushed * damper * speed;
+    return std::max(force, 0.0);
+}
+
 void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force, Vec3& turn) const {
     const dem::Material& m = c.material;
     const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
@@ -96,12 +106,13 @@ void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force
     Vec3 s = history;
     if (update) s = s + setup_.time_step * vt;
     s = s - dot(s, c.n) * c.n;
-    const double limit = m.friction * std::abs(normal - c.neck + c.forgiven);
-    Vec3 tangential = (-kt) * s - gt * vt;
-    if (kt * norm(s) > limit) {
-        tangential = (-limit / norm(s)) * s;
-        s = (-1 / kt) * tangential;
-    }
+    const double limit = m.friction * of_limit(m, normal - c.neck + c.forgiven, gn, vn);
+    const bool cut = kt * norm(s) > limit;
+    if (cut) s = (limit / (kt * norm(s))) * s;
+    double damper = cut ? 0 : gt;
+    if (m.tangential_limit == dem::TangentialLimit::sum && damper * norm(vt) > limit - kt * norm(s))
+        damper = std::max(limit - kt * norm(s), 0.0) / norm(vt);
+    Vec3 tangential = (-kt) * s - damper * vt;
     if (m.friction == 0) tangential = s = {};
     if (update) history = s;
     force = (normal - c.neck) * c.n + tangential;
@@ -123,17 +134,22 @@ Vec3 PlainDem::rolling(const Contact& c, bool update, Vec3& history, const Vec3&
         return (-1.0) * (torque - dot(torque, c.n) * c.n);
     }
     const double kr = 2.25 * kn * std::pow(m.rolling_friction * c.radius, 2);
-    const double limit = m.rolling_friction * c.radius * std::abs(dot(force, c.n) + c.forgiven);
+    const double log_e = std::log(m.restitution), beta = log_e / std::sqrt(log_e * log_e + pi * pi);
+    const double gn = -2 * std::sqrt(5.0 / 6) * beta * std::sqrt(2 * young * c.root * c.mass);
+    const double limit =
+        m.rolling_friction * c.radius * of_limit(m, dot(force, c.n) + c.forgiven, gn, dot(c.velocity, c.n));
     const Vec3 turning = c.turning - dot(c.turning, c.n) * c.n;
     Vec3 moment = history;
     if (update) moment = moment + (setup_.time_step * kr) * turning;
-    Vec3 viscous = (2 * m.rolling_damping * std::sqrt(kr / c.inverse_inertia)) * turning;
+    double damper = 2 * m.rolling_damping * std::sqrt(kr / c.inverse_inertia);
     if (norm(moment) > limit) {
         moment = (limit / norm(moment)) * moment;
-        viscous = {};
+        damper = 0;
     }
+    if (m.tangential_limit == dem::TangentialLimit::sum && damper * norm(turning) > limit - norm(moment))
+        damper = std::max(limit - norm(moment), 0.0) / norm(turning);
     if (update) history = moment;
-    return (-1.0) * (moment + viscous);
+    return (-1.0) * (moment + damper * turning);
 }
 
 /// Radius and attraction of a contact; `area` of those that attract by one.

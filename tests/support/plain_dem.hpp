@@ -42,6 +42,7 @@ private:
     [[nodiscard]] static double bridge_volume(const dem::Material& m, double radius, bool at_wall);
     [[nodiscard]] static double end_of_contact(const dem::Material& m, double radius, bool lasts, bool at_wall);
     /// Force on i and n x F_t of one contact.
+    [[nodiscard]] static double of_limit(const dem::Material& m, double force, double damper, double speed);
     void respond(const Contact& c, bool update, dem::Vec3& history, dem::Vec3& force, dem::Vec3& turn) const;
     /// Moment on i of the rolling resistance.
     [[nodiscard]] dem::Vec3 rolling(const Contact& c, bool update, dem::Vec3& history, const dem::Vec3& force) const;

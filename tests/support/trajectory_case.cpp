@@ -12,6 +12,7 @@ dem::Setup setup_of(const nlohmann::json& c) {
     s.material.density = c["rho"];
     s.material.restitution = c["e"];
     s.material.friction = c["mu"];
+    s.material.tangential_limit = dem::TangentialLimit::spring;
     if (c["coh"] != "") {
         s.material.cohesion = c["k"];
         s.material.cohesion_law = c["coh"] == "sjkr" ? dem::CohesionLaw::sjkr : dem::CohesionLaw::sjkr2;

@@ -90,6 +90,7 @@ dem::Setup setup_of_wall_case(const json& c) {
     s.material.density = c["rho"];
     s.material.restitution = c["e"];
     s.material.friction = c["mu"];
+    s.material.tangential_limit = dem::TangentialLimit::spring;
     if (!c["mur"].is_null()) {
         s.material.rolling_friction = c["mur"];
         s.material.rolling_damping = c["murv"];

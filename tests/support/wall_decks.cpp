@@ -50,7 +50,11 @@ std::vector<dem::Sphere> lattice(std::int64_t count, double d, double spread, co
 }
 
 dem::Material glass_like(double friction, double rolling_friction) {
-    return {.youngs_modulus = 5e6, .density = 2500, .friction = friction, .rolling_friction = rolling_friction};
+    return {.youngs_modulus = 5e6,
+            .density = 2500,
+            .friction = friction,
+            .rolling_friction = rolling_friction,
+            .tangential_limit = dem::TangentialLimit::spring};
 }
 
 double sphere_volume(double d) {
@@ -225,7 +229,8 @@ WallDeck roller_deck() {
     deck.name = "roller";
     deck.settle = 6000;
     deck.steps = 8125;
-    deck.start.material = {.youngs_modulus = 21e6, .density = 7980, .friction = 0.2};
+    deck.start.material = {
+        .youngs_modulus = 21e6, .density = 7980, .friction = 0.2, .tangential_limit = dem::TangentialLimit::spring};
     deck.start.time_step = 2e-5;
     deck.start.spheres = lattice(3000, d, 0, {0, first + 0.05 * d, 0.05 * d}, {width, first + length - 0.05 * d, 10},
                                  [](const Vec3&) { return true; });

@@ -61,6 +61,8 @@ constexpr WrongMachine wrong[] = {
     {"/contacts/rolling_law", R"("espd")",
      "$.contacts.rolling_law: ", "must be 'epsd', 'epsd_liggghts' or 'cdt'. Did you mean 'epsd'?"},
     {"/contacts/rolling_law", "2", "$.contacts.rolling_law: ", "must be 'epsd', 'epsd_liggghts' or 'cdt'."},
+    {"/contacts/tangential_limit", R"("springs")",
+     "$.contacts.tangential_limit: ", "must be 'sum' or 'spring'. Did you mean 'spring'?"},
     {"/contacts/cohesion_law", R"("JKR")",
      "$.contacts.cohesion_law: ", "must be 'sjkr', 'sjkr2', 'paper', 'jkr', 'dmt' or 'capillary'. Did you mean 'jkr'?"},
     {"/contacts/pairs/glass wood", R"({"friction": 0.1})", R"($.contacts.pairs["glass wood"]: )",

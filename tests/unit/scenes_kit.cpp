@@ -28,9 +28,9 @@ Inputs defaults(const std::vector<ParameterSpec>& specs) {
 std::vector<ParameterSpec> block() {
     return kit::declared(powder.diameter, powder.size_distribution, powder.size_spread, powder.size_file,
                          powder.density, powder.youngs_modulus, powder.poisson_ratio, powder.restitution,
-                         powder.friction, powder.rolling_friction, powder.rolling_law, powder.cohesion,
-                         powder.cohesion_law, powder.surface_energy, powder.time_step, powder.time_step_fraction,
-                         powder.precision);
+                         powder.friction, powder.rolling_friction, powder.rolling_law, powder.tangential_limit,
+                         powder.cohesion, powder.cohesion_law, powder.surface_energy, powder.time_step,
+                         powder.time_step_fraction, powder.precision);
 }
 
 TEST(Kit, HandlesReadWhatTheyDeclare) {

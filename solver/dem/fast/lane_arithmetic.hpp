@@ -105,12 +105,17 @@ struct Arithmetic<fast::F> {
     GRAINSWEEP_LANES static F abs(F a) { return fast::abs(a); }
     GRAINSWEEP_LANES static F sqrt(F a) { return fast::sqrt(a); }
     GRAINSWEEP_LANES static F drop(Mask m, F a) { return fast::drop(m, a); }
+    GRAINSWEEP_LANES static Mask either(Mask m, Mask n) { return m | n; }
     GRAINSWEEP_LANES static V3 add(V3 v, F factor, V3 w) { return fast::fma(w, factor, v); }
     GRAINSWEEP_LANES static V3 across(V3 v, V3 n) { return fast::fnma(dot(v, n), n, v); }
     GRAINSWEEP_LANES static V3 scaled(V3 v, F factor) { return v * factor; }
     GRAINSWEEP_LANES static V3 directed(F size, V3 v) { return v * (size * fast::inverse_root(square(v, 1e-37f))); }
-    GRAINSWEEP_LANES static Cut<F, Mask> cut(F k, V3 s, F limit) { return cut_to(k * k * square(s, 1e-30f), limit); }
-    GRAINSWEEP_LANES static Cut<F, Mask> cut(V3 s, F limit) { return cut_to(square(s, 1e-37f), limit); }
+    /// The divider is idle here, unlike multiplication.
+    GRAINSWEEP_LANES static F over_length(F a, V3 v) { return a / fast::sqrt(square(v, 1e-37f)); }
+    GRAINSWEEP_LANES static Cut<F, Mask> cut(F k, V3 s, F limit, F least) {
+        return cut_to(fast::fma(k * k, dot(s, s), number(1e-37)), limit, least);
+    }
+    GRAINSWEEP_LANES static Cut<F, Mask> cut(V3 s, F limit, F least) { return cut_to(square(s, 1e-37f), limit, least); }
     GRAINSWEEP_LANES static V3 spring(F k, F scale, V3 s, F viscosity, V3 v) {
         const V3 damped = v * viscosity;
         s = s * scale;
@@ -118,9 +123,10 @@ struct Arithmetic<fast::F> {
     }
 
 private:
-    GRAINSWEEP_LANES static Cut<F, Mask> cut_to(F size_squared, F limit) {
-        const F ratio = limit * fast::inverse_root(size_squared);
-        return {ratio < fast::broadcast(1.0f), fast::min(ratio, fast::broadcast(1.0f))};
+    GRAINSWEEP_LANES static Cut<F, Mask> cut_to(F size_squared, F limit, F least) {
+        const F inverse = fast::inverse_root(size_squared), ratio = limit * inverse;
+        return {ratio < fast::broadcast(1.0f), fast::min(ratio, fast::broadcast(1.0f)),
+                fast::max(fast::fnma(size_squared, inverse, limit), least)};
     }
 };
 

@@ -133,6 +133,9 @@ template <int N>
 GRAINSWEEP_LANES Singles<N> max(Singles<N> a, Singles<N> b) {
     return {hn::Max(a.v, b.v)};
 }
+GRAINSWEEP_LANES F operator/(F a, F b) {
+    return {hn::Div(a.v, b.v)};
+}
 GRAINSWEEP_LANES F abs(F a) {
     return {hn::Abs(a.v)};
 }
@@ -226,6 +229,9 @@ GRAINSWEEP_LANES M operator<(F a, F b) {
 }
 GRAINSWEEP_LANES M operator&(M a, M b) {
     return {hn::And(a.v, b.v)};
+}
+GRAINSWEEP_LANES M operator|(M a, M b) {
+    return {hn::Or(a.v, b.v)};
 }
 GRAINSWEEP_LANES F keep(M m, F a) {
     return {hn::IfThenElseZero(m.v, a.v)};

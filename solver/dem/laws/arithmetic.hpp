@@ -8,6 +8,7 @@
 #include "solver/geometry/vector.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace grainsweep::dem {
 
@@ -17,11 +18,12 @@ struct AreaForm {
     double wall_band = 0, wall_cap = 0;  ///< at a wall
 };
 
-/// Test whether a tangential or rolling spring exceeds its limit, and the factor that reduces it to the limit.
+/// Test whether a tangential or rolling spring exceeds its limit, the factor that reduces it to the limit, and what it
+/// leaves of the limit, at least a given number.
 template <class Real, class Mask>
 struct Cut {
     Mask exceeds;
-    Real scale;
+    Real scale, left;
 };
 
 template <class Real>
@@ -58,6 +60,7 @@ struct Arithmetic<double> {
     static double abs(double a) { return std::abs(a); }
     static double sqrt(double a) { return std::sqrt(a); }
     static double drop(bool m, double a) { return m ? 0.0 : a; }  ///< a, or 0 if m is true
+    static bool either(bool m, bool n) { return m || n; }
     /// v + factor w
     static Vector add(const Vector& v, double factor, const Vector& w) {
         using namespace geometry;
@@ -71,11 +74,18 @@ struct Arithmetic<double> {
         const double length = geometry::norm(v);
         return scaled(v, length > 0 ? size / length : 0.0);
     }
-    /// Compares k |s| with a limit.
-    static Cut<double, bool> cut(double k, const Vector& s, double limit) {
-        return cut_to(k * std::sqrt(geometry::dot(s, s)), limit);
+    /// Returns a/|v|; beyond any number if v is 0.
+    static double over_length(double a, const Vector& v) {
+        const double length = geometry::norm(v);
+        return length > 0 ? a / length : std::numeric_limits<double>::infinity();
     }
-    static Cut<double, bool> cut(const Vector& s, double limit) { return cut_to(geometry::norm(s), limit); }
+    /// Compares k |s| with a limit.
+    static Cut<double, bool> cut(double k, const Vector& s, double limit, double least) {
+        return cut_to(k * std::sqrt(geometry::dot(s, s)), limit, least);
+    }
+    static Cut<double, bool> cut(const Vector& s, double limit, double least) {
+        return cut_to(geometry::norm(s), limit, least);
+    }
     /// k scale s + viscosity v
     static Vector spring(double k, double scale, const Vector& s, double viscosity, const Vector& v) {
         using namespace geometry;
@@ -84,9 +94,9 @@ struct Arithmetic<double> {
 
 private:
     // Both results are computed and one is selected, because a branch would be hard to predict.
-    static Cut<double, bool> cut_to(double size, double limit) {
+    static Cut<double, bool> cut_to(double size, double limit, double least) {
         const bool exceeds = size > limit;
-        return {exceeds, exceeds ? limit / size : 1.0};
+        return {exceeds, exceeds ? limit / size : 1.0, exceeds ? least : larger(limit - size, least)};
     }
 };
 

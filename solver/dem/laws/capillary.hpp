@@ -13,7 +13,7 @@
 // Forming and breaking a bridge dissipates the work of separation,
 //     W = 2 pi g cos(theta) sqrt(R_D V) (2/q) (atan((5 x_c + 1.05)/q) - atan(1.05/q)),  q = sqrt(10 - 1.05^2),
 // so that slower impacts stick. Coulomb's limit uses the contact force without the attraction, or, while bodies touch,
-// the net force (Material::friction_limit).
+// the net force where it repels (Material::friction_limit).
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"

@@ -5,6 +5,7 @@
 //             wall  A = pi (2 R d - d^2)                                       (LIGGGHTS 3.8 `sjkr`)
 //     sjkr2   pair  A = 4 pi R* d            wall  A = 2 pi R d                (LIGGGHTS 3.8 `sjkr2`)
 //     paper   A = pi (2 R* d - d^2)/4, pair and wall alike (Gupta, eq. 15 read literally)
+// Coulomb's limit uses the contact force without F, or the net force where it repels (Material::friction_limit).
 // The stored energy is minus k times the integral of A over the overlap.
 #pragma once
 

@@ -4,7 +4,7 @@
 //
 // Derjaguin, Muller & Toporov (1975), J. Colloid Interface Sci. 53, 314, in the form of Maugis (2000), Contact,
 // Adhesion and Rupture of Elastic Solids, sect. 4.2.5. Pull-off is at d = 0 with the force 2 pi w R*. Coulomb's limit
-// uses the contact force without the attraction, or the net force (Material::friction_limit).
+// uses the contact force without the attraction, or the net force where it repels (Material::friction_limit).
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"

@@ -5,6 +5,11 @@
 //
 // Hertz (1882); damping after Tsuji, Tanaka & Ishida (1992), Powder Technol. 71, 239, in the form of Antypov &
 // Elliott (2011), EPL 94, 50004. The force is not clipped: near its end a damped contact attracts.
+//
+// Friction sees F_n - a g_n max(-v_n, 0), where that repels. The share a of the damper in approach has the impulse by
+// which the contact attracts at its end (pull_back_share), so that an impact in gross sliding has a tangential impulse
+// of mu times the normal one, at any restitution, and never a tangential force above mu F_n. Where the spring alone is
+// limited (Material::tangential_limit), friction sees F_n.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -16,25 +21,29 @@ template <class Real>
 struct Hertz : LawTraits {
     using A = Arithmetic<Real>;
     static constexpr Aspect aspect = Aspect::normal;
-    static constexpr int constants = 2;
+    static constexpr int constants = 3;
 
     static bool wanted(const Material& m) { return m.normal_law == NormalLaw::hertz; }
     static bool suits(const Material& m) { return wanted(m); }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double modulus = effective_modulus(m);
         return {{{4.0 / 3.0 * modulus, pressure},
-                 {damping_factor(m.restitution) * std::sqrt(2 * modulus), root_of_pressure}}};
+                 {damping_factor(m.restitution) * std::sqrt(2 * modulus), root_of_pressure},
+                 {-pull_back_share(m), number}}};
     }
-    explicit Hertz(const double* c) : stiffness(A::number(c[0])), damping{A::damping(c[1])} {}
+    explicit Hertz(const double* c)
+        : stiffness(A::number(c[0])), damping{A::damping(c[1])}, pull_back(A::number(c[2])) {}
 
     Real stiffness;               ///< 4/3 E*, Pa
     typename A::Damping damping;  ///< -2 sqrt(5/6) beta sqrt(2 E*), sqrt(Pa)
+    Real pull_back;               ///< minus pull_back_share
 
     template <bool advance, class T>
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real*) const {
         r.elastic = stiffness * t.root * t.overlap;
         r.damping = t.damped(damping);
-        r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
+        r.normal = A::fnma(r.damping, t.normal_velocity, r.elastic);
+        r.seen = A::fnma(pull_back * r.damping, A::smaller(t.normal_velocity, A::number(0)), r.normal);
     }
 
     template <class T>

@@ -13,7 +13,7 @@
 // (3.8e-3, 1.8e-8). (The closed form of Parteli et al. (2014), Sci. Rep. 4, 6227, is the same root; it loses digits
 // where |d| is small.)
 //
-// Coulomb's limit: F_n + 2 F_po (Thornton & Yin (1991), Powder Technol. 65, 153), or the net force
+// Coulomb's limit: F_n + 2 F_po (Thornton & Yin (1991), Powder Technol. 65, 153), or the net force where it repels
 // (Material::friction_limit). Rolling by constant torque uses 4/3 E* a d minus the attraction plus 2 F_po instead of
 // k_n d. The energy is 0 at the end of the contact. First touch releases 7.09 (w^5 R*^4/E*^2)^(1/3) (Thornton & Ning
 // (1998), Powder Technol. 99, 154), which is dissipated, so slower impacts stick.

@@ -2,21 +2,21 @@
 //
 //     dM = k_r w_t dt,  M += dM        w_t = (w_i - w_j) without its part along n
 //     k_r = 2.25 k_n mu_r^2 R*^2,  k_n = 4/3 E* sqrt(R* d), or that of the linear law (linear.hpp)
-//     |M| <= mu_r R* |F_n|:  moment on i  -M - 2 eta_r sqrt(I_r k_r) w_t,   1/I_r = sum of 1/(7/5 m R^2)
-//     otherwise:             M := mu_r R* |F_n| M/|M|,  moment on i  -M     (no dashpot)
+//     moment on i  -M - 2 eta_r sqrt(I_r k_r) w_t,   1/I_r = sum of 1/(7/5 m R^2)
+//     |M| <= mu_r R* N,  |moment| <= mu_r R* N          (sliding_limit.hpp; N: see mindlin.hpp)
 //
-// Ai, Chen, Rotter & Ooi (2011), Powder Technol. 206, 269, model C; stiffness after Iwashita & Oda (1998),
-// J. Eng. Mech. 124, 285, as evaluated by LIGGGHTS 3.8 `rolling_friction epsd`. The memory is the moment, not the
-// angle, so each increment uses k_r at the overlap of its time. M does not rotate with n; during a sticking contact n
-// rotates by less than the angles that the spring allows. Twist about n is not resisted.
+// Ai, Chen, Rotter & Ooi (2011), Powder Technol. 206, 269, model C, where the dashpot is not limited below the limit of
+// the spring (TangentialLimit::spring); stiffness after Iwashita & Oda (1998), J. Eng. Mech. 124, 285, as evaluated by
+// LIGGGHTS 3.8 `rolling_friction epsd`. The memory is the moment, not the angle, so each increment uses k_r at the
+// overlap of its time. M does not rotate with n; during a sticking contact n rotates by less than the angles that the
+// spring allows. Twist about n is not resisted.
 //
 // mu_r is the tangent of the steepest slope on which a sphere stays at rest. There are two differences from LIGGGHTS,
 // unless RollingLaw::epsd_liggghts is chosen. At a wall, LIGGGHTS uses (R - d/2)/(R - d) times w_i as relative
-// rotation; here it is w_i. In its evaluation before the first step, LIGGGHTS has the moment of one step later. F_n is
-// the normal force of Coulomb's limit.
+// rotation; here it is w_i. In its evaluation before the first step, LIGGGHTS has the moment of one step later.
 #pragma once
 
-#include "solver/dem/laws/touch.hpp"
+#include "solver/dem/laws/sliding_limit.hpp"
 #include "solver/dem/material.hpp"
 
 namespace grainsweep::dem {
@@ -28,7 +28,7 @@ struct RollingSpring : LawTraits {
     static constexpr Aspect aspect = Aspect::rolling;
     static constexpr bool spin = true, rolls = true;
     static constexpr MemoryKind memory_kind{3, -1, moment};
-    static constexpr int constants = 4;
+    static constexpr int constants = 5;
 
     static bool wanted(const Material& m) { return m.rolling_friction > 0; }
     static bool suits(const Material& m) {
@@ -40,15 +40,21 @@ struct RollingSpring : LawTraits {
                   linear ? force_per_length : pressure},
                  {mu_r, number},
                  {2 * m.rolling_damping, {.inertia = -0.5}},
-                 {m.rolling_law == RollingLaw::epsd_liggghts ? 0.5 : 0.0, number}}};
+                 {m.rolling_law == RollingLaw::epsd_liggghts ? 0.5 : 0.0, number},
+                 SlidingLimit<Real>::constant_of(m)}};
     }
     explicit RollingSpring(const double* c)
-        : stiffness(A::number(c[0])), friction(A::number(c[1])), dashpot(A::number(c[2])), lever(A::number(c[3])) {}
+        : stiffness(A::number(c[0])),
+          friction(A::number(c[1])),
+          dashpot(A::number(c[2])),
+          lever(A::number(c[3])),
+          bound(c[4]) {}
 
     Real stiffness;  ///< 2.25 mu_r^2 4/3 E*, Pa; linear: 2.25 mu_r^2 k, N/m
     Real friction;   ///< mu_r
     Real dashpot;    ///< 2 eta_r
     Real lever;      ///< at walls the rotation is multiplied by 1 + lever d/(R - d)
+    SlidingLimit<Real> bound;
 
     /// Returns k_r, N m.
     template <class T>
@@ -69,9 +75,10 @@ struct RollingSpring : LawTraits {
             m = A::add(m, t.time_step * k, turning);
         else
             m = A::add(m, (lever + lever) * t.time_step * k, turning);
-        const auto [yields, scale] = A::cut(m, t.limit(A::product(friction, t.effective_radius, A::abs(r.seen))));
-        m = A::scaled(m, scale);
-        r.rolling = A::add(m, A::drop(yields, dashpot * A::sqrt(t.rolling_inertia * k)), turning);
+        const auto cut =
+            A::cut(m, t.limit(A::product(friction, t.effective_radius, bound.normal(r.seen))), bound.least);
+        m = A::scaled(m, cut.scale);
+        r.rolling = A::add(m, bound.damper(cut, dashpot * A::sqrt(t.rolling_inertia * k), turning), turning);
         if constexpr (advance) A::remember(moment_of_spring, t.kept(m));
     }
 

@@ -28,6 +28,7 @@ void for_each_number(Of& m, Visit&& visit) {
     visit(m.rolling_law);
     visit(m.cohesion_law);
     visit(m.friction_limit);
+    visit(m.tangential_limit);
     if (m.cohesion_law != CohesionLaw::capillary) return;
     visit(m.surface_tension), visit(m.contact_angle), visit(m.bridge_volume);
 }

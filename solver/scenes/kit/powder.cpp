@@ -35,6 +35,7 @@ dem::Material Powder::material(const Inputs& inputs) const {
     material.friction = friction(inputs);
     material.rolling_friction = rolling_friction(inputs);
     material.rolling_law = rolling_law(inputs);
+    material.tangential_limit = tangential_limit(inputs);
     material.cohesion_law = cohesion_law(inputs);
     // the parameter of the other kind of law has no effect
     (dem::acts_by_surface_energy(material.cohesion_law) ? material.surface_energy : material.cohesion) =

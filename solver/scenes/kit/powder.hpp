@@ -70,6 +70,12 @@ struct Powder {
           {"epsd_liggghts", dem::RollingLaw::epsd_liggghts},
           {"cdt", dem::RollingLaw::cdt}}},
         {if_set("rolling_friction")}};
+    Choice<dem::TangentialLimit, 2> tangential_limit{
+        "tangential_limit",
+        "limited to friction times the normal force: 'sum' tangential spring and dashpot together, 'spring' the spring "
+        "alone, as LIGGGHTS does; rolling moments likewise",
+        {{{"sum", dem::TangentialLimit::sum}, {"spring", dem::TangentialLimit::spring}}},
+        {if_set("friction")}};
     Real wall_friction{"wall_friction", "1", "Coulomb friction at the walls; -1: friction", as_powder, {as_powder, 2}};
     Real wall_rolling_friction{
         "wall_rolling_friction", "1", "rolling friction at the walls; -1: rolling_friction", as_powder, {as_powder, 1}};

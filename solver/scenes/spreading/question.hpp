@@ -119,13 +119,14 @@ inline constexpr kit::Real standard_error{
     {0, 1}};
 
 [[nodiscard]] inline std::vector<ParameterSpec> parameters() {
-    return kit::declared(powder.friction, powder.rolling_friction, powder.rolling_law, powder.restitution,
-                         powder.diameter, powder.size_distribution, powder.size_spread, powder.size_file, tool,
-                         tool_scale, tool_facet_angle, roller_diameter, roller_spin, gap, speed, powder.cohesion,
-                         powder.cohesion_law, powder.surface_energy, powder.youngs_modulus, powder.poisson_ratio,
-                         powder.density, gravity, vibration_amplitude, vibration_frequency, width, layer_area,
-                         layer_beyond, layers, base, settle_time, bed_seed, travel, blade_thickness, blade_edge_radius,
-                         powder.time_step, powder.time_step_fraction, standard_error, powder.precision);
+    return kit::declared(powder.friction, powder.rolling_friction, powder.rolling_law, powder.tangential_limit,
+                         powder.restitution, powder.diameter, powder.size_distribution, powder.size_spread,
+                         powder.size_file, tool, tool_scale, tool_facet_angle, roller_diameter, roller_spin, gap, speed,
+                         powder.cohesion, powder.cohesion_law, powder.surface_energy, powder.youngs_modulus,
+                         powder.poisson_ratio, powder.density, gravity, vibration_amplitude, vibration_frequency, width,
+                         layer_area, layer_beyond, layers, base, settle_time, bed_seed, travel, blade_thickness,
+                         blade_edge_radius, powder.time_step, powder.time_step_fraction, standard_error,
+                         powder.precision);
 }
 
 }  // namespace grainsweep::spreading::question

@@ -130,8 +130,8 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
     using namespace ask;
     return kit::declared(
         cell, side, edge, shell, packing, packing_fraction, packing_seed, powder.diameter, powder.friction,
-        powder.rolling_friction, powder.rolling_law, friction_limit, powder.restitution, powder.cohesion,
-        powder.cohesion_law, powder.surface_energy, powder.wall_friction, powder.wall_rolling_friction,
+        powder.rolling_friction, powder.rolling_law, friction_limit, powder.tangential_limit, powder.restitution,
+        powder.cohesion, powder.cohesion_law, powder.surface_energy, powder.wall_friction, powder.wall_rolling_friction,
         powder.wall_restitution, powder.wall_cohesion, powder.wall_surface_energy, powder.youngs_modulus,
         powder.poisson_ratio, powder.density, gravity, tilt, tilt_azimuth, vibration_amplitude, vibration_frequency,
         vibration_direction, end_time, ends_when_quiet, powder.time_step, powder.precision, rest_speed);
