@@ -13,9 +13,9 @@ using namespace geometry;
 
 namespace {
 
-constexpr int most_iterations = 16;
-constexpr int least_iterations = 4;
-constexpr double converged = 1e-2;  ///< relative growth of the eigenvalue per iteration
+constexpr int most_iterations = 20;
+constexpr int least_iterations = 6;
+constexpr double converged = 5e-3;  ///< relative growth of the eigenvalue per iteration
 
 /// Returns the largest eigenvalue of a contact between fixed masses of 1 with the inertia of spheres.
 double strength(const Bond& bond, double of_springs, double of_dampers) {

@@ -149,17 +149,19 @@ struct Dense {
 
 // At the longest step the largest eigenvalue is 4. A share that is too small by 3 % gives up to 4.25.
 TEST(DemNetwork, EqualsTheDenseEigenvalueFromBelowWithinThreePercent) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        const Dense dense(3, seed);
-        const double eigenvalue = dense.eigenvalue(2e-3 / share_of(dense.network, 2e-3));
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const Dense dense(2, seed);
+        // The mode depends on the step a little: the share is exact where it is 1.
+        const double near = 2e-3 / share_of(dense.network, 2e-3);
+        const double eigenvalue = dense.eigenvalue(near / share_of(dense.network, near));
         EXPECT_GE(eigenvalue, 4 * (1 - 1e-6));
         EXPECT_LE(eigenvalue, 4.25);
     }
 }
 
 TEST(DemNetwork, TheBoundIsAboveTheEigenvalueAndBelowThriceOfIt) {
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-        const Dense dense(3, seed);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const Dense dense(2, seed);
         const double exact = dense.eigenvalue(2e-3), bound = dense.network.bound(2e-3);
         EXPECT_GE(bound, exact);
         EXPECT_LE(bound, 3 * exact);
