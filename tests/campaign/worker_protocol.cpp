@@ -96,19 +96,19 @@ TEST(WorkerProtocol, ALauncherMayGreet) {
 
 TEST(WorkerProtocol, AnAttemptCarriesWhatComputedIt) {
     const ScriptedCampaign campaign(
-        R"X("$@" | sed -u -e 's/"host":"[^"]*"/"host":"node7"/' -e 's/"path":"[^"]*"/"path":"x86-64-v2"/')X");
+        R"X("$@" | sed -u -e 's/"host":"[^"]*"/"host":"node7"/' -e 's/"path":"[^"]*"/"path":"avx2"/')X");
     ASSERT_EQ(campaign.run().code, 0);
     const std::string id = campaign.query("SELECT case_id FROM scripted LIMIT 1")[0]["case_id"];
     const auto explained = run_program({"explain", "scripted.db", id, "--format", "json"}, campaign.folder().path());
     const auto attempt = json::parse(explained.out)["attempts"][0];
     EXPECT_EQ(attempt["host"], "node7");
-    EXPECT_EQ(attempt["instruction_path"], "x86-64-v2");
+    EXPECT_EQ(attempt["instruction_path"], "avx2");
     EXPECT_FALSE(attempt["processor"].get<std::string>().empty());
     EXPECT_FALSE(attempt["build"].get<std::string>().empty());
     // A replay takes the path from the attempt, not from the run.
     const auto replayed = run_program({"replay", "scripted.db", id, "--format", "json"}, campaign.folder().path());
     EXPECT_EQ(json::parse(replayed.out)["same_path"], true) << replayed.out;
-    EXPECT_EQ(campaign.ask("SELECT instruction_path <> 'x86-64-v2' OR host <> 'node7' FROM provenance"), 1);
+    EXPECT_EQ(campaign.ask("SELECT instruction_path <> 'avx2' OR host <> 'node7' FROM provenance"), 1);
 }
 
 // ---- bounds --------------------------------------------------------------------------------------------------------

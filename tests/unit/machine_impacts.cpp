@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(Both, StepContacts,
 TEST_P(StepContacts, TakeWhatTheMotionLoses) {
     dem::Setup setup = boxed_gas(20, 0.4, 2, 5);
     setup.gravity = {};
-    setup.material.friction = 0.4;
+    setup.material.friction = 0.6;
     setup.material.rolling_friction = 0.1;
     setup.material.restitution = 0.4;
     Method method;

@@ -86,7 +86,7 @@ TEST_F(Study, FinishedCasesBehindAnOpenOneGiveProvisionalFigures) {
     EXPECT_THAT(history.warnings, Contains(HasSubstr("only the provisional figures include them")));
 
     const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db", true));
-    EXPECT_THAT(text, HasSubstr("provisional moments over all 426 finished cases"));
+    EXPECT_THAT(text, HasSubstr("provisional moments of all 426 finished cases"));
     EXPECT_THAT(text, Not(HasSubstr("moments over 0 points")));
     EXPECT_THAT(text, HasSubstr("largest"));
     const auto rows = provisional_rows(responses, responses.observable("y"), history);
