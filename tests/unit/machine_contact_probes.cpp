@@ -202,7 +202,7 @@ TEST(MachineWear, OfAThrownSphereIsTheWorkOfFriction) {
           "name": "thrown",
           "domain": {"low": [-0.1, -0.1, -0.1], "high": [1, 0.1, 0.2]},
           "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}},
-          "contacts": {"restitution": 0.2, "friction": 0.4},
+          "contacts": {"restitution": 0.8, "friction": 0.4},
           "species": {"a": {"diameter": "4 mm"}},
           "walls": {"floor": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}},
           "fill": [{"species": "a", "spheres": [{"at": [0, 0, 0.00201], "velocity": [0.5, 0, 0]}]}],
