@@ -78,7 +78,7 @@ TEST(LoadedBeds, RestUnderTheirLoadAtEverySetting) {
 // The same step, but fixed: a fault that names the load, the place and a step that would do; at that step it rests.
 TEST(LoadedBeds, AFixedStepBeyondTheLimitIsReported) {
     for (const Precision precision : {Precision::mixed, Precision::double_precision}) {
-        dem::Setup setup = pressed_bed(60e3, 0.2, 0.2);
+        dem::Setup setup = pressed_bed(20e3, 0.2, 0.2);
         setup.step_share = {};
         const auto engine = dem::make_engine(setup, method(precision));
         run_for(*engine, setup, 0.45);
