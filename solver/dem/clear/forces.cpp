@@ -289,7 +289,7 @@ void ClearEngine::gather_network(bool slides) {
     network_.clear();
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
     const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
-                          const double* memory, auto&& motion) {
+                          const double* memory, [[maybe_unused]] auto&& motion) {
         Bond b{.key = key_of(p_.id[i], id),
                .first = static_cast<std::int32_t>(i),
                .second = j,
@@ -298,7 +298,7 @@ void ClearEngine::gather_network(bool slides) {
                .lever_second = t.radius_j - t.overlap / 2,
                .springs = laws.springs(t)};
         if (t.apart) b.springs = {};
-        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, motion(), rounding), memory).slides)
+        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory).slides)
             b.springs.tangential = b.springs.tangential_damper = 0;
         return b;
     };

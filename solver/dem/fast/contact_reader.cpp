@@ -210,7 +210,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
         into.add_sphere(inverse, radius(i));
     }
     const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
-                          const Memory& memory, auto&& motion) {
+                          const Memory& memory, [[maybe_unused]] auto&& motion) {
         t.damping_root = std::sqrt(t.root * t.reduced_mass);
         Bond b{.key = key_of(id_[i], id),
                .first = i,
@@ -220,7 +220,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
                .lever_second = t.radius_j - t.overlap / 2,
                .springs = laws.springs(t)};
         if (t.apart) b.springs = {};
-        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, motion(), rounding), memory.data()).slides)
+        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory.data()).slides)
             b.springs.tangential = b.springs.tangential_damper = 0;
         return b;
     };
