@@ -10,6 +10,8 @@
 
 namespace grainsweep::tests::coupling_contacts_test {
 
+using namespace flow_boxes;
+
 using flow::Boussinesq;
 
 // Two spheres flying at each other through almost no fluid; what they do to it is not looked at.

@@ -11,6 +11,8 @@
 
 namespace grainsweep::tests::coupling_dense_test {
 
+using namespace flow_boxes;
+
 using flow::Boussinesq;
 
 template <class Together>

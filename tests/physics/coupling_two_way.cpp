@@ -13,6 +13,8 @@
 
 namespace grainsweep::tests::coupling_two_way_test {
 
+using namespace flow_boxes;
+
 using flow::Boussinesq;
 
 template <class Level, class Heat = flow::NoHeat>

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <variant>
 
-namespace grainsweep::tests {
+namespace grainsweep::tests::flow_boxes {
 
 using namespace grainsweep::coupling;
 using flow::Axis;
@@ -97,4 +97,4 @@ struct BoxCase {
     }
 };
 
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::flow_boxes

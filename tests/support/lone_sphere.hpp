@@ -10,6 +10,8 @@
 
 namespace grainsweep::tests::lone_sphere {
 
+using namespace flow_boxes;
+
 using Subtracted = TwoWayWithoutOwnWake;
 using Kept = TwoWay;
 

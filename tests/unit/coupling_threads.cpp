@@ -19,6 +19,8 @@
 
 namespace grainsweep::tests::coupling_threads_test {
 
+using namespace flow_boxes;
+
 using namespace flow;
 
 using State = std::vector<std::byte>;
