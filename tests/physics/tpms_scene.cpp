@@ -300,6 +300,7 @@ TEST(TpmsScene, JammedPowderRestsAtItsEquilibriumOverlap) {
     // diameter at 35 kJ/m3 (note of the reference data); the histogram of the jammed cell peaks there.
     Inputs inputs = small_cell(8);
     inputs["cohesion"] = 35e3;
+    inputs["tangential_limit"] = std::string("spring");  // as in the reference data
     inputs["end_time"] = 6.0;
     const Observations early = run(inputs);
     inputs["settle_rule"] = std::string("none");
