@@ -6,6 +6,7 @@
 // make_engine chooses once per case.
 #pragma once
 
+#include "solver/dem/crossings.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/dem/walls/wall.hpp"
@@ -79,6 +80,7 @@ struct Setup {
     std::vector<Sphere> spheres;
     std::vector<ToCome> to_come;  ///< spheres that may be added later
     std::vector<Wall> walls;
+    std::vector<CountingPlane> counting;  ///< planes whose crossings are recorded
     Surface frozen;  ///< deviations from the material in contacts with frozen spheres; only without kinds
     /// Overlap with a wall, divided by the diameter, above which the state is not sound. Bodies that pinch a particle,
     /// such as a screw and its trough, press it deeper than the law is valid; at 0.5 the centre passes the wall.
@@ -133,6 +135,9 @@ struct WallLoad {
     Vec3 force{};     ///< on the wall, N
     Vec3 torque{};    ///< on the wall about the given point, N m
     double work = 0;  ///< work of the wall on the particles since the walls were set, J
+    /// Integrals of force and torque over all steps since the walls were set, N s and N m s; 0 unless
+    /// Wall::integrated.
+    Vec3 impulse{}, angular_impulse{};
 };
 
 /// Counts of work, for cost and benchmarks.
@@ -206,6 +211,9 @@ public:
     /// Returns the booked changes of the kinetic energy of a wall that the powder moves, exact to rounding. Speeds and
     /// energy are those of the full step in double precision, and in mixed precision those half a step later.
     [[nodiscard]] virtual const geometry::BodyEnergy& wall_energy(std::size_t wall) const = 0;
+    /// Moves the crossings of Setup::counting since the last call behind `into`, in the order of the steps. Crossings
+    /// that nobody took are not part of a saved state.
+    virtual void take_crossings(std::vector<Crossing>& into) = 0;
     /// Returns the fault of an unsound state, with place and time; empty: the state is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;

@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000bULL;  // "grnscl", version 11
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000cULL;  // "grnscl", version 12
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(ids(), particles::gone);
@@ -78,6 +78,7 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
         out.put(contacts.near);
         out.put(contacts.built);
         if (contacts.wall.free()) out.put(contacts.pose_when_built), out.put(contacts.wall.energy());
+        if (contacts.wall.wall().integrated) out.put(contacts.wall.integrals());
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;
@@ -151,6 +152,11 @@ void ClearEngine::restore_walls(ByteReader& in) {
             in.get(contacts.pose_when_built), in.get(energy);
             contacts.wall.take_energy(energy);
         }
+        if (contacts.wall.wall().integrated) {
+            LoadIntegrals integrals;
+            in.get(integrals);
+            contacts.wall.take_integrals(integrals);
+        }
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;
@@ -200,6 +206,7 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     restore_walls(in);
     in.finish();
     require_possible();
+    if (crossings_.wanted()) list_crossings();
     if (shaken_) shake();
 }
 

@@ -66,6 +66,7 @@ public:
     [[nodiscard]] const geometry::BodyEnergy& wall_energy(std::size_t wall) const override {
         return walls_.at(wall).wall.energy();
     }
+    void take_crossings(std::vector<Crossing>& into) override { crossings_.take(into); }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override {
         Work done = work_;
@@ -146,6 +147,7 @@ private:
     void carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
                        std::span<const std::uint32_t> fresh_index) const;
     [[nodiscard]] bool list_is_stale() const;
+    void list_crossings();
 
     // soundness.cpp
     [[nodiscard]] bool sound();
@@ -221,6 +223,7 @@ private:
     double work_of_wrapping_ = 0;  // J, potential energy lost when particles wrap at periodic faces
     EnergyBalance balance_;
     Network network_;  // scratch of check_network
+    Crossings crossings_;
     std::string fault_;
     Work work_;
 };

@@ -212,12 +212,15 @@ void ClearEngine::wall_contacts(Contacts& contacts, bool advance) {
     if (advance) {
         contacts.load.work += power * part_;
         work_of_walls_ += power * part_;
+        if (contacts.wall.wall().integrated) contacts.wall.integrate(-total, -turn, twist.pivot, part_);
     }
 }
 
 WallLoad ClearEngine::wall_load(std::size_t wall, const Vec3& about) const {
     WallLoad load = walls_.at(wall).load;
     load.torque += cross(walls_[wall].load_about - about, load.force);
+    load.impulse = walls_[wall].wall.impulse();
+    load.angular_impulse = walls_[wall].wall.angular_impulse(about);
     return load;
 }
 
@@ -289,7 +292,7 @@ void ClearEngine::gather_network(bool slides) {
     network_.clear();
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
     const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
-                          const double* memory, [[maybe_unused]] auto&& motion) {
+                          const double* memory) {
         Bond b{.key = key_of(p_.id[i], id),
                .first = static_cast<std::int32_t>(i),
                .second = j,
@@ -298,22 +301,21 @@ void ClearEngine::gather_network(bool slides) {
                .lever_second = t.radius_j - t.overlap / 2,
                .springs = laws.springs(t)};
         if (t.apart) b.springs = {};
-        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory).slides)
+        if (slides && b.springs.tangential > 0 &&
+            laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory).slides)
             b.springs.tangential = b.springs.tangential_damper = 0;
         return b;
     };
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
-        network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), p_.id[j], t, memory,
-                          [&] { return relative(t, half_a_step_before(i), half_a_step_before(j)); }));
+        network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), p_.id[j], t, memory));
     });
     std::size_t last = walls_.size();
-    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3& velocity) {
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3&) {
         const auto& wall = walls_[w].wall;
         if (w != last) network_.add_wall(freedoms_of(wall, wall_time()));
         last = w;
         const Vec3 x = wall.image().of(p_.position[i]);
-        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, -1 - static_cast<std::int32_t>(w), t, memory,
-                                  [&] { return relative(t, half_a_step_before(i), velocity); }),
+        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, -1 - static_cast<std::int32_t>(w), t, memory),
                              x - t.distance * t.normal);
     });
 }

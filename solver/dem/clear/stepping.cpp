@@ -54,7 +54,8 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       densities_(setup.kinds.densities),
       to_come_(setup.to_come),
       spheres_at_start_(setup.spheres.size()),
-      pairs_(factors_of_exchange(laws)) {
+      pairs_(factors_of_exchange(laws)),
+      crossings_(setup.counting, domain_) {
     if (densities_.empty()) densities_ = {setup.material.density};
     append(setup.spheres, 0);
     inverse_masses_.first = std::numeric_limits<double>::infinity();
@@ -134,6 +135,12 @@ void ClearEngine::step() {
         contacts.wall.place(wall_time());
     }
     if (shaken_) shake();
+    if (crossings_.wanted()) {
+        const double parts = static_cast<double>(control_.parts());
+        crossings_.follow(
+            static_cast<double>(work_.steps) + static_cast<double>(parts_done_) / parts, 1 / parts,
+            [this](std::size_t i) { return p_.id[i]; }, [this](std::size_t i) { return p_.position[i]; });
+    }
     if (list_is_stale()) {
         if (!sound()) return;
         rebuild();
@@ -242,7 +249,15 @@ void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     for (std::uint32_t i = 0; i < p_.size(); ++i)
         if (mobile(i) && inner.outside(p_.position[i])) near_open_face_.push_back(i);
     if (some_left) balance_.restart();
+    if (crossings_.wanted()) list_crossings();
     ++work_.rebuilds;
+}
+
+/// No particle moves by more than the skin before the next rebuild: the step after which it is made included.
+void ClearEngine::list_crossings() {
+    crossings_.list(
+        p_.size(), 2 * skin_, [this](std::size_t i) { return mobile(i); },
+        [this](std::size_t i) { return p_.position[i]; });
 }
 
 /// Ends the memories of pairs that do not touch at the rebuild, for laws whose memories outlive a separation.

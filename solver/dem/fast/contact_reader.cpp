@@ -210,7 +210,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
         into.add_sphere(inverse, radius(i));
     }
     const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
-                          const Memory& memory, [[maybe_unused]] auto&& motion) {
+                          const Memory& memory) {
         t.damping_root = std::sqrt(t.root * t.reduced_mass);
         Bond b{.key = key_of(id_[i], id),
                .first = i,
@@ -220,15 +220,14 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
                .lever_second = t.radius_j - t.overlap / 2,
                .springs = laws.springs(t)};
         if (t.apart) b.springs = {};
-        if (slides && b.springs.tangential > 0 && laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory.data()).slides)
+        if (slides && b.springs.tangential > 0 &&
+            laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory.data()).slides)
             b.springs.tangential = b.springs.tangential_damper = 0;
         return b;
     };
     for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
         complete(i, j, t);
-        into.add(bond(laws_of(i, j), t, i, j, id_[j], memory, [&] {
-            return relative(t, before_[static_cast<std::size_t>(i)], before_[static_cast<std::size_t>(j)]);
-        }));
+        into.add(bond(laws_of(i, j), t, i, j, id_[j], memory));
     });
     for (std::size_t w = 0; w < walls.count(); ++w) {
         if (!walls[w].present()) continue;
@@ -238,9 +237,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
             walls, w, [&](std::int32_t i, const WallPoint& at, Touch<Partner::wall>& t, const Memory& memory) {
                 complete(i, t);
                 into.add_at_wall(
-                    bond(walls.laws(w, field_.kind[i]), t, i, -1, -1 - static_cast<std::int32_t>(w), memory,
-                         [&] { return relative(t, before_[static_cast<std::size_t>(i)], at.velocity); }),
-                    at.place);
+                    bond(walls.laws(w, field_.kind[i]), t, i, -1, -1 - static_cast<std::int32_t>(w), memory), at.place);
             });
     }
 }

@@ -53,7 +53,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       adapts_skin_(!(skin > 0)),
       control_(setup.step_share),
       time_step_(setup.time_step),
-      spheres_at_start_(static_cast<std::int32_t>(setup.spheres.size())) {
+      spheres_at_start_(static_cast<std::int32_t>(setup.spheres.size())),
+      crossings_(setup.counting, {setup.domain.low, setup.domain.high, setup.domain.periodic}) {
     if (densities_.empty()) densities_ = {setup.material.density};
     field_.constants = make_constants(setup, space_.scale, needs_);
     for (const Material& m : table_.pairs()) laws_.push_back(make_contact(needs_.combination, m));
@@ -102,7 +103,7 @@ void MixedEngine::load(const Setup& setup) {
     columns_.residuals_apart = needs_.unequal;
     field_.skips = needs_.skips ? 1 : 0;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
-    box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;
+    box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting || crossings_.wanted();
     for_each_extreme_sphere(setup, [this](const Sphere& sphere) {
         smallest_diameter_ = std::min(smallest_diameter_, 2 * single_radius(sphere));
         lightest_ = std::max(lightest_, static_cast<float>(1 / relative_density(sphere)));

@@ -49,6 +49,7 @@ void MixedEngine::advance(std::int64_t steps, bool one_part) {
         work_.resting_steps += static_cast<double>(resting_.count());
         account_travel();
         if (!fault_.empty()) return;
+        if (crossings_.wanted()) follow_crossings();
         walls_.drift();
         stand_walls();
         make_lists();
@@ -179,6 +180,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         subdomains_.cut_up(field_, columns_, false);
         drift_.outer = 0;
         drift_.steps = 0;
+        if (crossings_.wanted()) list_crossings();
         ++work_.rebuilds;
     }
     inner_skin_ = static_cast<float>(
@@ -248,6 +250,22 @@ void MixedEngine::press_walls(bool moves) {
 
 void MixedEngine::list_advanced() {
     if (needs_.skips) columns_.list_advanced(field_, [this](std::int32_t i) { return is_frozen(i) || is_resting(i); });
+}
+
+/// Before the next rebuild no particle moves by more than the skin, and one step more (travel_limit).
+void MixedEngine::list_crossings() {
+    crossings_.list(
+        size(), (static_cast<double>(space_.skin) + travel_limit) * space_.scale.length,
+        [this](std::size_t i) { return field_.records[i].inverse_mass > 0; },
+        [this](std::size_t i) { return position_of(field_.records[i], space_.scale); });
+}
+
+void MixedEngine::follow_crossings() {
+    const double parts = static_cast<double>(control_.parts());
+    crossings_.follow(
+        static_cast<double>(work_.steps) + static_cast<double>(part_) / parts, 1 / parts,
+        [this](std::size_t i) { return columns_.id[i]; },
+        [this](std::size_t i) { return position_of(field_.records[i], space_.scale); });
 }
 
 /// Adds the displacement of the step just made.

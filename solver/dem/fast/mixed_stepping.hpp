@@ -72,6 +72,7 @@ public:
     [[nodiscard]] const geometry::BodyEnergy& wall_energy(std::size_t wall) const override {
         return walls_[wall].energy();
     }
+    void take_crossings(std::vector<Crossing>& into) override { crossings_.take(into); }
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override {
         Work done = work_;
@@ -107,6 +108,8 @@ private:
     void account_travel();
     void make_lists(std::span<const std::int32_t> removed = {});
     void list_advanced();
+    void list_crossings();
+    void follow_crossings();
     void use_wanted_subdomains();
     void advance_particles();
     void sweep_pairs(bool goes_on, bool advance, bool keep_histories);
@@ -190,6 +193,7 @@ private:
     std::int64_t part_ = 0;      ///< parts of the present step that are done
     double recent_overlap_ = 0;  ///< largest of the last sweep, of pairs and at walls, in diameters
     std::int32_t spheres_at_start_ = 0;
+    Crossings crossings_;
     std::int64_t wall_steps_ = 0;
     std::int64_t mobile_ = 0;
     Work work_;

@@ -175,7 +175,7 @@ void Walls::drift() {
 }
 
 void Walls::sum_up(bool all) {
-    for (std::size_t w = 0; w < count(); ++w) placed_[w].summed = all || moves(w) ? 1 : 0;
+    for (std::size_t w = 0; w < count(); ++w) placed_[w].summed = all || moves(w) || integrates(w) ? 1 : 0;
 }
 
 void Walls::bound_velocities(double time, bool free, Tally& tally) const {
@@ -209,6 +209,10 @@ double Walls::book(const WallSums* sums, bool of_step) {
     double work = 0;
     for (std::size_t w = 0; w < count(); ++w) {
         sums_[w] = sums[w];
+        if (of_step && integrates(w)) {
+            const WallLoad on = load(w, pivot_[w]);
+            moving_[w].integrate(on.force, on.torque, pivot_[w], scale_.time);
+        }
         if (!of_step || !moves(w)) continue;
         work_[w] += sums[w].power;
         work += sums[w].power;
@@ -226,6 +230,8 @@ WallLoad Walls::load(std::size_t w, const Vec3& about) const {
     }
     load.torque += cross(pivot_[w] - about, load.force);
     load.work = work_[w] * force * scale_.length;
+    load.impulse = moving_[w].impulse();
+    load.angular_impulse = moving_[w].angular_impulse(about);
     return load;
 }
 
@@ -234,8 +240,10 @@ void Walls::save(Writer& archive) const {
     for (const MovingWall& wall : moving_) write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
     archive.list(sums_);
     archive.list(work_);
-    for (const MovingWall& wall : moving_)
+    for (const MovingWall& wall : moving_) {
         if (wall.free()) archive.value(wall.energy());
+        if (wall.wall().integrated) archive.value(wall.integrals());
+    }
 }
 
 Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale, std::int32_t combination,
@@ -247,10 +255,16 @@ Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale,
     if (walls.sums_.size() != count || walls.work_.size() != count)
         throw std::invalid_argument("the checkpoint holds values that no state has");
     for (MovingWall& wall : walls.moving_) {
-        if (!wall.free()) continue;
-        geometry::BodyEnergy energy;
-        archive.value(energy);
-        wall.take_energy(energy);
+        if (wall.free()) {
+            geometry::BodyEnergy energy;
+            archive.value(energy);
+            wall.take_energy(energy);
+        }
+        if (wall.wall().integrated) {
+            LoadIntegrals integrals;
+            archive.value(integrals);
+            wall.take_integrals(integrals);
+        }
     }
     return walls;
 }

@@ -45,7 +45,8 @@ public:
     void kick(double time, double steps);
     /// Moves free walls by a step; place() completes the motion.
     void drift();
-    /// Selects the walls with sums from now on: all, or only those that move and do work.
+    /// Selects the walls with sums from now on: all, or only walls that move and do work, or whose loads are
+    /// integrated.
     void sum_up(bool all);
     [[nodiscard]] const PlacedWall* placed() const { return placed_.data(); }
     /// Extends the extremes of velocity by the surface velocities during the step after `time`, of the free walls or of
@@ -67,6 +68,7 @@ public:
 
 private:
     [[nodiscard]] bool moves(std::size_t w) const { return moving_[w].present() && !moving_[w].at_rest(); }
+    [[nodiscard]] bool integrates(std::size_t w) const { return moving_[w].present() && moving_[w].wall().integrated; }
     void place(std::size_t w, double time);
 
     std::int32_t combination_;

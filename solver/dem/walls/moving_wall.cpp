@@ -17,33 +17,6 @@ namespace {
 
 constexpr std::array<Vec3, 3> unit_vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// Returns the motions that move the surface. A rotation may leave the surface unchanged only if all earlier rotations
-/// do; a shift, only if no motion rotates the shape.
-std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motions) {
-    bool turns = false;
-    std::vector<bool> moves(motions.size(), true);
-    const auto turned = [&](std::size_t k, const Vec3& point, const Vec3& axis) {
-        moves[k] = turns || !std::visit([&](const auto& s) { return s.unchanged_by_turn(point, axis); }, shape);
-        turns = turns || moves[k];
-    };
-    for (std::size_t k = 0; k < motions.size(); ++k) {
-        if (const auto* r = std::get_if<Rotation>(&motions[k])) turned(k, r->point, r->axis);
-        if (const auto* d = std::get_if<Drive>(&motions[k])) turned(k, d->point, d->axis);
-        turns = turns || std::holds_alternative<Flight>(motions[k]);
-    }
-    const auto stays = [&](const Vec3& direction) {
-        return !turns && std::visit([&](const auto& s) { return s.unchanged_by_shift(direction); }, shape);
-    };
-    std::vector<Motion> kept;
-    for (std::size_t k = 0; k < motions.size(); ++k) {
-        if (const auto* t = std::get_if<Translation>(&motions[k])) moves[k] = !stays(t->velocity);
-        if (const auto* v = std::get_if<Vibration>(&motions[k])) moves[k] = !stays(v->amplitude);
-        if (const auto* p = std::get_if<Press>(&motions[k])) moves[k] = !stays(p->along);
-        if (moves[k]) kept.push_back(motions[k]);
-    }
-    return kept;
-}
-
 /// By how much of it a wall may be longer than the period: files of single precision round to 6e-8 of a coordinate.
 constexpr double rounding_of_length = 1e-6;
 
@@ -84,6 +57,31 @@ void refuse_flaw(const std::string& flaw) {
 }
 
 }  // namespace
+
+std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motions) {
+    bool turns = false;
+    std::vector<bool> moves(motions.size(), true);
+    const auto turned = [&](std::size_t k, const Vec3& point, const Vec3& axis) {
+        moves[k] = turns || !std::visit([&](const auto& s) { return s.unchanged_by_turn(point, axis); }, shape);
+        turns = turns || moves[k];
+    };
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        if (const auto* r = std::get_if<Rotation>(&motions[k])) turned(k, r->point, r->axis);
+        if (const auto* d = std::get_if<Drive>(&motions[k])) turned(k, d->point, d->axis);
+        turns = turns || std::holds_alternative<Flight>(motions[k]);
+    }
+    const auto stays = [&](const Vec3& direction) {
+        return !turns && std::visit([&](const auto& s) { return s.unchanged_by_shift(direction); }, shape);
+    };
+    std::vector<Motion> kept;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        if (const auto* t = std::get_if<Translation>(&motions[k])) moves[k] = !stays(t->velocity);
+        if (const auto* v = std::get_if<Vibration>(&motions[k])) moves[k] = !stays(v->amplitude);
+        if (const auto* p = std::get_if<Press>(&motions[k])) moves[k] = !stays(p->along);
+        if (moves[k]) kept.push_back(motions[k]);
+    }
+    return kept;
+}
 
 MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest, Searches searches)
     : wall_(std::move(wall)) {
@@ -144,6 +142,15 @@ void MovingWall::take_motions(std::vector<Motion> motions) {
     switches_ = std::ranges::any_of(displacing_, switches);
     free_ = std::ranges::any_of(motions, is_free);
     wall_.motions = std::move(motions);
+}
+
+void MovingWall::integrate(const Vec3& force, const Vec3& torque, const Vec3& about, double span) {
+    integrals_.impulse += span * force;
+    integrals_.angular_impulse += span * (torque + cross(about, force));
+}
+
+Vec3 MovingWall::angular_impulse(const Vec3& about) const {
+    return integrals_.angular_impulse - cross(about, integrals_.impulse);
 }
 
 void MovingWall::kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span) {

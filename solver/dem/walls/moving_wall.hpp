@@ -33,6 +33,15 @@ struct NearestImage {
     }
 };
 
+/// Returns the motions that move the surface of a shape. A rotation may leave the surface unchanged only if all earlier
+/// rotations do; a shift, only if no motion rotates the shape.
+[[nodiscard]] std::vector<geometry::Motion> displacing(const Shape& shape, std::span<const geometry::Motion> motions);
+
+/// Integrals of the load on a wall over time: of the force, N s, and of the torque about the origin, N m s.
+struct LoadIntegrals {
+    Vec3 impulse{}, angular_impulse{};
+};
+
 class MovingWall {
 public:
     enum class Searches { many, few };
@@ -59,6 +68,13 @@ public:
     [[nodiscard]] const geometry::BodyEnergy& energy() const { return energy_; }
     /// That of a checkpoint.
     void take_energy(const geometry::BodyEnergy& energy) { energy_ = energy; }
+
+    /// Adds a load that acts for `span`, s; the torque is about a point.
+    void integrate(const Vec3& force, const Vec3& torque, const Vec3& about, double span);
+    [[nodiscard]] const LoadIntegrals& integrals() const { return integrals_; }
+    void take_integrals(const LoadIntegrals& integrals) { integrals_ = integrals; }
+    [[nodiscard]] const Vec3& impulse() const { return integrals_.impulse; }
+    [[nodiscard]] Vec3 angular_impulse(const Vec3& about) const;
 
     [[nodiscard]] const Wall& wall() const { return wall_; }
     /// Returns the shape in its body frame that is searched for contacts; with its images if a particle can touch
@@ -120,6 +136,7 @@ private:
     bool free_ = false;
     geometry::Pose before_;        // of a free wall
     geometry::BodyEnergy energy_;  // likewise
+    LoadIntegrals integrals_;
     bool bounded_ = false;
     bool single_contact_ = true;
     bool thin_ = false;

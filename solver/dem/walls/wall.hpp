@@ -44,6 +44,7 @@ struct Wall {
     Surface surface;
     std::vector<Material> materials;  ///< one for its contacts with each kind of spheres, if there are several kinds
     bool present = true;              ///< false: no particle touches it until Engine::change_walls makes it present
+    bool integrated = false;          ///< its load is integrated over every step (WallLoad::impulse)
 
     Wall() = default;
     template <class S>

@@ -62,6 +62,7 @@ template <class Put>
 void write_wall(const Wall& wall, Put&& put) {
     write_body(wall, put);
     put(wall.present);
+    put(wall.integrated);
     put(static_cast<std::uint64_t>(wall.motions.size()));
     for (const geometry::Motion& motion : wall.motions) write_alternative(motion, put);
 }
@@ -106,6 +107,7 @@ template <class Get>
         if (given != 0) m.tangential_damping = damping;
     }
     get(wall.present);
+    get(wall.integrated);
     std::uint64_t motions = 0;
     get(motions);
     for (std::uint64_t k = 0; k < motions; ++k) {
