@@ -1,3 +1,4 @@
+#include "solver/observables/series.hpp"
 #include "solver/scenes/spreading/experiment.hpp"
 #include "solver/scenes/spreading/filling.hpp"
 #include "solver/scenes/spreading/record.hpp"

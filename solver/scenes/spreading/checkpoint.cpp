@@ -8,7 +8,7 @@
 namespace grainsweep::spreading {
 namespace {
 
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0004ULL;  // "grnssp", version 4
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0005ULL;  // "grnssp", version 5
 
 /// What a bed is, without names that say nothing of it.
 template <class State, class Visit>
@@ -35,6 +35,7 @@ void Experiment::save(Bytes& into) const {
         out.put(solid_);
         out.put(force_sum_);
         out.put(lift_sum_);
+        out.put(impulse_);
         out.put(place_);
         out.put(left_behind_);
         out.put(profile_.sum);
@@ -49,6 +50,7 @@ void Experiment::restore(std::span<const std::byte> from) {
     std::int64_t layer = 0, step = 0, end_sample = 0;
     bool sweeping = false;
     double borrowed = 0, earlier = 0, overlap = 0, force = 0, lift = 0, left = 0;
+    geometry::Vec3 impulse{};
     std::vector<double> behind, under, solid;
     std::vector<Place> place;
     observables::VelocityProfile profile(profile_layers);
@@ -66,6 +68,7 @@ void Experiment::restore(std::span<const std::byte> from) {
     in.get(solid);
     in.get(force);
     in.get(lift);
+    in.get(impulse);
     in.get(place);
     in.get(left);
     in.get(profile.sum);
@@ -93,6 +96,7 @@ void Experiment::restore(std::span<const std::byte> from) {
     solid_ = std::move(solid);
     force_sum_ = force;
     lift_sum_ = lift;
+    impulse_ = impulse;
     left_behind_ = left;
     profile_ = std::move(profile);
     layers_ = std::move(layers);

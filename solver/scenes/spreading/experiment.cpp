@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace grainsweep::spreading {
 namespace {
@@ -61,6 +62,7 @@ void Experiment::supply(const dem::State& bed) {
     under_.clear();
     solid_.clear();
     force_sum_ = lift_sum_ = left_behind_ = 0;
+    impulse_ = {};
     profile_ = observables::VelocityProfile(profile_layers);
 }
 
@@ -161,11 +163,12 @@ void Experiment::sample() {
     solid_.push_back(
         observables::solid_volume(state_, rear - behind_to * d, rear - behind_from * d, below, level + study_.gap) /
         ((behind_to - behind_from) * d * study_.width * study_.gap));
+    const geometry::Vec3 impulse = engine_->wall_load(1, {}).impulse, before = std::exchange(impulse_, impulse);
     if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample) {
         profile_.add(state_, edge, edge + profile_reach * d, level + study_.gap, layer_thickness * d);
-        const auto load = engine_->wall_load(1, {});
-        force_sum_ -= load.force[0];
-        lift_sum_ += load.force[2];
+        const double since = time - time_of_sample(behind_.size() - 2);
+        force_sum_ -= (impulse[0] - before[0]) / since;
+        lift_sum_ += (impulse[2] - before[2]) / since;
     }
     if (known_well_enough()) end_sample_ = static_cast<std::int64_t>(behind_.size()) - 1;
 }

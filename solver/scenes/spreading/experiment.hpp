@@ -99,7 +99,8 @@ private:
     std::vector<double> behind_;  // volume behind the edge, by sample, including particles that left the box there
     std::vector<double> under_;   // volume under the blade and below the gap, by sample
     std::vector<double> solid_;   // solid_behind by sample
-    double force_sum_ = 0, lift_sum_ = 0;  // of the measured samples, N
+    double force_sum_ = 0, lift_sum_ = 0;  // of the means between measured samples, N
+    geometry::Vec3 impulse_{};             // of the powder on the tool, up to the last sample, N s
     enum class Place : char { ahead, behind, left };
     std::vector<Place> place_;      // by id: place relative to the edge at the last sample, or outside the box
     double left_behind_ = 0;        // volume that left the box behind the edge

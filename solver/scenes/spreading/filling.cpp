@@ -173,6 +173,7 @@ dem::Setup settling(const Study& s, std::uint64_t seed, std::int64_t layer, cons
 
 std::vector<dem::Wall> sweeping_walls(const Study& s, std::int64_t layer) {
     std::vector<dem::Wall> walls = {dem::Plane{{0, 0, height_of_base(s)}, {0, 0, 1}}, tool_wall(s, s.level(layer))};
+    walls[1].integrated = true;
     if (layer == 0) return walls;
     walls.push_back(base_before(s, layer));
     walls.push_back(base_beyond(s, layer));

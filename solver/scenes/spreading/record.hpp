@@ -66,7 +66,7 @@ inline constexpr kit::Scalar solid_behind{
     "tool"};
 inline constexpr kit::Scalar tool_force{
     "tool_force", "N/m",
-    "force of the powder on the tool against its travel, over the width W; mean of the samples from t1 to t2"};
+    "force of the powder on the tool against its travel, over the width W; mean from t1 to t2, over every step"};
 inline constexpr kit::Scalar tool_lift{"tool_lift", "N/m", "the same, upwards"};
 inline constexpr kit::Scalar particles{
     "particles", "1",
