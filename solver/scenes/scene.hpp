@@ -77,6 +77,8 @@ public:
     /// Returns the time at which the main part of the case begins, after a preparation that needs few pictures; 0: at
     /// once.
     [[nodiscard]] virtual double picture_focus() const { return 0; }
+    /// Returns whether the case may end long before progress() foresees it.
+    [[nodiscard]] virtual bool may_end_early() const { return false; }
 };
 
 /// Expected cost of a case, for planning and order only.

@@ -75,6 +75,7 @@ public:
     void observe(Observations& into) const override;
     [[nodiscard]] double time() const override { return static_cast<double>(step_) * question_.time_step; }
     [[nodiscard]] bool finished() const override;
+    [[nodiscard]] bool may_end_early() const override { return true; }
     [[nodiscard]] double progress() const override {
         return finished() ? 1 : static_cast<double>(step_) / static_cast<double>(last_step_);
     }

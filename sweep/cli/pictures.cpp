@@ -28,7 +28,8 @@ void declare_pictures(Parser& parser, PictureRequest& request) {
     parser.add_option("--watch FILE.html", request.page, "HTML page that plays the case in three dimensions");
     parser
         .add_option("--frames N", request.frames,
-                    fmt::format("number of pictures from start to end for --vtk or --watch; default: {}", usual_frames))
+                    fmt::format("number of pictures, evenly from start to end, for --vtk or --watch; default: {}",
+                                usual_frames))
         ->check(whole_number(2, 9999));
 }
 
@@ -48,7 +49,11 @@ Pictures::~Pictures() = default;
 
 workers::Camera Pictures::camera() {
     if (!series_ && !film_) return {};
-    return {request_.frames.value_or(usual_frames), [this](const Scene& scene) { shoot(scene); }};
+    return {request_.frames.value_or(usual_frames), [this](const Scene& scene) { shoot(scene); },
+            [this](const std::vector<std::size_t>& pictures) {
+                if (series_) series_->keep(pictures);
+                if (film_) film_->keep(pictures);
+            }};
 }
 
 void Pictures::shoot(const Scene& scene) {

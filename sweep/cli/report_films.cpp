@@ -39,7 +39,8 @@ std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t c
         const campaign::Case question = as_asked_today(stored);
         store.enter_files_of(question);
         report::Film film(limits);
-        const workers::Camera camera{frames, [&film](const Scene& scene) { film.add(scene.snapshot(), scene.time()); }};
+        const workers::Camera camera{frames, [&film](const Scene& scene) { film.add(scene.snapshot(), scene.time()); },
+                                     [&film](const std::vector<std::size_t>& pictures) { film.keep(pictures); }};
         NoArtefacts artefacts;
         const auto result = workers::compute(
             question, 1, artefacts, std::nullopt, [](const Scene&) { return true; }, camera);

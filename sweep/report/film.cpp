@@ -177,4 +177,48 @@ void Film::add(const Snapshot& snapshot, double time) {
     times_.push_back(time);
 }
 
+namespace {
+
+/// Keeps the equally long parts of a column at these places.
+template <class Column>
+Column parts_of(Column& column, std::size_t parts, const std::vector<std::size_t>& places) {
+    const auto length = static_cast<std::ptrdiff_t>(column.size() / parts);
+    Column kept;
+    for (const std::size_t place : places) {
+        const auto begin = column.begin() + static_cast<std::ptrdiff_t>(place) * length;
+        kept.insert(kept.end(), std::move_iterator(begin), std::move_iterator(begin + length));
+    }
+    return kept;
+}
+
+}  // namespace
+
+void Film::keep(const std::vector<std::size_t>& frames) {
+    for (Slice& slice : slices_) {
+        if (slice.frames != times_.size()) continue;
+        for (auto& plane : slice.planes) plane = parts_of(plane, slice.frames, frames);
+        slice.frames = frames.size();
+    }
+    std::vector<Wall> walls;
+    for (Wall& wall : walls_) {
+        std::optional<Wall> kept;
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+            if (frames[k] < wall.first || frames[k] > wall.first + wall.corners.size()) continue;
+            auto& corners = frames[k] == wall.first ? wall.shape.corners : wall.corners[frames[k] - wall.first - 1];
+            if (kept) {
+                kept->moves = kept->moves || corners != kept->shape.corners;
+                kept->corners.push_back(std::move(corners));
+                continue;
+            }
+            kept = Wall{wall.shape, k};
+            kept->shape.corners = corners;
+            kept->closed = wall.closed;
+        }
+        if (kept) walls.push_back(std::move(*kept));
+    }
+    walls_ = std::move(walls);
+    frames_ = parts_of(frames_, times_.size(), frames);
+    times_ = parts_of(times_, times_.size(), frames);
+}
+
 }  // namespace grainsweep::report

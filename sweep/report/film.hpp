@@ -34,6 +34,8 @@ public:
     /// Adds a frame, later than all earlier ones. Throws std::invalid_argument if a column has another length than the
     /// positions.
     void add(const Snapshot& snapshot, double time);
+    /// Keeps only these frames; indices in ascending order.
+    void keep(const std::vector<std::size_t>& frames);
     [[nodiscard]] std::size_t frames() const { return times_.size(); }
     [[nodiscard]] std::size_t spheres() const { return spheres_.size(); }
     /// Returns whether the film shows particles or a flow.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 
 namespace grainsweep::report {
@@ -34,7 +35,7 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
     : folder_(std::move(folder)), name_(std::move(name)) {}
 
 std::string VtkSeries::file_of(std::string_view what, std::string_view extension) const {
-    return fmt::format("{}{}{}_{:04}{}", name_, what.empty() ? "" : "_", what, moments_, extension);
+    return fmt::format("{}{}{}_{:04}{}", name_, what.empty() ? "" : "_", what, written_, extension);
 }
 
 /// Files of an older series of this name would be mixed with the files of this one.
@@ -55,19 +56,28 @@ void VtkSeries::begin() {
     }
 }
 
-void VtkSeries::list(std::string_view what, const std::string& file, double time) {
+void VtkSeries::list(std::string_view what, const std::string& file) {
     auto part = std::ranges::find(parts_, what);
     if (part == parts_.end()) part = parts_.insert(part, std::string(what));
-    entries_ += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" file=\"{}\" name=\"{}\"/>\n", time,
-                            part - parts_.begin(), file, what);
+    entries_.back().files.emplace_back(part - parts_.begin(), file);
+}
+
+void VtkSeries::write_collection() const {
+    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+    for (const auto& [time, files] : entries_)
+        for (const auto& [part, file] : files)
+            text += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" file=\"{}\" name=\"{}\"/>\n", time, part, file,
+                                parts_[part]);
+    write_file(collection(), text + "</Collection>\n</VTKFile>\n");
 }
 
 void VtkSeries::add(const Snapshot& snapshot, double time) {
-    if (moments_ == 0) begin();
+    if (written_ == 0) begin();
+    entries_.push_back({.time = time, .files = {}});
     if (shows_particles(snapshot)) {
         const std::string file = file_of("", ".vtp");
         write_file(folder_ / file, vtp(snapshot, time));
-        list(particles, file, time);
+        list(particles, file);
     }
     for (const auto& wall : snapshot.walls) {
         auto& [shown, file] = walls_[wall.name];
@@ -76,16 +86,32 @@ void VtkSeries::add(const Snapshot& snapshot, double time) {
             shown = wall;
             write_file(folder_ / file, vtp(wall, time));
         }
-        list(wall.name, file, time);
+        list(wall.name, file);
     }
     for (const auto& field : snapshot.fields) {
         const std::string file = file_of(field.name, extension_of(field));
         write_file(folder_ / file, vtk_grid(field, time));
-        list(field.name, file, time);
+        list(field.name, file);
     }
-    ++moments_;
-    write_file(collection(), "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
-                                 entries_ + "</Collection>\n</VTKFile>\n");
+    ++written_;
+    write_collection();
+}
+
+void VtkSeries::keep(const std::vector<std::size_t>& moments) {
+    std::set<std::string> all, needed;
+    for (const auto& [name, wall] : walls_) needed.insert(wall.file);  // a later moment may name it again
+    for (const Moment& moment : entries_)
+        for (const auto& [part, file] : moment.files) all.insert(file);
+    std::vector<Moment> kept;
+    for (const std::size_t k : moments) {
+        for (const auto& [part, file] : entries_[k].files) needed.insert(file);
+        kept.push_back(std::move(entries_[k]));
+    }
+    entries_ = std::move(kept);
+    write_collection();
+    std::error_code error;
+    for (const std::string& file : all)
+        if (!needed.contains(file)) std::filesystem::remove(folder_ / file, error);
 }
 
 }  // namespace grainsweep::report

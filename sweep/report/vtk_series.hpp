@@ -21,7 +21,9 @@ public:
     /// of its last movement, so a fixed wall needs one file. Makes the folder if there is none; the first moment
     /// removes an older series of this name. Throws BrokenWorld on failure.
     void add(const Snapshot& snapshot, double time);
-    [[nodiscard]] std::size_t size() const { return moments_; }
+    /// Keeps only these moments, and removes the files that no other one needs; indices in ascending order.
+    void keep(const std::vector<std::size_t>& moments);
+    [[nodiscard]] std::size_t size() const { return entries_.size(); }
     [[nodiscard]] std::filesystem::path collection() const { return folder_ / (name_ + ".pvd"); }
 
 private:
@@ -32,14 +34,19 @@ private:
 
     void begin();
     [[nodiscard]] std::string file_of(std::string_view what, std::string_view extension) const;
-    void list(std::string_view what, const std::string& file, double time);
+    void list(std::string_view what, const std::string& file);
+    void write_collection() const;
 
     std::filesystem::path folder_;
     std::string name_;
-    std::size_t moments_ = 0;
+    std::size_t written_ = 0;  ///< moments so far, also those not kept
     std::map<std::string, Wall, std::less<>> walls_;
     std::vector<std::string> parts_;  ///< names, in the order of their numbers
-    std::string entries_;             ///< entries of the collection
+    struct Moment {
+        double time = 0;
+        std::vector<std::pair<std::size_t, std::string>> files;  ///< part and name
+    };
+    std::vector<Moment> entries_;
 };
 
 }  // namespace grainsweep::report

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -37,57 +38,108 @@ constexpr double first_slice = 1e-9;
 // Shorter slices do not tell how fast threads are.
 constexpr double least_timed_seconds = 0.02;
 
-/// When the next picture is due.
+/// Takes the pictures of a camera: of the preparation before the focus, then of the main part.
 class Shutter {
 public:
-    Shutter(const Camera& camera, const Scene& scene) : camera_(camera), start_(scene.time()) {
-        if (camera_.frames > 0) shoot(scene);
+    Shutter(const Camera& camera, const Scene& scene) : camera_(camera) {
+        if (camera_.frames > 0) begin_part(scene, 0);
     }
+    /// Returns the time of the next picture, or of the focus.
     [[nodiscard]] double next() const {
         if (camera_.frames == 0 || !foreseen_) return std::numeric_limits<double>::infinity();
-        const double spacing = due_ <= before_ ? (focus_ - start_) / static_cast<double>(before_)
-                                               : (end_ - focus_) / static_cast<double>(camera_.frames - 1 - before_);
-        const double moment = due_ <= before_ ? start_ + spacing * static_cast<double>(due_)
-                                              : focus_ + spacing * static_cast<double>(due_ - before_);
-        if (!(period_ > 0 && period_ <= spacing)) return moment;
+        const double moment = begin_ + spacing_ * static_cast<double>(taken_);
+        if (preparing_) return std::min(moment, focus_);
+        if (!(period_ > 0 && period_ <= spacing_)) return moment;
         // Slightly early: the scene's own step that ends there must not be missed by rounding.
         return std::round(moment / period_) * period_ * (1 - 1e-9);
     }
     void look(const Scene& scene) {
         if (camera_.frames == 0) return;
         if (!foreseen_ && scene.progress() > 0) foresee(scene);
+        if (preparing_) focus_ = scene.picture_focus();
         if (scene.time() < next()) return;
+        if (preparing_ && scene.time() >= focus_) {
+            preparing_ = false;
+            keep_of_part(wanted_);
+            begin_part(scene, camera_.frames - static_cast<std::int64_t>(shot_at_.size()));
+            spacing_ = (std::max(end_, begin_) - begin_) / static_cast<double>(std::max<std::int64_t>(1, wanted_ - 1)) /
+                       finer_;
+            return;
+        }
         shoot(scene);
-        while (next() <= scene.time()) ++due_;
+        if (finer_ > 1 && taken_ > 2 * wanted_) halve();
+        while (next() <= scene.time()) ++taken_;
     }
     void last(const Scene& scene) {
-        if (camera_.frames > 0 && scene.time() > shot_) shoot(scene);
+        if (camera_.frames == 0) return;
+        if (scene.time() > shot_at_.back()) shoot(scene);
+        keep_of_part(camera_.frames - static_cast<std::int64_t>(first_));
     }
 
 private:
     static constexpr double preparation = 0.25;  // of the pictures, at most
+    static constexpr double finer_of_early = 16;
 
     void foresee(const Scene& scene) {
         foreseen_ = true;
         period_ = scene.picture_period();
+        finer_ = scene.may_end_early() && camera_.keep ? finer_of_early : 1;
         end_ = std::max(scene.time() / scene.progress(), scene.time());
-        focus_ = std::clamp(scene.picture_focus(), start_, end_);
-        const double share = end_ > start_ ? std::min(preparation, (focus_ - start_) / (end_ - start_)) : 0;
-        before_ = std::llround(share * static_cast<double>(camera_.frames - 1));
-        if (before_ == 0) focus_ = start_;
+        focus_ = std::clamp(scene.picture_focus(), begin_, end_);
+        const double share = end_ > begin_ ? std::min(preparation, (focus_ - begin_) / (end_ - begin_)) : 0;
+        wanted_ = std::llround(share * static_cast<double>(camera_.frames - 1));
+        preparing_ = wanted_ > 0;
+        const double part_end = preparing_ ? focus_ : end_;
+        if (!preparing_) wanted_ = camera_.frames - 1;
+        spacing_ = (part_end - begin_) / static_cast<double>(wanted_) / finer_;
+    }
+    void begin_part(const Scene& scene, std::int64_t wanted) {
+        first_ = shot_at_.size();
+        begin_ = scene.time();
+        wanted_ = wanted;
+        taken_ = 0;
+        shoot(scene);
     }
     void shoot(const Scene& scene) {
         camera_.shoot(scene);
-        shot_ = scene.time();
+        shot_at_.push_back(scene.time());
+        ++taken_;
+    }
+    void halve() {
+        std::vector<std::size_t> places;
+        for (std::size_t k = first_; k < shot_at_.size(); k += 2) places.push_back(k);
+        keep(places);
+        spacing_ *= 2;
+        taken_ = static_cast<std::int64_t>(places.size());
+    }
+    /// Keeps so many pictures of the present part, evenly.
+    void keep_of_part(std::int64_t wanted) {
+        const auto there = static_cast<std::int64_t>(shot_at_.size() - first_);
+        if (finer_ == 1 || there <= wanted || wanted < 2) return;
+        std::vector<std::size_t> places;
+        for (std::int64_t k = 0; k < wanted; ++k)
+            places.push_back(first_ + static_cast<std::size_t>((k * (there - 1) + (wanted - 1) / 2) / (wanted - 1)));
+        keep(places);
+    }
+    /// Keeps the earlier parts, and of the present one the pictures at these places.
+    void keep(const std::vector<std::size_t>& of_part) {
+        std::vector<std::size_t> places(first_);
+        std::iota(places.begin(), places.end(), std::size_t{0});
+        places.insert(places.end(), of_part.begin(), of_part.end());
+        camera_.keep(places);
+        std::vector<double> kept;
+        for (const std::size_t k : places) kept.push_back(shot_at_[k]);
+        shot_at_ = std::move(kept);
     }
 
     const Camera& camera_;
-    double start_, focus_ = 0, end_ = 0;
-    double period_ = 0;
-    bool foreseen_ = false;
-    std::int64_t before_ = 0;  // pictures up to the focus, the first not counted
-    std::int64_t due_ = 1;
-    double shot_ = 0;
+    double begin_ = 0, spacing_ = 0;  // of the present part
+    double focus_ = 0, end_ = 0, period_ = 0;
+    double finer_ = 1;  // spacing wanted divided by the first one
+    bool foreseen_ = false, preparing_ = false;
+    std::int64_t wanted_ = 0, taken_ = 0;  // pictures of the present part
+    std::size_t first_ = 0;                // its first picture
+    std::vector<double> shot_at_;          // of all pictures kept, s
 };
 
 /// Of something over time.

@@ -4,8 +4,10 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace grainsweep::workers {
 
@@ -16,10 +18,13 @@ using Watch = std::function<bool(const Scene&)>;
 /// Camera that takes pictures during the run. The first picture is at the start, the last at the end. The others are
 /// evenly spaced in the scene's time, whose length is estimated from the progress after the first step. At most a
 /// quarter of them lie before picture_focus(). If picture_period() is shorter than the spacing, the spacing is rounded
-/// to a whole multiple of it. The moments do not depend on the slices.
+/// to a whole multiple of it. Of a scene that may end early, more pictures are taken, and every second one is dropped
+/// whenever they are twice as many as wanted. The moments do not depend on the slices.
 struct Camera {
     std::int64_t frames = 0;                  ///< 0: none
     std::function<void(const Scene&)> shoot;  ///< must not change the scene
+    /// Keeps only these of the pictures so far; indices in ascending order.
+    std::function<void(const std::vector<std::size_t>&)> keep;
 };
 
 /// Computes a case. The outcome is `skipped` if the answer is proven without a run. It is `rejected` if the scene

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
@@ -50,6 +51,30 @@ TEST(Pictures, AreEvenlySpacedAndChangeNoBit) {
     ASSERT_EQ(times.size(), 6U);
     EXPECT_EQ(times.front(), 0);
     for (std::size_t k = 1; k < times.size(); ++k) EXPECT_NEAR(times[k] - times[k - 1], times.back() / 5, 1.1e-6);
+}
+
+TEST(Pictures, OfACaseThatEndsEarlyAreAsManyAndShowItsWalls) {
+    const Folder folder;
+    const auto seen = run_program({"solve", "heap", "--set", "particles=60", "--frames", "24", "--watch", "heap.html",
+                                   "--vtk", "film", "--format", "json"},
+                                  folder.path());
+    ASSERT_EQ(seen.code, 0) << seen.err;
+    EXPECT_NE(seen.err.find("24 frames of"), std::string::npos) << seen.err;
+    const auto times = moments(folder / "film/heap.pvd");
+    ASSERT_EQ(times.size(), 24U);
+    EXPECT_LT(times.back(), 2) << "of three seconds";
+    const std::string collection = contents(folder / "film/heap.pvd");
+    std::map<double, int> walls;  // by time
+    const std::regex entry("timestep=\"([^\"]*)\" part=\"([1-9])\" file=\"([^\"]*)\"");
+    for (std::sregex_iterator m(collection.begin(), collection.end(), entry), end; m != end; ++m) {
+        ++walls[std::stod((*m)[1])];
+        EXPECT_TRUE(std::filesystem::exists(folder / "film" / (*m)[3].str()));
+    }
+    EXPECT_EQ(walls.size(), 24U) << "in every picture, the last one included";
+    std::size_t files = 0;
+    for (const auto& file : std::filesystem::directory_iterator(folder / "film"))
+        if (std::regex_match(file.path().filename().string(), std::regex("heap_[0-9]+.vtp"))) ++files;
+    EXPECT_EQ(files, 24U) << "no other picture is left";
 }
 
 TEST(Pictures, OfAStoredCase) {

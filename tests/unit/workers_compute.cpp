@@ -74,7 +74,12 @@ std::vector<double> moments_of(const char* scene, const Inputs& given, std::int6
     for (const auto& [name, value] : given) question.inputs.at(name) = value;
     NoArtefacts none;
     std::vector<double> moments;
-    const workers::Camera camera{frames, [&](const Scene& seen) { moments.push_back(seen.time()); }};
+    const workers::Camera camera{frames, [&](const Scene& seen) { moments.push_back(seen.time()); },
+                                 [&](const std::vector<std::size_t>& pictures) {
+                                     std::vector<double> kept;
+                                     for (const std::size_t k : pictures) kept.push_back(moments.at(k));
+                                     moments = kept;
+                                 }};
     const auto found = workers::compute(
         question, 1, none, std::nullopt, [](const Scene&) { return true; }, camera);
     EXPECT_EQ(found.value().outcome, campaign::Outcome::completed) << found.value().message;
