@@ -1,6 +1,7 @@
 #include "solver/machine/plan.hpp"
 
 #include "solver/dem/walls/moving_wall.hpp"
+#include "solver/machine/frames.hpp"
 #include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/scenes/kit/pace.hpp"
@@ -320,6 +321,24 @@ CostEstimate cost_of(const Spec& spec) {
     return cost;
 }
 
+void warn_of_frames(const Spec& spec, std::vector<Warning>& warnings) {
+    for (std::size_t p = 0; p < spec.phases.size(); ++p) {
+        const bool averaged = std::ranges::any_of(spec.measures, [&](const Measure& measure) {
+            return holds(measure.during, p) && !is_integrated(measure) &&
+                   (measure.reduction == "mean" || measure.reduction == "sd" || measure.reduction == "profile");
+        });
+        const auto step = spec.phases[p].frames_given && averaged ? in_step(spec, p) : std::nullopt;
+        if (!step) continue;
+        warnings.push_back(
+            {"frames in step with a motion",
+             spec.phases[p].name +
+                 sentence(": %.0f frames see the motion of ", static_cast<double>(spec.phases[p].frames)) + step->wall +
+                 sentence(", whose period is %.4g s, at %.0f of its phases, and means over them are "
+                          "wrong: leave \"frames\" out, or give a number without a common divisor",
+                          step->period, static_cast<double>(step->phases))});
+    }
+}
+
 std::vector<Warning> warnings_of(const Spec& spec) {
     std::vector<Warning> warnings = spec.warnings;
     warn_of_softness(spec, warnings);
@@ -328,6 +347,7 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     warn_of_feeds(spec, warnings);
     warn_of_walls(spec, warnings);
     warn_of_phases(spec, warnings);
+    warn_of_frames(spec, warnings);
     std::set<std::string> kinds;
     std::erase_if(warnings, [&](const Warning& warning) { return !kinds.insert(warning.kind).second; });
     for (const Species& species : spec.species)

@@ -8,4 +8,8 @@ double Sight::volume(std::size_t i) const {
     return particles::sphere_volume(2 * state.radius[i]);
 }
 
+double Sight::mass_of(std::size_t id) const {
+    return density[id] * particles::sphere_volume(2 * radius[id]);
+}
+
 }  // namespace grainsweep::machine

@@ -46,6 +46,16 @@ struct Sight {
     [[nodiscard]] std::size_t species_of(std::size_t i) const { return species[id(i)]; }
     [[nodiscard]] double volume(std::size_t i) const;  ///< m3
     [[nodiscard]] double mass(std::size_t i) const { return density[id(i)] * volume(i); }
+    /// Returns the mass of a particle, present or not, kg.
+    [[nodiscard]] double mass_of(std::size_t id) const;
+};
+
+/// Passage of a particle's centre through a plane of a probe.
+struct Passage {
+    std::size_t id = 0, plane = 0;  ///< plane: of Probe::planes()
+    bool forward = true;            ///< along the normal
+    double time = 0;                ///< s since the start
+    Vec3 position{};                ///< m
 };
 
 /// Values of the options of a probe.
@@ -104,9 +114,16 @@ public:
 
     /// Returns the value at this moment, or undefined. For a profile: one number that summarises it, or undefined.
     [[nodiscard]] virtual double look(const Sight& sight) = 0;
+    /// Returns the planes whose passages it counts.
+    [[nodiscard]] virtual std::vector<dem::CountingPlane> planes() const { return {}; }
+    /// Called for every passage in the selected phases, in the order of time. Of `sight` only what is given by id
+    /// holds.
+    virtual void passed(const Sight&, const Passage&) {}
     /// Called at every step of the selected phases, if the row of the probe has `steps`. The contacts have the forces
     /// of the step itself (dem::Engine::step_contacts).
     virtual void step(const Sight&) {}
+    /// Returns the integral of the value over all steps since the start, if the row of the probe has `integrated`.
+    [[nodiscard]] virtual double integral(const Sight&) { return undefined; }
     /// Appends bins and values at this moment; a scalar appends none.
     virtual void profile(const Sight&, std::vector<Sample>&) {}
     /// Writes the state that it keeps between two calls of look().
@@ -122,7 +139,8 @@ struct ProbeInfo {
     std::string_view over = {};  ///< of a profile: its coordinate with unit
     /// Returns the error of a combination of options, in one sentence; empty: none. May be null.
     std::string (*flaw)(const Options&) = nullptr;
-    bool steps = false;  ///< called at every step, which costs about as much as eight steps
+    bool steps = false;       ///< called at every step, which costs about as much as eight steps
+    bool integrated = false;  ///< a load on walls: its integral over the steps replaces values at frames in means
 };
 
 /// Returns all probes, sorted by name.

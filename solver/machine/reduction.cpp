@@ -1,6 +1,6 @@
 #include "solver/machine/reduction.hpp"
 
-#include "solver/observables/layer.hpp"
+#include "solver/observables/series.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,6 @@ namespace grainsweep::machine {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t blocks = 10, rate_blocks = 5;
 
 double last_of(std::span<const Sample> samples) {
     return samples.empty() ? unknown : samples.back().value;
@@ -73,7 +72,7 @@ double change_of(std::span<const Sample> samples) {
 double error_of_mean(std::span<const Sample> samples) {
     std::vector<double> values;
     for (const Sample& sample : samples) values.push_back(sample.value);
-    return observables::block_standard_error(values, blocks);
+    return observables::standard_error_of_mean(values);
 }
 
 /// From the rates between frames.
@@ -81,12 +80,38 @@ double error_of_slope(std::span<const Sample> samples) {
     std::vector<double> rates;
     for (std::size_t k = 1; k < samples.size(); ++k)
         rates.push_back((samples[k].value - samples[k - 1].value) / (samples[k].time - samples[k - 1].time));
-    return observables::block_standard_error(rates, rate_blocks);
+    return observables::standard_error_of_mean(rates);
+}
+
+double integral_of_intervals(std::span<const Interval> intervals) {
+    double sum = 0;
+    for (const Interval& interval : intervals) sum += interval.integral;
+    return intervals.empty() ? unknown : sum;
+}
+
+double mean_of_intervals(std::span<const Interval> intervals) {
+    double length = 0;
+    for (const Interval& interval : intervals) length += interval.length;
+    return integral_of_intervals(intervals) / length;
+}
+
+double error_of_mean_of_intervals(std::span<const Interval> intervals) {
+    std::vector<double> means;
+    for (const Interval& interval : intervals) means.push_back(interval.integral / interval.length);
+    return observables::standard_error_of_mean(means);
 }
 
 constexpr std::array all_reductions = {
-    ReductionInfo{"mean", "mean over the frames, with a standard error from ten blocks of them", Shape::scalar, mean_of,
-                  error_of_mean},
+    ReductionInfo{"mean",
+                  "mean over the frames, of a force, torque or pressure of walls over every step between them; with a "
+                  "standard error that counts how long values stay alike",
+                  Shape::scalar,
+                  mean_of,
+                  error_of_mean,
+                  {},
+                  false,
+                  mean_of_intervals,
+                  error_of_mean_of_intervals},
     ReductionInfo{"last", "value at the last frame", Shape::scalar, last_of, nullptr, {}, true},
     ReductionInfo{"first", "value at the first frame", Shape::scalar, first_of},
     ReductionInfo{"sd", "standard deviation over the frames", Shape::scalar, deviation_of},
@@ -94,9 +119,11 @@ constexpr std::array all_reductions = {
     ReductionInfo{"max", "largest value over the frames", Shape::scalar, greatest_of},
     ReductionInfo{
         "change", "value at the last frame less that at the first", Shape::scalar, change_of, nullptr, {}, true},
-    ReductionInfo{"slope", "least-squares slope over time, with a standard error from five blocks of frames",
+    ReductionInfo{"slope", "least-squares slope over time, with a standard error from the rates between frames",
                   Shape::scalar, slope_of, error_of_slope, "/s"},
-    ReductionInfo{"integral", "integral over time, by trapezia", Shape::scalar, integral_of, nullptr, " s"},
+    ReductionInfo{"integral",
+                  "integral over time, by trapezia; of a force, torque or pressure of walls over every step",
+                  Shape::scalar, integral_of, nullptr, " s", false, integral_of_intervals},
     ReductionInfo{"series", "value at every frame", Shape::series},
     ReductionInfo{"profile", "mean over the frames, bin by bin", Shape::profile},
     ReductionInfo{"last_profile", "at the last frame", Shape::profile, nullptr, nullptr, {}, true},
@@ -111,6 +138,24 @@ std::span<const ReductionInfo> reduction_catalogue() {
 const ReductionInfo* find_reduction(std::string_view name) {
     const auto found = std::ranges::find(all_reductions, name, &ReductionInfo::name);
     return found == all_reductions.end() ? nullptr : &*found;
+}
+
+std::optional<double> crossing_time(std::span<const Sample> samples, double value, bool above) {
+    const auto passed = std::ranges::find_if(
+        samples, [&](const Sample& sample) { return above ? sample.value > value : sample.value < value; });
+    if (passed == samples.end()) return std::nullopt;
+    if (passed == samples.begin()) return passed->time;
+    const Sample& before = *(passed - 1);
+    return before.time + (passed->time - before.time) * (value - before.value) / (passed->value - before.value);
+}
+
+std::vector<Interval> ending_at(std::span<const Interval> intervals, std::span<const Sample> samples) {
+    std::vector<Interval> counted;
+    for (const Interval& interval : intervals) {
+        const auto at = std::ranges::lower_bound(samples, interval.end, {}, &Sample::time);
+        if (at != samples.end() && at->time == interval.end) counted.push_back(interval);
+    }
+    return counted;
 }
 
 std::vector<Sample> between_shares(std::span<const Sample> samples, double low, double high) {

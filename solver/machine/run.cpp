@@ -1,5 +1,6 @@
 #include "solver/machine/run.hpp"
 
+#include "solver/machine/frames.hpp"
 #include "solver/machine/plan.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/kit/checkpoint.hpp"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -16,7 +18,7 @@ namespace {
 using geometry::dot;
 using geometry::norm;
 
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0002ULL;  // "grnsmc", version 2
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0003ULL;  // "grnsmc", version 3
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
@@ -44,13 +46,17 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
             setup.to_come.push_back({species.smallest() / 2, species.largest() / 2, species.material});
         }
     enlist(start);
-    engine_ = dem::make_engine(setup, spec_.method);
     for (const Measure& measure : spec_.measures) {
         const ProbeInfo& probe = *find_probe(measure.probe);
         probes_.push_back(probe.make(measure.options));
         needs_contacts_ = needs_contacts_ || probe.contacts;
+        first_plane_.push_back(setup.counting.size());
+        std::ranges::copy(probes_.back()->planes(), std::back_inserter(setup.counting));
     }
+    first_plane_.push_back(setup.counting.size());
+    engine_ = dem::make_engine(setup, spec_.method);
     for (const Phase& phase : spec_.phases) {
+        scattered_.push_back(!phase.frames_given && in_step(spec_, scattered_.size()));
         auto& watching = watching_.emplace_back();
         auto& at_steps = at_steps_.emplace_back();
         const auto attend = [&](const Measure& measure, Probe& probe) {
@@ -79,7 +85,7 @@ std::int64_t Run::steps_in(double seconds) const {
 }
 
 std::int64_t Run::step_of_frame(std::int64_t frame) const {
-    const double share = static_cast<double>(frame) / static_cast<double>(phase().frames);
+    const double share = share_of_frame(frame, phase().frames, scattered_[phase_]);
     return phase_begin_ + std::llround(share * static_cast<double>(phase_steps()));
 }
 
@@ -110,6 +116,7 @@ void Run::advance(double until) {
             step_ = kit::run_towards(*engine_, step_, stop, spec_.time_step, until);
         else
             step_ += run_watched_step();
+        give_crossings();
         if (health().stable() && step_ == stop) stop_here();
     }
 }
@@ -127,6 +134,24 @@ std::int64_t Run::run_watched_step() {
         for (Probe* probe : at_steps_[phase_]) probe->step(sight);
     } while (!engine_->at_step());
     return 1;
+}
+
+/// Gives the passages since the last stop to the probes of the present phase.
+void Run::give_crossings() {
+    if (first_plane_.back() == 0) return;
+    crossings_.clear();
+    engine_->take_crossings(crossings_);
+    const Sight now = sight();
+    for (const dem::Crossing& crossing : crossings_) {
+        const auto next = std::ranges::upper_bound(first_plane_, crossing.plane);
+        const auto m = static_cast<std::size_t>(next - first_plane_.begin()) - 1;
+        const Passage passage{static_cast<std::size_t>(crossing.id), crossing.plane - first_plane_[m], crossing.forward,
+                              spec_.time_step * crossing.steps, crossing.position};
+        if (holds(spec_.measures[m].during, phase_)) probes_[m]->passed(now, passage);
+        for (std::size_t k = 0; k < phase().until.size(); ++k)
+            if (const auto* passes = std::get_if<Passes>(&phase().until[k]); passes != nullptr && passes->measure == m)
+                watching_[phase_][k]->passed(now, passage);
+    }
 }
 
 void Run::begin_phase() {
@@ -214,6 +239,10 @@ Sight Run::look(Contacts contacts) {
     contacts_.clear();
     if (contacts == Contacts::present) engine_->contacts(contacts_);
     if (contacts == Contacts::of_step) engine_->step_contacts(contacts_);
+    return sight();
+}
+
+Sight Run::sight() const {
     return {*engine_,      state_,         contacts_,
             species_,      density_,       spec_.domain,
             spec_.gravity, time(),         engine_->peak_overlap(),
@@ -228,9 +257,13 @@ void Run::take_frame() {
         Record& record = records_[m];
         const double value = probes_[m]->look(sight);
         // The end of a phase is the beginning of the next one.
-        const bool again = record.looked == sight.time;
-        record.looked = sight.time;
-        if (again) continue;
+        const double before = std::exchange(record.looked, sight.time);
+        if (before == sight.time) continue;
+        if (is_integrated(measure)) {
+            const double integral = probes_[m]->integral(sight), since = std::exchange(record.integral, integral);
+            if (frame_ > 0 && std::isfinite(integral))
+                record.intervals.push_back({sight.time, sight.time - before, integral - since});
+        }
         if (std::isfinite(value)) record.samples.push_back({.time = sight.time, .value = value});
         if (find_probe(measure.probe)->over.empty()) continue;
         std::vector<Sample> profile;
@@ -310,7 +343,6 @@ Snapshot Run::snapshot() const {
     for (const double id : picture.scalars["id"]) species.push_back(species_[static_cast<std::size_t>(id)]);
     for (std::size_t k = 0; k < 3; ++k)
         if (spec_.domain.periodic[k]) picture.periods[k] = spec_.domain.length(k);
-    if (finished()) return picture;
     const auto walls = walls_now();
     for (std::size_t w = 0; w < walls.size(); ++w)
         if (walls[w].present)
@@ -320,10 +352,20 @@ Snapshot Run::snapshot() const {
 }
 
 double Run::picture_focus() const {
+    // A last phase that only measures is not the main part.
+    constexpr double least = 0.05;  // of all
+    double all = 0;
+    for (const Phase& one : spec_.phases) all += length_of(one);
+    std::size_t main = spec_.phases.size() - 1;
+    while (main > 0 && length_of(spec_.phases[main]) < least * all) --main;
     double start = 0;
-    for (std::size_t p = 0; p + 1 < spec_.phases.size(); ++p)
+    for (std::size_t p = 0; p < main; ++p)
         start = p < times_.end.size() ? times_.end[p] : start + spec_.phases[p].duration;
     return start;
+}
+
+bool Run::may_end_early() const {
+    return std::ranges::any_of(spec_.phases, [](const Phase& one) { return !one.until.empty(); });
 }
 
 template <class State, class Visit>
@@ -334,7 +376,7 @@ void Run::fields(State& run, Visit&& visit) {
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),
-            visit(record.looked);
+            visit(record.looked), visit(record.intervals), visit(record.integral);
 }
 
 void Run::save(Bytes& into) const {

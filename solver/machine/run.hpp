@@ -7,6 +7,7 @@
 #include "solver/dem/engine.hpp"
 #include "solver/machine/feeding.hpp"
 #include "solver/machine/partner_order.hpp"
+#include "solver/machine/reduction.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/machine/spec.hpp"
 #include "solver/scenes/scene.hpp"
@@ -35,6 +36,7 @@ public:
     [[nodiscard]] std::string remark() const override;
     [[nodiscard]] Snapshot snapshot() const override;
     [[nodiscard]] double picture_focus() const override;
+    [[nodiscard]] bool may_end_early() const override;
 
 private:
     /// Samples of a measurement so far.
@@ -42,6 +44,8 @@ private:
         std::vector<Sample> samples;
         std::vector<double> bins, sums, counts, last;  // of a profile
         double looked = undefined;                     // time of the last frame, s
+        std::vector<Interval> intervals;               // between frames, of a value that is integrated
+        double integral = undefined;                   // since the start, at the last frame
     };
 
     /// Returns a message of the engine with "wall 2" replaced by the wall's name.
@@ -66,6 +70,8 @@ private:
     [[nodiscard]] bool holds_now(std::size_t condition);
     enum class Contacts { none, present, of_step };
     [[nodiscard]] Sight look(Contacts contacts);
+    [[nodiscard]] Sight sight() const;
+    void give_crossings();
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
     /// Returns the walls with the present travel and speed of those that the powder moves.
@@ -85,6 +91,8 @@ private:
     std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // probes that end a phase, by phase and condition
     std::vector<std::vector<Probe*>> at_steps_;                  // of both, the probes that are called at every step,
                                                                  // by phase
+    std::vector<bool> scattered_;                                // frames, by phase
+    std::vector<std::size_t> first_plane_;  // of each measure in Setup::counting, and the number of all
     std::vector<Feeder> feeders_;
     bool needs_contacts_ = false;
 
@@ -103,6 +111,7 @@ private:
     dem::State state_;
     std::vector<dem::ContactForce> contacts_;
     PartnerOrder partner_order_;
+    std::vector<dem::Crossing> crossings_;
 };
 
 }  // namespace grainsweep::machine

@@ -54,6 +54,13 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
         if (!samples.empty()) into.series[measure.name] = std::move(samples);
         return;
     }
+    if (const std::vector<Interval> over = ending_at(record.intervals, samples); !over.empty()) {
+        into.scalars[measure.name] = reduction.of_intervals(over);
+        if (reduction.error_of_intervals == nullptr) return;
+        if (const double error = reduction.error_of_intervals(over); std::isfinite(error))
+            into.scalars[measure.name + "_error"] = error;
+        return;
+    }
     if (reduction.last && !record.samples.empty() && record.samples.back().time != record.looked) return;
     if (const double value = reduction.of(samples); std::isfinite(value)) into.scalars[measure.name] = value;
     if (reduction.error == nullptr) return;
@@ -81,11 +88,8 @@ void Run::observe(Observations& into) const {
     for (const auto& time_of : spec_.times) into.scalars.erase(time_of.name);
     for (std::size_t m = 0; m < spec_.measures.size(); ++m) observe(spec_.measures[m], records_[m], into);
     for (const TimeOf& time_of : spec_.times)
-        for (const Sample& sample : records_[time_of.measure].samples)
-            if (time_of.above ? sample.value > time_of.value : sample.value < time_of.value) {
-                into.scalars[time_of.name] = sample.time;
-                break;
-            }
+        if (const auto time = crossing_time(records_[time_of.measure].samples, time_of.value, time_of.above))
+            into.scalars[time_of.name] = *time;
     for (const Derived& derived : spec_.derived) {
         const bool known =
             std::ranges::all_of(derived.needs, [&](const auto& name) { return into.scalars.contains(name); });

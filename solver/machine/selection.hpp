@@ -1,5 +1,5 @@
-// Particles that a probe counts: by species, and by the region that contains the centre. Glued particles are part of a
-// wall.
+// Particles that a probe counts: by species, and by the region that contains the centre; of a passage through a plane,
+// the place where the centre passes. Glued particles are part of a wall.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -23,6 +23,10 @@ public:
     [[nodiscard]] bool holds(const Sight& sight, std::size_t i) const {
         return sight.state.mobile[i] != 0 && species_counts(sight, i) &&
                (!in_ || in_->contains(sight.state.position[i]));
+    }
+    [[nodiscard]] bool holds(const Sight& sight, const Passage& passage) const {
+        return (of_.empty() || std::ranges::find(of_, sight.species[passage.id]) != of_.end()) &&
+               (!in_ || in_->contains(passage.position));
     }
     /// Calls visit(i) for every particle that counts.
     template <class Visit>

@@ -1,5 +1,8 @@
 #include "solver/machine/setup.hpp"
 
+#include "solver/machine/probe.hpp"
+#include "solver/machine/reduction.hpp"
+
 #include "solver/dem/time_step.hpp"
 
 #include <algorithm>
@@ -98,6 +101,16 @@ bool holds(const Phases& phases, std::size_t phase) {
     return phases.empty() || std::ranges::find(phases, phase) != phases.end();
 }
 
+bool is_integrated(const Measure& measure) {
+    return find_probe(measure.probe)->integrated && find_reduction(measure.reduction)->of_intervals != nullptr;
+}
+
+static bool loads_are_integrated(const Spec& spec, std::size_t wall) {
+    return std::ranges::any_of(spec.measures, [wall](const Measure& measure) {
+        return is_integrated(measure) && std::ranges::count(measure.options.numbers("wall"), wall) > 0;
+    });
+}
+
 std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times) {
     std::vector<dem::Wall> walls;
     for (const MachineWall& given : spec.walls) {
@@ -106,6 +119,7 @@ std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const Phase
             if (auto act = acting(motion, times)) wall.motions.push_back(*act);
         wall.materials = given.materials;
         wall.present = holds(given.during, phase);
+        wall.integrated = loads_are_integrated(spec, walls.size());
         walls.push_back(std::move(wall));
     }
     return walls;

@@ -13,6 +13,8 @@ struct PhaseTimes {
     std::vector<double> begin, end;
 };
 
+/// Returns whether the value of a measurement is integrated over every step.
+[[nodiscard]] bool is_integrated(const Measure& measure);
 /// Returns the walls in a phase, with their presence and their motion from now on. Motions of phases that have not
 /// begun are left out.
 [[nodiscard]] std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times);

@@ -110,6 +110,7 @@ struct Phase {
     std::optional<double> expected;  ///< s, if the phase may end early; used only to predict the cost
     std::vector<Until> until;        ///< the first condition that holds ends the phase
     std::int64_t frames = 100;       ///< intervals between measurements
+    bool frames_given = false;       ///< by the user: they are equal then, even in step with a motion (frames.hpp)
     bool ends_at_frames = false;     ///< its conditions are checked only at frames
 };
 

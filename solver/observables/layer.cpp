@@ -184,20 +184,4 @@ double unevenness(std::span<const double> profile) {
     return places > 0 ? std::sqrt(squares / places) : std::numeric_limits<double>::quiet_NaN();
 }
 
-double block_standard_error(std::span<const double> series, std::size_t blocks) {
-    const std::size_t length = series.size() / blocks;
-    if (length < 2 || blocks < 2) return std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> means(blocks, 0);
-    double mean = 0;
-    for (std::size_t b = 0; b < blocks; ++b) {
-        for (std::size_t k = 0; k < length; ++k) means[b] += series[b * length + k];
-        means[b] /= static_cast<double>(length);
-        mean += means[b] / static_cast<double>(blocks);
-    }
-    double squares = 0;
-    for (const double m : means) squares += (m - mean) * (m - mean);
-    const auto n = static_cast<double>(blocks);
-    return std::sqrt(squares / (n * (n - 1)));
-}
-
 }  // namespace grainsweep::observables

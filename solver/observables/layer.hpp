@@ -87,9 +87,4 @@ struct VelocityProfile {
 /// neighbours have values.
 [[nodiscard]] double unevenness(std::span<const double> profile);
 
-/// Returns the standard error of the mean of a correlated series, from the means of `blocks` consecutive blocks of
-/// equal length (batch means). NaN if a block has fewer than two values. The remainder after the last full block is
-/// left out.
-[[nodiscard]] double block_standard_error(std::span<const double> series, std::size_t blocks);
-
 }  // namespace grainsweep::observables

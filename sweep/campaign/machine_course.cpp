@@ -196,7 +196,10 @@ void read_phases(const Section& top, MachineReading& reading) {
         machine::Phase phase;
         phase.name = section.at("name").text();
         phase.duration = reading.scope.number(given ? *given : *most, "s", no_negative_number);
-        if (const auto frames = section.find("frames")) phase.frames = reading.scope.whole(*frames, {1, 1e6});
+        if (const auto frames = section.find("frames")) {
+            phase.frames = reading.scope.whole(*frames, {1, 1e6});
+            phase.frames_given = true;
+        }
         if (until && !until->json().is_array()) phase.until.push_back(read_until(*until, reading));
         if (until && until->json().is_array())
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
@@ -315,10 +318,10 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         if (reduction.error != nullptr)
             all.push_back({name + "_error",
                            unit,
-                           fmt::format("standard error of {} from blocks of frames", name),
+                           fmt::format("standard error of {}; 1.96 of it on both sides hold 95 %", name),
                            Shape::scalar,
                            {},
-                           "fewer than two frames in a block"});
+                           "fewer than ten frames, or too few independent ones"});
     }
     if (all.empty()) measures.refuse("a machine needs a measurement");
     const auto automatic = [&all](const char* name, const char* meaning, const char* unit = "1") {

@@ -1,4 +1,5 @@
 #include "solver/observables/layer.hpp"
+#include "solver/observables/series.hpp"
 
 #include "stats/random.hpp"
 

@@ -1,9 +1,8 @@
 // Residence times between two planes: for each particle the time from its first passage of the first plane to its first
 // passage of the second, both along the direction.
 //
-// Between two frames the velocity of a particle is taken as constant; the error is at most v' dt^2/(8 v) for an
-// acceleration v'. A particle that is absent at the next frame is taken to fly freely. What starts behind the first
-// plane is not counted, nor what has not arrived.
+// The engine records every passage (dem/crossings.hpp), so the times are exact to a step for any frames. What starts
+// behind the first plane is counted once it has passed it, and what has not arrived is not counted.
 #include "solver/machine/binning.hpp"
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
@@ -13,7 +12,7 @@
 namespace grainsweep::machine::probes {
 namespace {
 
-using geometry::dot;
+using geometry::operator*;
 
 enum class OfResidence { mean, deviation, density };
 
@@ -27,27 +26,21 @@ public:
           second_(options.number("to")),
           bins_{0, options.number("longest", 1), options.has("longest") ? bins_in(options) : 0} {}
 
-    double look(const Sight& sight) override {
-        if (seen_.size() < sight.species.size()) seen_.resize(sight.species.size());
-        const double span = sight.time - time_;
-        std::vector<char> here(seen_.size(), 0);
-        for (std::size_t i = 0; i < sight.size(); ++i) {
-            if (!selection_.holds(sight, i)) continue;
-            Seen& seen = seen_[sight.id(i)];
-            here[sight.id(i)] = 1;
-            const double s = dot(sight.state.position[i], along_);
-            if (seen.there != 0) pass(seen, s, span);
-            seen.there = 1, seen.s = s, seen.v = dot(sight.state.velocity[i], along_);
-        }
-        for (std::size_t id = 0; id < seen_.size(); ++id) {
-            Seen& seen = seen_[id];
-            if (here[id] != 0 || seen.there == 0) continue;
-            pass(seen, seen.s + seen.v * span + dot(sight.gravity, along_) * span * span / 2, span);
-            seen.there = 0;
-        }
-        time_ = sight.time;
-        return value();
+    [[nodiscard]] std::vector<dem::CountingPlane> planes() const override {
+        return {{first_ * along_, along_}, {second_ * along_, along_}};
     }
+    void passed(const Sight& sight, const Passage& passage) override {
+        if (!passage.forward || !selection_.holds(sight, passage)) return;
+        if (passage.id >= seen_.size()) seen_.resize(passage.id + 1);
+        Seen& seen = seen_[passage.id];
+        if (passage.plane == 0) {
+            if (!std::isfinite(seen.entered)) seen.entered = passage.time;
+        } else if (std::isfinite(seen.entered) && seen.left == 0) {
+            seen.left = 1;
+            times_.push_back(passage.time - seen.entered);
+        }
+    }
+    double look(const Sight&) override { return value(); }
     void profile(const Sight&, std::vector<Sample>& into) override {
         std::vector<double> numbers(bins_.count, 0.0);
         for (const double t : times_)
@@ -56,26 +49,15 @@ public:
             into.push_back(
                 {.bin = bins_.centre(b), .value = numbers[b] / (static_cast<double>(times_.size()) * bins_.width())});
     }
-    void save(ByteWriter& out) const override { out.put(time_), out.put(seen_), out.put(times_); }
-    void restore(ByteReader& in) override { in.get(time_), in.get(seen_), in.get(times_); }
+    void save(ByteWriter& out) const override { out.put(seen_), out.put(times_); }
+    void restore(ByteReader& in) override { in.get(seen_), in.get(times_); }
 
 private:
-    /// A particle as it was last.
     struct Seen {
-        std::int64_t there = 0;
-        double s = 0, v = 0;         // along the direction, m and m/s
         double entered = undefined;  // s since the start
         std::int64_t left = 0;       // has passed the second plane
     };
 
-    /// The way of a frame, from where it was seen to s.
-    void pass(Seen& seen, double s, double span) {
-        const auto when = [&](double plane) { return time_ + span * (plane - seen.s) / (s - seen.s); };
-        if (!std::isfinite(seen.entered) && seen.s < first_ && s >= first_) seen.entered = when(first_);
-        if (!std::isfinite(seen.entered) || seen.left != 0 || !(seen.s < second_ && s >= second_)) return;
-        seen.left = 1;
-        times_.push_back(when(second_) - seen.entered);
-    }
     [[nodiscard]] double value() const {
         if (times_.empty() || what == OfResidence::density) return undefined;
         double mean = 0, squares = 0;
@@ -89,8 +71,7 @@ private:
     Vec3 along_;
     double first_, second_;
     Bins bins_;
-    double time_ = 0;
-    std::vector<Seen> seen_;     // by id
+    std::vector<Seen> seen_;     // by id, as far as particles have passed
     std::vector<double> times_;  // s, of those that have passed both
 };
 

@@ -1,7 +1,8 @@
 // Loads of the powder on walls: force, torque, work, and the pressure of the normal component.
 //
-// Of several walls together. Work: work of the walls' forces on the powder since the start. It does not include the
-// work of moments against rolling resistance.
+// Of several walls together. Means of force, torque and pressure are the impulse divided by its time: integrals over
+// every step, which no choice of frames changes. Work: work of the walls' forces on the powder since the start. It does
+// not include the work of moments against rolling resistance.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 
@@ -14,9 +15,10 @@ struct Walls {
     std::vector<std::size_t> numbers;
 
     explicit Walls(const Options& options) : numbers(options.numbers("wall")) {}
+    /// Returns the sum of a number of their loads; undefined for walls that this case is without.
     template <class Of>
     [[nodiscard]] double sum(const Sight& sight, const Vec3& about, Of&& of) const {
-        double total = numbers.empty() ? undefined : 0;  // walls that this case is without
+        double total = numbers.empty() ? undefined : 0;
         for (const std::size_t w : numbers) total += of(sight.engine.wall_load(w, about));
         return total;
     }
@@ -28,6 +30,9 @@ public:
         : walls_(options), along_(options.vector("along")), area_(options.number("area", 1)) {}
     double look(const Sight& sight) override {
         return walls_.sum(sight, {}, [this](const dem::WallLoad& load) { return dot(load.force, along_); }) / area_;
+    }
+    double integral(const Sight& sight) override {
+        return walls_.sum(sight, {}, [this](const dem::WallLoad& load) { return dot(load.impulse, along_); }) / area_;
     }
 
 private:
@@ -42,6 +47,10 @@ public:
         : walls_(options), axis_(options.vector("axis")), about_(options.vector("about", {})) {}
     double look(const Sight& sight) override {
         return walls_.sum(sight, about_, [this](const dem::WallLoad& load) { return dot(load.torque, axis_); });
+    }
+    double integral(const Sight& sight) override {
+        return walls_.sum(sight, about_,
+                          [this](const dem::WallLoad& load) { return dot(load.angular_impulse, axis_); });
     }
 
 private:
@@ -92,26 +101,35 @@ constexpr std::array pressure_options = {
     wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true},
     OptionSpec{"area", OptionSpec::Kind::number, "m2", "the area that carries it", true, {0, 1e6, true, false}}};
 
+template <class P>
+std::unique_ptr<machine::Probe> make_load(const Options& given) {
+    return std::make_unique<P>(given);
+}
+
+/// Returns the row of a load whose integral over time the engine keeps.
+template <class P>
+ProbeInfo integrated_load(std::string_view name, std::string_view unit, std::string_view meaning,
+                          std::span<const OptionSpec> options) {
+    ProbeInfo row{name, unit, meaning, options, make_load<P>};
+    row.integrated = true;
+    return row;
+}
+
 }  // namespace
 
-const ProbeInfo rolling_torque{
-    "rolling_torque",
-    "N m",
-    "sum of the moments on particles by which walls resist rolling, about an axis",
-    rolling_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<RollingTorque>(given); },
-    true};
-const ProbeInfo wall_force{
-    "wall_force", "N", "force of the powder on walls, a component", force_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Force>(given); }};
-const ProbeInfo wall_pressure{
-    "wall_pressure", "Pa", "force of the powder on walls, a component, divided by an area", pressure_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Force>(given); }};
-const ProbeInfo wall_torque{
-    "wall_torque", "N m", "torque of the powder on walls about an axis", torque_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Torque>(given); }};
-const ProbeInfo wall_work{
-    "wall_work", "J", "work of walls on the powder since the start", work_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Work>(given); }};
+const ProbeInfo rolling_torque{"rolling_torque",
+                               "N m",
+                               "sum of the moments on particles by which walls resist rolling, about an axis",
+                               rolling_options,
+                               make_load<RollingTorque>,
+                               true};
+const ProbeInfo wall_force =
+    integrated_load<Force>("wall_force", "N", "force of the powder on walls, a component", force_options);
+const ProbeInfo wall_pressure = integrated_load<Force>(
+    "wall_pressure", "Pa", "force of the powder on walls, a component, divided by an area", pressure_options);
+const ProbeInfo wall_torque =
+    integrated_load<Torque>("wall_torque", "N m", "torque of the powder on walls about an axis", torque_options);
+const ProbeInfo wall_work{"wall_work", "J", "work of walls on the powder since the start", work_options,
+                          make_load<Work>};
 
 }  // namespace grainsweep::machine::probes
