@@ -327,7 +327,10 @@ void warn_of_frames(const Spec& spec, std::vector<Warning>& warnings) {
             return holds(measure.during, p) && !is_integrated(measure) &&
                    (measure.reduction == "mean" || measure.reduction == "sd" || measure.reduction == "profile");
         });
-        const auto step = spec.phases[p].frames_given && averaged ? in_step(spec, p) : std::nullopt;
+        // Fewer frames see few phases of any motion, and their mean has no error.
+        constexpr std::int64_t fewest = 10;
+        const bool chosen = spec.phases[p].frames_given && spec.phases[p].frames >= fewest;
+        const auto step = chosen && averaged ? in_step(spec, p) : std::nullopt;
         if (!step) continue;
         warnings.push_back(
             {"frames in step with a motion",

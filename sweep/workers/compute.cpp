@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -60,8 +61,8 @@ public:
         if (scene.time() < next()) return;
         if (preparing_ && scene.time() >= focus_) {
             preparing_ = false;
-            keep_of_part(wanted_);
-            begin_part(scene, camera_.frames - static_cast<std::int64_t>(shot_at_.size()));
+            if (finer_ == 1) preparation_ = static_cast<std::int64_t>(shot_at_.size());
+            begin_part(scene, camera_.frames - preparation_);
             spacing_ = (std::max(end_, begin_) - begin_) / static_cast<double>(std::max<std::int64_t>(1, wanted_ - 1)) /
                        finer_;
             return;
@@ -73,11 +74,18 @@ public:
     void last(const Scene& scene) {
         if (camera_.frames == 0) return;
         if (scene.time() > shot_at_.back()) shoot(scene);
-        keep_of_part(camera_.frames - static_cast<std::int64_t>(first_));
+        if (finer_ == 1) return;
+        // What the main part leaves, because it was short, the preparation gets.
+        const std::size_t first = first_, main = shot_at_.size() - first;
+        const auto all = static_cast<std::size_t>(camera_.frames), before = static_cast<std::size_t>(preparation_);
+        const std::size_t of_main = std::min(main, all - std::min(before, first));
+        std::vector<std::size_t> places = evenly(0, first, std::min(first, all - of_main));
+        std::ranges::copy(evenly(first, main, of_main), std::back_inserter(places));
+        camera_.keep(places);
     }
 
 private:
-    static constexpr double preparation = 0.25;  // of the pictures, at most
+    static constexpr double most_preparation = 0.25;  // of the pictures, at most
     static constexpr double finer_of_early = 16;
 
     void foresee(const Scene& scene) {
@@ -86,9 +94,10 @@ private:
         finer_ = scene.may_end_early() && camera_.keep ? finer_of_early : 1;
         end_ = std::max(scene.time() / scene.progress(), scene.time());
         focus_ = std::clamp(scene.picture_focus(), begin_, end_);
-        const double share = end_ > begin_ ? std::min(preparation, (focus_ - begin_) / (end_ - begin_)) : 0;
-        wanted_ = std::llround(share * static_cast<double>(camera_.frames - 1));
+        const double share = end_ > begin_ ? std::min(most_preparation, (focus_ - begin_) / (end_ - begin_)) : 0;
+        preparation_ = wanted_ = std::llround(share * static_cast<double>(camera_.frames - 1));
         preparing_ = wanted_ > 0;
+        if (preparing_ && finer_ > 1) wanted_ = camera_.frames;
         const double part_end = preparing_ ? focus_ : end_;
         if (!preparing_) wanted_ = camera_.frames - 1;
         spacing_ = (part_end - begin_) / static_cast<double>(wanted_) / finer_;
@@ -112,14 +121,12 @@ private:
         spacing_ *= 2;
         taken_ = static_cast<std::int64_t>(places.size());
     }
-    /// Keeps so many pictures of the present part, evenly.
-    void keep_of_part(std::int64_t wanted) {
-        const auto there = static_cast<std::int64_t>(shot_at_.size() - first_);
-        if (finer_ == 1 || there <= wanted || wanted < 2) return;
+    /// Returns so many of `there` places from `begin` on, the first and the last included.
+    static std::vector<std::size_t> evenly(std::size_t begin, std::size_t there, std::size_t wanted) {
         std::vector<std::size_t> places;
-        for (std::int64_t k = 0; k < wanted; ++k)
-            places.push_back(first_ + static_cast<std::size_t>((k * (there - 1) + (wanted - 1) / 2) / (wanted - 1)));
-        keep(places);
+        for (std::size_t k = 0; k < wanted; ++k)
+            places.push_back(begin + (wanted < 2 ? there - 1 : (k * (there - 1) + (wanted - 1) / 2) / (wanted - 1)));
+        return places;
     }
     /// Keeps the earlier parts, and of the present one the pictures at these places.
     void keep(const std::vector<std::size_t>& of_part) {
@@ -137,6 +144,7 @@ private:
     double focus_ = 0, end_ = 0, period_ = 0;
     double finer_ = 1;  // spacing wanted divided by the first one
     bool foreseen_ = false, preparing_ = false;
+    std::int64_t preparation_ = 0;         // pictures before the focus, at most
     std::int64_t wanted_ = 0, taken_ = 0;  // pictures of the present part
     std::size_t first_ = 0;                // its first picture
     std::vector<double> shot_at_;          // of all pictures kept, s

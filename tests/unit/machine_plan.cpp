@@ -80,7 +80,7 @@ TEST(MachinePlan, WarnsOfAFillingThatDoesNotFit) {
 
 TEST(MachinePlan, WarnsOfWallsTooFastForTheStep) {
     const char* fast = R"([{"op": "add", "path": "/walls/paddle/motion/-",
-                            "value": {"vibrate": {"amplitude": [0, 0, 1e-6], "frequency": 3000}}}])";
+                            "value": {"vibrate": {"amplitude": [0, 0, 1e-6], "frequency": 3124}}}])";
     EXPECT_EQ(kinds(fast), Kinds{"vibration faster than the time step"});
     const char* thrown = R"([{"op": "add", "path": "/walls/paddle/motion/-",
                               "value": {"shift": {"velocity": [0, 0, 30]}, "during": "stop"}}])";
