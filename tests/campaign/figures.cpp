@@ -25,7 +25,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 const char* mixed = R"({"campaign": "mixed", "scene": "rehearsal", "factors": [
   {"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0.001, 1], "scale": "log"},
   {"name": "behaviour", "levels": ["normal", "unstable"]}],
-  "fixed": {"noise": 0.02}, "design": {"kind": "halton", "points": 192, "sequences": 4},
+  "fixed": {"noise": 0.02}, "design": {"kind": "halton", "points": 96, "sequences": 4},
   "convergence": {"observable": "y", "block": 16, "tolerance": 0.001}})";
 
 struct Figures : testing::Test {
