@@ -191,6 +191,9 @@ public:
     /// Returns the largest value of largest_overlap() after any step since the start, or since
     /// forget_peak_overlap().
     [[nodiscard]] virtual double peak_overlap() const = 0;
+    /// Returns the same of overlaps with walls, divided by the particle's diameter.
+    [[nodiscard]] virtual double peak_wall_overlap() const = 0;
+    /// Forgets both peaks.
     virtual void forget_peak_overlap() = 0;
     /// Lists every touching pair with a mobile particle, and every touch of a wall. The order depends on the state
     /// only.

@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000bULL;  // "grnscl", version 11
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000cULL;  // "grnscl", version 12
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(ids(), particles::gone);
@@ -48,6 +48,7 @@ void ClearEngine::visit_state(Self& self, Visit&& visit) {
     visit(self.largest_overlap_);
     visit(self.peak_overlap_);
     visit(self.largest_wall_overlap_);
+    visit(self.peak_wall_overlap_);
     visit(self.speed_limit_);
     visit(self.work_of_walls_);
     visit(self.work_of_wrapping_);
