@@ -193,16 +193,21 @@ public:
     /// Returns the largest particle-particle overlap divided by the smaller diameter, among the contacts of the last
     /// step.
     [[nodiscard]] virtual double largest_overlap() const = 0;
-    /// Returns the largest value of largest_overlap() after any step since the start, or since forget_peak_overlap().
+    /// Returns the largest value of largest_overlap() after any step since the start, or since
+    /// forget_peak_overlap().
     [[nodiscard]] virtual double peak_overlap() const = 0;
+    /// Returns the same of overlaps with walls, divided by the particle's diameter.
+    [[nodiscard]] virtual double peak_wall_overlap() const = 0;
+    /// Forgets both peaks.
     virtual void forget_peak_overlap() = 0;
     /// Lists every touching pair with a mobile particle, and every touch of a wall. The order depends on the state
     /// only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
     /// Lists the same contacts with the forces of the last step, which use the velocities of the half step before. The
     /// powers times the time step are the loss of the step. The kinetic energy at half steps changes by this loss, the
-    /// work of the walls and the work of body forces. This is exact to rounding in double precision, and to 3e-3 in
-    /// mixed precision, which decides anew whether springs yield. Valid only after a step.
+    /// work of the walls and the work of body forces. This is exact to rounding in double precision. In mixed
+    /// precision the loss of an impact is exact to 1e-3, where it is more than the rounding of the motion, 1e-7 of the
+    /// kinetic energy. Valid only after a step.
     virtual void step_contacts(std::vector<ContactForce>& into) const = 0;
     /// Returns the wall with this number, with travel and speed of its free motions.
     [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;

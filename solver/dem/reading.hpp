@@ -5,6 +5,8 @@
 #include "solver/dem/engine.hpp"
 #include "solver/dem/laws/any_contact.hpp"
 
+#include <cmath>
+
 namespace grainsweep::dem {
 
 /// Velocities of one particle.
@@ -15,20 +17,28 @@ struct Velocities {
 
 /// Velocities of i relative to its partner.
 struct RelativeMotion {
-    Vec3 velocity{};  ///< v_i - v_j, m/s
-    Vec3 surface{};   ///< (R_i - d/2) w_i + (R_j - d/2) w_j, m/s
-    Vec3 turning{};   ///< w_i - w_j, rad/s
+    Vec3 velocity{};   ///< v_i - v_j, m/s
+    Vec3 surface{};    ///< (R_i - d/2) w_i + (R_j - d/2) w_j, m/s
+    Vec3 turning{};    ///< w_i - w_j, rad/s
+    double terms = 0;  ///< sum of the sizes of the terms of v . n, of which its rounding error is a share, m/s
 };
+
+/// Returns the sum of the sizes of the terms of u . n and v . n.
+[[nodiscard]] inline double sizes_along(const Vec3& n, const Vec3& u, const Vec3& v) {
+    double sum = 0;
+    for (std::size_t a = 0; a < 3; ++a) sum += std::abs(n[a]) * (std::abs(u[a]) + std::abs(v[a]));
+    return sum;
+}
 
 [[nodiscard]] inline RelativeMotion relative(const Touch<Partner::particle>& t, const Velocities& i,
                                              const Velocities& j) {
     using namespace geometry;
     return {i.velocity - j.velocity, (t.radius_i - t.overlap / 2) * i.spin + (t.radius_j - t.overlap / 2) * j.spin,
-            i.spin - j.spin};
+            i.spin - j.spin, sizes_along(t.normal, i.velocity, j.velocity)};
 }
 [[nodiscard]] inline RelativeMotion relative(const Touch<Partner::wall>& t, const Velocities& i, const Vec3& wall) {
     using namespace geometry;
-    return {i.velocity - wall, (t.radius_i - t.overlap / 2) * i.spin, i.spin};
+    return {i.velocity - wall, (t.radius_i - t.overlap / 2) * i.spin, i.spin, sizes_along(t.normal, i.velocity, wall)};
 }
 
 /// Returns the touch at these velocities.
@@ -45,7 +55,8 @@ template <Partner partner>
 template <Partner partner>
 [[nodiscard]] Touch<partner> as_in_step(const Touch<partner>& t, const RelativeMotion& before, double rounding) {
     Touch<partner> seen = moving(t, before);
-    seen.cut_before = rounding;
+    seen.rounding = rounding;
+    seen.rounded_speed = before.terms;
     seen.time_step = 0;
     return seen;
 }

@@ -108,7 +108,46 @@ private:
     std::vector<Range> loose_;
 };
 
+/// Throws if one of these spheres starts deep in the wall with this number.
+void require_out_of_wall(const Spec& spec, std::size_t number, const dem::MovingWall& wall,
+                         const std::vector<Placed>& placed) {
+    std::vector<dem::WallTouch> touches;
+    for (const auto& [species, sphere] : placed) {
+        if (!sphere.mobile) continue;
+        touches.clear();
+        const Vec3& x = sphere.position;
+        wall.find(0, wall.image().of(x), sphere.radius, touches);
+        for (const dem::WallTouch& touch : touches) {
+            const double share = (sphere.radius - touch.place.distance) / (2 * sphere.radius);
+            require(share <= deepest_at_start,
+                    spec.species[species].name +
+                        sentence(": a sphere at (%.4g, %.4g, %.4g) m starts", x[0], x[1], x[2]) +
+                        sentence(" %.3g diameters deep (limit %.3g) in wall '", share, deepest_at_start) +
+                        spec.walls[number].name + "'");
+        }
+    }
+}
+
 }  // namespace
+
+void require_out_of_walls(const Spec& spec) {
+    constexpr std::size_t many = 100;  // spheres for which walls are prepared
+    const auto walls = walls_in(spec, 0, {{0.0}, {}});
+    for (const auto& fill : spec.fills) {
+        const auto* placed = std::get_if<std::vector<Placed>>(&fill);
+        if (placed == nullptr) continue;
+        double largest = 0;
+        for (const Placed& one : *placed) largest = std::max(largest, one.sphere.radius);
+        for (std::size_t w = 0; w < walls.size(); ++w) {
+            if (!walls[w].present) continue;
+            using Searches = dem::MovingWall::Searches;
+            dem::MovingWall wall(walls[w], spec.domain, largest,
+                                 placed->size() > many ? Searches::many : Searches::few);
+            wall.place(0);
+            require_out_of_wall(spec, w, wall, *placed);
+        }
+    }
+}
 
 Draws::Draws(const Spec& spec, const Mix& mix, std::uint64_t seed, std::uint64_t number)
     : spec_(spec), mix_(mix), seed_(seed), number_(number) {}

@@ -9,6 +9,10 @@
 
 namespace grainsweep::machine {
 
+/// Largest overlap of a particle with a wall, divided by its diameter, at the start, and with a wall that appears.
+/// Deeper ones would throw particles out.
+inline constexpr double deepest_at_start = 0.05;
+
 struct Filled {
     std::vector<dem::Sphere> spheres;
     std::vector<std::uint8_t> species;  ///< of each particle
@@ -18,6 +22,9 @@ struct Filled {
 /// present in the first phase and no particle of another filling. The result depends on the spec and the seed alone.
 /// Throws std::invalid_argument with one sentence if a filling does not fit.
 [[nodiscard]] Filled filled(const Spec& spec, std::uint64_t seed);
+
+/// Throws std::invalid_argument with one sentence if a placed sphere starts deeper in a wall than deepest_at_start.
+void require_out_of_walls(const Spec& spec);
 
 /// Random draws of the particles of a mix, species and diameter, addressed by (seed, stream, counter).
 class Draws {

@@ -1,7 +1,10 @@
 #include "solver/machine/frames.hpp"
 
 #include "solver/dem/walls/moving_wall.hpp"
+#include "solver/machine/setup.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -45,6 +48,28 @@ std::optional<InStep> in_step(const Spec& spec, std::size_t phase) {
             }
     }
     return std::nullopt;
+}
+
+std::string flaw_of_frames(const Spec& spec) {
+    // Fewer frames see few phases of any motion, and their mean has no error.
+    constexpr std::int64_t fewest = 10;
+    for (std::size_t p = 0; p < spec.phases.size(); ++p) {
+        const Phase& phase = spec.phases[p];
+        const bool averaged = std::ranges::any_of(spec.measures, [&](const Measure& measure) {
+            return holds(measure.during, p) && !is_integrated(measure) &&
+                   (measure.reduction == "mean" || measure.reduction == "sd" || measure.reduction == "profile");
+        });
+        if (!averaged || !phase.frames_given || phase.frames < fewest) continue;
+        if (const auto step = in_step(spec, p))
+            return phase.name +
+                   kit::sentence(": its %.0f frames see the motion of ", static_cast<double>(phase.frames)) +
+                   step->wall +
+                   kit::sentence(
+                       ", whose period is %.4g s, at %.0f of its phases, and means over them are wrong: "
+                       "leave \"frames\" out, or give a number without a common divisor",
+                       step->period, static_cast<double>(step->phases));
+    }
+    return {};
 }
 
 double share_of_frame(std::int64_t frame, std::int64_t frames, bool scattered) {

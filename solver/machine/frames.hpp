@@ -26,6 +26,9 @@ struct InStep {
 
 /// Returns the first wall that moves in step with equal frames of a phase.
 [[nodiscard]] std::optional<InStep> in_step(const Spec& spec, std::size_t phase);
+/// Returns, in one sentence, which frames that the user chose are in step with a motion while snapshots at them are
+/// averaged; empty: none.
+[[nodiscard]] std::string flaw_of_frames(const Spec& spec);
 /// Returns the time of a frame, divided by the duration of its phase. `scattered`: frames are in step with a motion.
 [[nodiscard]] double share_of_frame(std::int64_t frame, std::int64_t frames, bool scattered);
 

@@ -322,24 +322,8 @@ CostEstimate cost_of(const Spec& spec) {
 }
 
 void warn_of_frames(const Spec& spec, std::vector<Warning>& warnings) {
-    for (std::size_t p = 0; p < spec.phases.size(); ++p) {
-        const bool averaged = std::ranges::any_of(spec.measures, [&](const Measure& measure) {
-            return holds(measure.during, p) && !is_integrated(measure) &&
-                   (measure.reduction == "mean" || measure.reduction == "sd" || measure.reduction == "profile");
-        });
-        // Fewer frames see few phases of any motion, and their mean has no error.
-        constexpr std::int64_t fewest = 10;
-        const bool chosen = spec.phases[p].frames_given && spec.phases[p].frames >= fewest;
-        const auto step = chosen && averaged ? in_step(spec, p) : std::nullopt;
-        if (!step) continue;
-        warnings.push_back(
-            {"frames in step with a motion",
-             spec.phases[p].name +
-                 sentence(": %.0f frames see the motion of ", static_cast<double>(spec.phases[p].frames)) + step->wall +
-                 sentence(", whose period is %.4g s, at %.0f of its phases, and means over them are "
-                          "wrong: leave \"frames\" out, or give a number without a common divisor",
-                          step->period, static_cast<double>(step->phases))});
-    }
+    if (const std::string flaw = flaw_of_frames(spec); !flaw.empty())
+        warnings.push_back({"frames in step with a motion", flaw});
 }
 
 std::vector<Warning> warnings_of(const Spec& spec) {

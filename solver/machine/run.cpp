@@ -160,9 +160,12 @@ void Run::begin_phase() {
     frame_ = check_ = 0;
     calm_since_.assign(phase().until.size(), time());
     watched_.assign(phase().until.size(), undefined);
-    peak_overlap_ = std::max(peak_overlap_, engine_->peak_overlap());
+    peak_overlap_ = peak_overlap();
+    peak_wall_overlap_ = peak_wall_overlap();
     engine_->forget_peak_overlap();
     if (phase_ > 0) engine_->change_walls(walls_in(spec_, phase_, times_));
+    judge_walls_that_appear();
+    if (!health().stable()) return;
     feed();
     for (std::size_t k = 0; k < watched_.size(); ++k)
         if (const auto* flow = std::get_if<FlowStops>(&phase().until[k])) watched_[k] = mass_in(flow->region);
@@ -371,8 +374,8 @@ bool Run::may_end_early() const {
 template <class State, class Visit>
 void Run::fields(State& run, Visit&& visit) {
     visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
-    visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.lost_first_),
-        visit(run.times_.begin);
+    visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.peak_wall_overlap_),
+        visit(run.fault_), visit(run.lost_first_), visit(run.times_.begin);
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),

@@ -12,9 +12,11 @@
 #include "solver/machine/spec.hpp"
 #include "solver/scenes/scene.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace grainsweep::machine {
@@ -29,7 +31,7 @@ public:
     [[nodiscard]] double time() const override { return spec_.time_step * static_cast<double>(step_); }
     [[nodiscard]] bool finished() const override { return phase_ == spec_.phases.size(); }
     [[nodiscard]] double progress() const override;
-    [[nodiscard]] Health health() const override { return {with_names(engine_->fault())}; }
+    [[nodiscard]] Health health() const override { return {fault_.empty() ? with_names(engine_->fault()) : fault_}; }
     [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
@@ -50,12 +52,18 @@ private:
 
     /// Returns a message of the engine with "wall 2" replaced by the wall's name.
     [[nodiscard]] std::string with_names(std::string fault) const;
+    /// Return the largest overlaps so far.
+    [[nodiscard]] double peak_overlap() const { return std::max(peak_overlap_, engine_->peak_overlap()); }
+    [[nodiscard]] double peak_wall_overlap() const {
+        return std::max(peak_wall_overlap_, engine_->peak_wall_overlap());
+    }
     [[nodiscard]] std::int64_t steps_in(double seconds) const;
     [[nodiscard]] const Phase& phase() const { return spec_.phases[phase_]; }
     [[nodiscard]] std::int64_t phase_steps() const { return steps_in(phase().duration); }
     [[nodiscard]] std::int64_t step_of_frame(std::int64_t frame) const;
     [[nodiscard]] std::int64_t next_stop() const;
     void begin_phase();
+    void judge_walls_that_appear();
     void end_phase(std::uint8_t condition);
     void stop_here();
     void feed();
@@ -103,6 +111,8 @@ private:
     std::int64_t check_ = 0;                    // next check of the phase, counted from 1
     std::vector<double> calm_since_, watched_;  // by condition that ends the phase
     double peak_overlap_ = 0;                   // of the earlier phases
+    double peak_wall_overlap_ = 0;              // likewise
+    std::string fault_;                         // of a wall that appears in particles
     std::int64_t glued_ = 0;
     std::int64_t lost_first_ = 0;  // particles that left in the first phase
     PhaseTimes times_;

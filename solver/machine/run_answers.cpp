@@ -1,4 +1,5 @@
 // Answers of a run so far: reduced measurements, expressions of them, and the observables of every machine.
+#include "solver/machine/frames.hpp"
 #include "solver/machine/reduction.hpp"
 #include "solver/machine/run.hpp"
 #include "solver/scenes/kit/sentence.hpp"
@@ -25,13 +26,27 @@ std::string Run::with_names(std::string fault) const {
 }
 
 std::string Run::remark() const {
-    constexpr double many = 0.1;  // of the particles: a vessel that does not hold its filling
+    constexpr double many = 0.1;   // of the particles: a vessel that does not hold its filling
+    constexpr double deep = 0.05;  // overlap divided by the diameter: here Hertz's force errs by about as much
     const auto filled = static_cast<double>(species_.size());
-    if (spec_.phases.size() < 2 || static_cast<double>(lost_first_) <= many * filled) return {};
-    return kit::sentence(
-        "%.0f of %.0f particles left the domain during the first phase: look with draw whether the "
-        "vessel holds its filling",
-        static_cast<double>(lost_first_), filled);
+    std::string lost, soft;
+    if (spec_.phases.size() > 1 && static_cast<double>(lost_first_) > many * filled)
+        lost = kit::sentence(
+            "%.0f of %.0f particles left the domain during the first phase: look with draw whether the "
+            "vessel holds its filling",
+            static_cast<double>(lost_first_), filled);
+    const double at_walls = peak_wall_overlap(), largest = std::max(at_walls, peak_overlap());
+    if (largest > deep)
+        soft = (at_walls < largest ? "particles overlapped each other" : "particles overlapped a wall") +
+               kit::sentence(
+                   " by up to %.2g of a diameter, and contact laws hold for small overlaps (%.2g): forces and "
+                   "torques of these contacts are not reliable, so raise youngs_modulus, or give pinched "
+                   "particles room",
+                   largest, deep);
+    std::string all;
+    for (const std::string& one : {lost, soft, flaw_of_frames(spec_)})
+        if (!one.empty()) all += (all.empty() ? "" : "; ") + one;
+    return all;
 }
 
 void Run::observe(const Measure& measure, const Record& record, Observations& into) const {
@@ -71,7 +86,8 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
 void Run::observe(Observations& into) const {
     into.scalars["particles"] = static_cast<double>(engine_->size()) - static_cast<double>(glued_);
     into.scalars["lost"] = static_cast<double>(species_.size()) - static_cast<double>(engine_->size());
-    into.scalars["max_overlap"] = std::max(peak_overlap_, engine_->peak_overlap());
+    into.scalars["max_overlap"] = peak_overlap();
+    into.scalars["max_wall_overlap"] = peak_wall_overlap();
     into.scalars["smallest_step"] = spec_.time_step / static_cast<double>(engine_->work().most_parts);
     for (std::size_t k = 0; k < feeders_.size(); ++k) {
         into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();

@@ -6,6 +6,7 @@
 #include "sweep/campaign/machine_species_powder.hpp"
 #include "sweep/files/whole_file.hpp"
 
+#include "solver/machine/filling.hpp"
 #include "solver/machine/setup.hpp"
 
 #include <fmt/format.h>
@@ -171,6 +172,11 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
         set_time_step(reading.spec, inputs, top.at("phases").path());
     } catch (const std::invalid_argument& why) {  // walls that cannot be in this domain
         throw wrong_question(top.place().path(), "", why.what());
+    }
+    try {
+        machine::require_out_of_walls(reading.spec);
+    } catch (const std::invalid_argument& why) {
+        throw wrong_question(top.at("fill").path(), "", why.what());
     }
     return std::move(reading.spec);
 }

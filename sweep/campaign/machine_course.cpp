@@ -331,6 +331,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
     automatic("particles", "particles present at the end");
     automatic("lost", "particles that passed an open face of the domain");
     automatic("max_overlap", "deepest overlap of two particles over the diameter of the smaller one");
+    automatic("max_wall_overlap", "deepest overlap of a particle with a wall over its diameter");
     automatic("smallest_step", "shortest time step; steps are halved where loaded contacts demand it", "s");
     if (const auto feeds = top.find("feed")) {
         std::set<std::string> feeders;

@@ -100,8 +100,8 @@ std::string parameters_table(const ordered_json& scene) {
 
 const std::set<std::string>& common_to_machines() {
     static const std::set<std::string> common = {
-        "particles_scale", "stiffness_scale", "time_step", "time_step_fraction",
-        "precision",       "particles",       "lost",      "max_overlap"};
+        "particles_scale", "stiffness_scale", "time_step", "time_step_fraction", "precision", "particles", "lost",
+        "max_overlap",     "max_wall_overlap"};
     return common;
 }
 

@@ -28,6 +28,7 @@ constexpr double restitutions[] = {1.0, 0.9, 0.7, 0.5, 0.3, 0.2};
 struct Impulses {
     double normal = 0, repelling = 0, tangential = 0, exceeding = 0;
     double dissipated = 0;      ///< J
+    double work = 0;            ///< of the walls, J
     double largest_moment = 0;  ///< over R* times the normal force of its step
     dem::State state;
     [[nodiscard]] double ratio() const { return tangential / (friction * normal); }
@@ -56,6 +57,7 @@ Impulses impact(const dem::Setup& setup, const Method& method) {
     EXPECT_EQ(engine->fault(), "");
     EXPECT_GT(sum.normal, 0);
     sum.state = state_of(*engine);
+    for (std::size_t w = 0; w < setup.walls.size(); ++w) sum.work += engine->wall_load(w, {}).work;
     return sum;
 }
 
@@ -172,10 +174,83 @@ TEST(GrossSliding, LosesTheEnergyThatContactsBook) {
         for (const Method& method : engines) {
             const Impulses of = impact(s, method);
             const double lost = before - kinetic_energy(s, of.state);
-            const double tolerance = method.precision == Method::Precision::mixed ? 3e-3 : 1e-9;
+            const double tolerance = method.precision == Method::Precision::mixed ? 1e-3 : 1e-9;
             EXPECT_NEAR(of.dissipated / lost, 1, tolerance) << e;
         }
     }
+}
+
+// From head-on to grazing impacts. By `spring` a step that cuts the spring has no dashpot, and beside it one may have a
+// dashpot many times Coulomb's limit. The loss is known to the rounding of the motion, 1e-7 of its energy.
+TEST(GrossSliding, BooksTheLossOfAnyImpact) {
+    double worst[2] = {0, 0};
+    for (const auto& [name, setup] : cases)
+        for (const TangentialLimit limit : {TangentialLimit::sum, TangentialLimit::spring})
+            for (const NormalLaw law : {NormalLaw::hertz, NormalLaw::linear})
+                for (const double rolling : {0.0, 0.1})
+                    for (const double e : {0.1, 0.3, 0.6, 0.95})
+                        for (const double angle : {20, 60, 80, 88, 89})
+                            for (const double phase : {0.07, 0.31, 0.73}) {
+                                dem::Setup s = setup();
+                                s.material.rolling_friction = rolling;
+                                s.material.tangential_limit = limit;
+                                prepare(s, law, e, 0.1, phase);
+                                s.spheres[0].velocity[0] *= speed * std::tan(angle * std::numbers::pi / 180);
+                                const double before = kinetic_energy(s, state_of(*dem::make_engine(s, engines[0])));
+                                for (const Method& method : engines) {
+                                    const Impulses of = impact(s, method);
+                                    const double lost = before + of.work - kinetic_energy(s, of.state);
+                                    const bool mixed = method.precision == Method::Precision::mixed;
+                                    const double error = std::abs(of.dissipated - lost);
+                                    EXPECT_LT(error, mixed ? 1e-3 * lost + 1e-7 * before : 1e-9 * before)
+                                        << name << " " << static_cast<int>(limit) << static_cast<int>(law) << " "
+                                        << rolling << " " << e << " " << angle << " " << phase;
+                                    worst[mixed ? 1 : 0] = std::max(worst[mixed ? 1 : 0], error / lost);
+                                }
+                            }
+    RecordProperty("worst_double", std::to_string(worst[0]));
+    RecordProperty("worst_mixed", std::to_string(worst[1]));
+}
+
+// A belt that starts under a resting sphere, at the start or later, pulls it by mu times its weight from the first step
+// on, although it slips there with the whole speed of the belt. By `spring` the dashpot of the first half step is not
+// limited, as in LIGGGHTS.
+TEST(GrossSliding, StartsABeltWithinCoulombsLaw) {
+    constexpr double gravity = 9.81;
+    for (const Method& method : engines)
+        for (const TangentialLimit limit : {TangentialLimit::sum, TangentialLimit::spring})
+            for (const bool later : {false, true}) {
+                dem::Setup s = one_sphere({0, 0, radius}, {}, {dem::Plane{}});
+                s.material.youngs_modulus = 1e7;
+                s.material.friction = friction;
+                s.material.tangential_limit = limit;
+                s.gravity = {0, 0, -gravity};
+                s.time_step = 0.1 * dem::shortest_time(s.material, radius, 0.1);
+                const double stiffness = 4.0 / 3 * dem::effective_modulus(s.material) * std::sqrt(radius);
+                s.spheres[0].position[2] -=
+                    std::pow(dem::sphere_mass(radius, s.material.density) * gravity / stiffness, 2.0 / 3);
+                const std::vector<dem::Wall> rests = s.walls;
+                dem::Wall belt = rests[0];
+                belt.motions = {geometry::Translation{.velocity = {1, 0, 0}}};
+                if (!later) s.walls = {belt};
+                const auto engine = dem::make_engine(s, method);
+                if (later) {
+                    engine->run(100);
+                    std::get<geometry::Translation>(belt.motions[0]).start = engine->wall_time();
+                    engine->change_walls({belt});
+                }
+                double before = state_of(*engine).velocity[0][0], most = 0;
+                for (int step = 0; step < 20; ++step) {
+                    engine->run(1);
+                    const double now = state_of(*engine).velocity[0][0];
+                    most = std::max(most, (now - before) / (friction * gravity * s.time_step));
+                    before = now;
+                }
+                if (limit == TangentialLimit::sum)
+                    EXPECT_NEAR(most, 1, 1e-2) << later;
+                else
+                    EXPECT_GT(most, 10) << later;
+            }
 }
 
 // Rolling moments likewise: mu_r R* times the normal force that friction sees, with the dashpot.

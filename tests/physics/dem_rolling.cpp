@@ -131,6 +131,37 @@ TEST(DemRolling, EqualsLiggghts) {
     EXPECT_LT(deviation("plane_impact", impact, mixed), 1e-3);  // its first overlap is resolved to 2e-3
 }
 
+// Two precisions, one trajectory: a sphere rolls down a slope, and on a belt that starts under it. Its moment and its
+// friction are at their limits for a while and below them for another.
+TEST(DemRolling, IsTheSameInBothPrecisions) {
+    for (const auto limit : {dem::TangentialLimit::sum, dem::TangentialLimit::spring})
+        for (const auto law : {dem::RollingLaw::epsd, dem::RollingLaw::epsd_liggghts})
+            for (const bool belt : {false, true}) {
+                auto p = on_plane(0.05, belt ? 0 : 0.2);
+                p.setup.material.tangential_limit = limit;
+                p.setup.material.rolling_law = law;
+                p.setup.time_step = 2e-6;
+                if (belt)
+                    p.setup.walls[0].motions = {geometry::Translation{.velocity = {0.2, 0.05, 0}}};
+                else
+                    p.setup.spheres[0].velocity = {0.02, 0, 0};
+                const auto one = dem::make_engine(p.setup, method(exact));
+                const auto other = dem::make_engine(p.setup, method(mixed));
+                double fastest = 0, worst = 0;
+                for (int k = 0; k < 200; ++k) {
+                    one->run(100), other->run(100);
+                    const auto a = tests::state_of(*one), b = tests::state_of(*other);
+                    using geometry::operator-;
+                    fastest = std::max(fastest, geometry::norm(a.velocity[0]));
+                    worst = std::max({worst, geometry::norm(a.velocity[0] - b.velocity[0]),
+                                      radius * geometry::norm(a.angular_velocity[0] - b.angular_velocity[0])});
+                }
+                EXPECT_EQ(one->fault() + other->fault(), "");
+                EXPECT_LT(worst, 1e-5 * fastest)
+                    << static_cast<int>(limit) << " " << static_cast<int>(law) << " " << belt;
+            }
+}
+
 // Both laws: the moment of a rolling sphere is mu_r R F_n.
 // m dv/dt = -f,  I dw/dt = f a - mu_r R m g,  v = a w  with the arm a = R - d/2 of this law:
 //     dv/dt = -mu_r g (R/a)/(1 + 2/5 (R/a)^2)        that is -5/7 mu_r g for a hard sphere.

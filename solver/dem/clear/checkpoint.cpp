@@ -48,6 +48,7 @@ void ClearEngine::visit_state(Self& self, Visit&& visit) {
     visit(self.largest_overlap_);
     visit(self.peak_overlap_);
     visit(self.largest_wall_overlap_);
+    visit(self.peak_wall_overlap_);
     visit(self.speed_limit_);
     visit(self.work_of_walls_);
     visit(self.work_of_wrapping_);

@@ -58,7 +58,8 @@ public:
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return largest_overlap_; }
     [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
-    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    [[nodiscard]] double peak_wall_overlap() const override { return peak_wall_overlap_; }
+    void forget_peak_overlap() override { peak_overlap_ = peak_wall_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override { read_contacts(false, into); }
     void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(true, into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_.at(wall).wall.wall(); }
@@ -216,6 +217,7 @@ private:
     double largest_overlap_ = 0;
     double peak_overlap_ = 0;          // largest of it so far
     double largest_wall_overlap_ = 0;  // divided by the diameter
+    double peak_wall_overlap_ = 0;     // largest of it so far
     double stiffest_ = 0;              // largest slope_over() of a contact divided by its mass, times its stiffness
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set

@@ -78,6 +78,7 @@ void ClearEngine::evaluate(bool advance) {
     peak_overlap_ = std::max(peak_overlap_, largest_overlap_);
     for (auto& contacts : walls_)
         if (contacts.wall.present()) wall_contacts(contacts, advance);
+    peak_wall_overlap_ = std::max(peak_wall_overlap_, largest_wall_overlap_);
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
     const double swing2 = swing_factor_ * stiffest_;

@@ -75,8 +75,10 @@ void ClearEngine::judge_wall_speeds() {
         const double share = walls_[w].wall.fastest_surface() * part_ / least;
         char text[200];
         std::snprintf(text, sizeof text,
-                      "wall %zu moves %.3g of the smallest radius in one time step (limit %.3g), after %lld steps", w,
-                      share, largest_sound_displacement, static_cast<long long>(work_.steps));
+                      "wall %zu moves at %.4g m/s, %.3g of the smallest radius in one time step (limit %.3g), after "
+                      "%lld steps",
+                      w, walls_[w].wall.fastest_surface(), share, largest_sound_displacement,
+                      static_cast<long long>(work_.steps));
         if (!(share <= largest_sound_displacement)) fault_ = text;
     }
 }

@@ -83,8 +83,8 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
     }
     walls_ = make_walls(setup.walls);
     rebuild();
-    set_speed_limit();
     evaluate(false);
+    set_speed_limit();
 }
 
 double ClearEngine::inverse_mass_of(const Sphere& s) const {
@@ -374,8 +374,8 @@ void ClearEngine::restart_forces() {
     balance_.restart();
     if (!fault_.empty()) return;
     rebuild();
-    set_speed_limit();
     evaluate(false);
+    set_speed_limit();
 }
 
 void ClearEngine::add(std::span<const Sphere> spheres) {

@@ -94,7 +94,10 @@ struct Meeting {
         if constexpr (lens) return disc;
         return fma(f.linear, effective_radius * overlap, fma(f.square, overlap * overlap, disc));
     }
-    GRAINSWEEP_LANES static F limit(F l) { return l; }
+    template <class R>
+    GRAINSWEEP_LANES static F limit(F l, F, const R&) {
+        return l;
+    }
     template <class X>
     GRAINSWEEP_LANES X kept(X x) const {
         if constexpr (Kernel::acts_apart) return keep(touching & (broadcast(0.0f) < overlap), x);

@@ -13,7 +13,9 @@ using namespace geometry;
 
 namespace {
 
-constexpr double rounding = 1e-5;  // of forces in single precision
+// Of forces in single precision, relative to the sizes of their terms.
+constexpr double rounding = 1e-6;
+constexpr double rounding_at_rest = 1e-5;
 
 }  // namespace
 
@@ -221,7 +223,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
                .springs = laws.springs(t)};
         if (t.apart) b.springs = {};
         if (slides && b.springs.tangential > 0 &&
-            laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory.data()).slides)
+            laws.respond(as_in_step(t, RelativeMotion{}, rounding_at_rest), memory.data()).slides)
             b.springs.tangential = b.springs.tangential_damper = 0;
         return b;
     };

@@ -96,7 +96,23 @@ SoundOverlaps resolved_overlaps(const Setup& setup) {
     return {limit(0.5, overlap_limit), limit(1, setup.deepest_in_walls)};
 }
 
-std::string describe_fast_particle(const FaultView& s) {
+/// Returns the sentence of the fastest wall.
+static std::string describe_fast_wall(const FaultView& s) {
+    std::size_t worst = 0;
+    double most = -1;
+    for (std::size_t w = 0; w < s.walls.count(); ++w)
+        if (const double speed = s.walls[w].fastest_surface(); s.walls[w].present() && speed > most)
+            most = speed, worst = w;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "wall %zu moves at %.4g m/s, %.3g smallest diameters in one step (limit %.3g), after %lld steps, "
+                  "%.6g s",
+                  worst, most, most / s.scale.speed() / static_cast<double>(s.smallest_diameter), travel_limit,
+                  static_cast<long long>(s.steps), s.time);
+    return text;
+}
+
+std::string describe_fast_body(const FaultView& s) {
     std::int32_t worst = 0;
     double most = -1;
     for (std::int32_t i = 0; i < s.field.count; ++i)
@@ -105,6 +121,7 @@ std::string describe_fast_particle(const FaultView& s) {
                 std::isfinite(v) ? std::abs(static_cast<double>(v)) : std::numeric_limits<double>::infinity();
             if (travel > most) most = travel, worst = i;
         }
+    if (most < travel_limit * static_cast<double>(s.smallest_diameter)) return describe_fast_wall(s);
     char text[160];
     std::snprintf(text, sizeof text, "a particle moves %.3g smallest diameters in one step (limit %.3g)",
                   most / static_cast<double>(s.smallest_diameter), travel_limit);

@@ -42,7 +42,8 @@ struct FaultView {
     double time;  ///< since the start, s
 };
 
-[[nodiscard]] std::string describe_fast_particle(const FaultView& view);
+/// Returns a description of the fastest particle, or of the fastest wall where no particle is too fast.
+[[nodiscard]] std::string describe_fast_body(const FaultView& view);
 /// Returns a description of a particle faster than `limit` (m/s); empty: there is none.
 [[nodiscard]] std::string describe_faster_than(const FaultView& view, double limit);
 /// Returns the description of the fault `what` of particle `i` of the records.

@@ -21,6 +21,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.space_.skin);
     archive.value(self.tally_);
     archive.value(self.peak_overlap_);
+    archive.value(self.peak_wall_overlap_);
     archive.value(self.recent_overlap_);
     archive.value(self.part_);
     Watch::pass(self.watch_, archive);

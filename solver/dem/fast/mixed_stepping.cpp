@@ -62,7 +62,7 @@ void MixedEngine::advance(std::int64_t steps, bool one_part) {
         walls_.sum_up(ends);
         press_walls(true);
         sweep_pairs(goes_on, advanced, false);
-        peak_overlap_ = std::max(peak_overlap_, overlap());
+        note_overlaps();
         recent_overlap_ = static_cast<double>(std::max(overlap(), tally_.wall_overlap));
         work_.pair_visits += field_.inner_count;
         if (beyond(sound_) && fault_.empty()) fault_ = describe_overlap(view(), tally_);
@@ -285,7 +285,7 @@ void MixedEngine::account_travel() {
     drift_.outer += drift_.last_step;
     drift_.inner += drift_.last_step;
     if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_)))
-        fault_ = describe_fast_particle(view());
+        fault_ = describe_fast_body(view());
     else if (watch_.too_fast(static_cast<double>(fastest)))
         fault_ = describe_faster_than(view(), watch_.speed_limit());
     watch_.add_travel(static_cast<double>(fastest));
@@ -356,7 +356,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     press_walls(false);
     sweep_pairs(false, false, true);
     field_.history_step = 1;
-    peak_overlap_ = std::max(peak_overlap_, overlap());
+    note_overlaps();
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
         Residual residual = left_over(field_, i);

@@ -64,7 +64,8 @@ public:
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return static_cast<double>(overlap()); }
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
-    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    [[nodiscard]] double peak_wall_overlap() const override { return static_cast<double>(peak_wall_overlap_); }
+    void forget_peak_overlap() override { peak_overlap_ = peak_wall_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override { read_contacts({}, into); }
     void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(motions(0), into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_[wall].wall(); }
@@ -136,6 +137,11 @@ private:
     [[nodiscard]] bool beyond(const SoundOverlaps& limits) const {
         return tally_.overlap > limits.pair || tally_.wall_overlap > limits.wall;
     }
+    /// Takes the overlaps of the last sweep into the peaks.
+    void note_overlaps() {
+        peak_overlap_ = std::max(peak_overlap_, overlap());
+        peak_wall_overlap_ = std::max(peak_wall_overlap_, tally_.wall_overlap);
+    }
     /// Returns whether contacts must be judged individually.
     [[nodiscard]] bool suspicious() const { return contacts_differ_ && beyond(resolved_); }
     template <class Self, class Archive>
@@ -180,7 +186,8 @@ private:
     Threads threads_;
     Field field_{};
     Tally tally_{};
-    float peak_overlap_ = 0;  ///< largest of overlap() so far
+    float peak_overlap_ = 0;       ///< largest of overlap() so far
+    float peak_wall_overlap_ = 0;  ///< likewise, at walls
     Drift drift_;
     float inner_skin_ = 0;
     float largest_skin_ = std::numeric_limits<float>::infinity();

@@ -198,8 +198,10 @@ std::string Walls::too_fast(double smallest_radius, std::int64_t steps) const {
         if (share <= largest_sound_displacement) continue;
         char text[200];
         std::snprintf(text, sizeof text,
-                      "wall %zu moves %.3g of the smallest radius in one time step (limit %.3g), after %lld steps", w,
-                      share, largest_sound_displacement, static_cast<long long>(steps));
+                      "wall %zu moves at %.4g m/s, %.3g of the smallest radius in one time step (limit %.3g), after "
+                      "%lld steps",
+                      w, moving_[w].fastest_surface(), share, largest_sound_displacement,
+                      static_cast<long long>(steps));
         return text;
     }
     return {};

@@ -75,8 +75,8 @@ struct RollingSpring : LawTraits {
             m = A::add(m, t.time_step * k, turning);
         else
             m = A::add(m, (lever + lever) * t.time_step * k, turning);
-        const auto cut =
-            A::cut(m, t.limit(A::product(friction, t.effective_radius, bound.normal(r.seen))), bound.least);
+        const auto limit = A::product(friction, t.effective_radius, bound.normal(r.seen));
+        const auto cut = A::cut(m, t.limit(limit, friction * t.effective_radius, r), bound.least);
         m = A::scaled(m, cut.scale);
         r.rolling = A::add(m, bound.damper(cut, dashpot * A::sqrt(t.rolling_inertia * k), turning), turning);
         if constexpr (advance) A::remember(moment_of_spring, t.kept(m));

@@ -6,6 +6,8 @@
 
 #include "solver/dem/laws/arithmetic.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace grainsweep::dem {
@@ -39,11 +41,16 @@ struct Touch {
     double time_step = 0;         ///< s, by which memories advance
     bool touching = true;         ///< false: the pair is near, but no law makes it a contact
     bool apart = false;           ///< the bodies do not touch, but a law acts at a distance
-    double cut_before = 0;        ///< share of a limit: springs within this share of the limit were cut by the step, so
-                                  ///< they yield
+    double rounding = 0;          ///< relative error of the forces by which a step has already cut the springs
+    double rounded_speed = 0;     ///< speed of the bodies, of which this error is a share too, m/s
 
-    /// Returns the limit above which a spring yields.
-    [[nodiscard]] double limit(double l) const { return l - cut_before * l; }
+    /// Returns the limit above which a spring yields, `share` of the normal force. A spring that a step has cut equals
+    /// its limit to the rounding error of the terms of this force, which may cancel.
+    template <class R>
+    [[nodiscard]] double limit(double l, double share, const R& r) const {
+        const double terms = std::max(std::abs(r.elastic), std::abs(r.seen)) + r.damping * rounded_speed;
+        return std::max(l - rounding * (share * terms), 0.0);
+    }
 
     /// Returns the damper of a coefficient, N s/m.
     [[nodiscard]] double damped(const Arithmetic::Damping& d) const { return d.coefficient * damping_root; }
