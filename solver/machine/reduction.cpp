@@ -83,21 +83,21 @@ double error_of_slope(std::span<const Sample> samples) {
     return observables::standard_error_of_mean(rates);
 }
 
-double integral_of_intervals(std::span<const Interval> intervals) {
+double integral_of_intervals(std::span<const FrameInterval> intervals) {
     double sum = 0;
-    for (const Interval& interval : intervals) sum += interval.integral;
+    for (const FrameInterval& interval : intervals) sum += interval.integral;
     return intervals.empty() ? unknown : sum;
 }
 
-double mean_of_intervals(std::span<const Interval> intervals) {
+double mean_of_intervals(std::span<const FrameInterval> intervals) {
     double length = 0;
-    for (const Interval& interval : intervals) length += interval.length;
+    for (const FrameInterval& interval : intervals) length += interval.length;
     return integral_of_intervals(intervals) / length;
 }
 
-double error_of_mean_of_intervals(std::span<const Interval> intervals) {
+double error_of_mean_of_intervals(std::span<const FrameInterval> intervals) {
     std::vector<double> means;
-    for (const Interval& interval : intervals) means.push_back(interval.integral / interval.length);
+    for (const FrameInterval& interval : intervals) means.push_back(interval.integral / interval.length);
     return observables::standard_error_of_mean(means);
 }
 
@@ -149,9 +149,9 @@ std::optional<double> crossing_time(std::span<const Sample> samples, double valu
     return before.time + (passed->time - before.time) * (value - before.value) / (passed->value - before.value);
 }
 
-std::vector<Interval> ending_at(std::span<const Interval> intervals, std::span<const Sample> samples) {
-    std::vector<Interval> counted;
-    for (const Interval& interval : intervals) {
+std::vector<FrameInterval> ending_at(std::span<const FrameInterval> intervals, std::span<const Sample> samples) {
+    std::vector<FrameInterval> counted;
+    for (const FrameInterval& interval : intervals) {
         const auto at = std::ranges::lower_bound(samples, interval.end, {}, &Sample::time);
         if (at != samples.end() && at->time == interval.end) counted.push_back(interval);
     }

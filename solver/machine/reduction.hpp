@@ -12,7 +12,7 @@
 namespace grainsweep::machine {
 
 /// Integral of a value over the steps between two frames.
-struct Interval {
+struct FrameInterval {
     double end = 0, length = 0;  ///< s
     double integral = 0;         ///< unit of the value, s
 };
@@ -27,8 +27,8 @@ struct ReductionInfo {
     std::string_view unit = {};
     bool last = false;  ///< uses the last frame only: undefined if the probe has no value there
     /// The same for a probe whose value is integrated over the steps. Null: values at frames are used.
-    double (*of_intervals)(std::span<const Interval>) = nullptr;
-    double (*error_of_intervals)(std::span<const Interval>) = nullptr;
+    double (*of_intervals)(std::span<const FrameInterval>) = nullptr;
+    double (*error_of_intervals)(std::span<const FrameInterval>) = nullptr;
 };
 
 [[nodiscard]] std::span<const ReductionInfo> reduction_catalogue();
@@ -39,7 +39,8 @@ struct ReductionInfo {
 /// do.
 [[nodiscard]] std::optional<double> crossing_time(std::span<const Sample> samples, double value, bool above);
 /// Returns the intervals that end at one of the samples. Both lists are in the order of time.
-[[nodiscard]] std::vector<Interval> ending_at(std::span<const Interval> intervals, std::span<const Sample> samples);
+[[nodiscard]] std::vector<FrameInterval> ending_at(std::span<const FrameInterval> intervals,
+                                                   std::span<const Sample> samples);
 /// Returns the samples with values between two shares of the first value.
 [[nodiscard]] std::vector<Sample> between_shares(std::span<const Sample> samples, double low, double high);
 /// Returns the samples at whose times a sample of `others` lies between two values. Both lists are in the order of

@@ -46,7 +46,7 @@ private:
         std::vector<Sample> samples;
         std::vector<double> bins, sums, counts, last;  // of a profile
         double looked = undefined;                     // time of the last frame, s
-        std::vector<Interval> intervals;               // between frames, of a value that is integrated
+        std::vector<FrameInterval> intervals;          // between frames, of a value that is integrated
         double integral = undefined;                   // since the start, at the last frame
     };
 

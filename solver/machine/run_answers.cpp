@@ -69,7 +69,7 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
         if (!samples.empty()) into.series[measure.name] = std::move(samples);
         return;
     }
-    if (const std::vector<Interval> over = ending_at(record.intervals, samples); !over.empty()) {
+    if (const std::vector<FrameInterval> over = ending_at(record.intervals, samples); !over.empty()) {
         into.scalars[measure.name] = reduction.of_intervals(over);
         if (reduction.error_of_intervals == nullptr) return;
         if (const double error = reduction.error_of_intervals(over); std::isfinite(error))
