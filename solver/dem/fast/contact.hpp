@@ -94,7 +94,7 @@ struct Meeting {
         if constexpr (lens) return disc;
         return fma(f.linear, effective_radius * overlap, fma(f.square, overlap * overlap, disc));
     }
-    template <class R>
+    template <bool, class R>
     GRAINSWEEP_LANES static F limit(F l, F, const R&) {
         return l;
     }

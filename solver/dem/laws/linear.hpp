@@ -91,8 +91,8 @@ struct LinearSliding : LawTraits {
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* displacement) const {
         auto s = A::vector(displacement);
         if constexpr (advance) s = A::across(A::add(s, t.time_step, t.slip), t.normal);
-        const auto spring =
-            A::cut(stiffness, s, t.limit(friction * coulomb.normal(r.seen), friction, r), coulomb.least);
+        const auto spring = A::cut(
+            stiffness, s, t.template limit<advance>(friction * coulomb.normal(r.seen), friction, r), coulomb.least);
         const Real whole = over_normal * r.damping, damper = coulomb.damper(spring, whole, t.slip);
         r.slides = A::either(spring.exceeds, damper < whole);
         r.resistance = A::spring(stiffness, spring.scale, s, damper, t.slip);

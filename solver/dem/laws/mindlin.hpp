@@ -46,7 +46,8 @@ struct Mindlin : LawTraits {
         auto s = A::vector(displacement);
         if constexpr (advance) s = A::across(A::add(s, t.time_step, t.slip), t.normal);
         const Real k = stiffness * t.root;
-        const auto spring = A::cut(k, s, t.limit(friction * coulomb.normal(r.seen), friction, r), coulomb.least);
+        const auto spring =
+            A::cut(k, s, t.template limit<advance>(friction * coulomb.normal(r.seen), friction, r), coulomb.least);
         const Real whole = t.damped_beside(damping, r.damping), damper = coulomb.damper(spring, whole, t.slip);
         r.slides = A::either(spring.exceeds, damper < whole);
         r.resistance = A::spring(k, spring.scale, s, damper, t.slip);

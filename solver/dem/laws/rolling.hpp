@@ -76,7 +76,7 @@ struct RollingSpring : LawTraits {
         else
             m = A::add(m, (lever + lever) * t.time_step * k, turning);
         const auto limit = A::product(friction, t.effective_radius, bound.normal(r.seen));
-        const auto cut = A::cut(m, t.limit(limit, friction * t.effective_radius, r), bound.least);
+        const auto cut = A::cut(m, t.template limit<advance>(limit, friction * t.effective_radius, r), bound.least);
         m = A::scaled(m, cut.scale);
         r.rolling = A::add(m, bound.damper(cut, dashpot * A::sqrt(t.rolling_inertia * k), turning), turning);
         if constexpr (advance) A::remember(moment_of_spring, t.kept(m));

@@ -45,9 +45,12 @@ struct Touch {
     double rounded_speed = 0;     ///< speed of the bodies, of which this error is a share too, m/s
 
     /// Returns the limit above which a spring yields, `share` of the normal force. A spring that a step has cut equals
-    /// its limit to the rounding error of the terms of this force, which may cancel.
-    template <class R>
-    [[nodiscard]] double limit(double l, double share, const R& r) const {
+    /// its limit to the rounding error of the terms of this force, which may cancel. In a step itself there is no
+    /// error.
+    template <bool in_step, class R>
+    [[nodiscard, gnu::always_inline]] double limit(double l, [[maybe_unused]] double share,
+                                                   [[maybe_unused]] const R& r) const {
+        if constexpr (in_step) return l;
         const double terms = std::max(std::abs(r.elastic), std::abs(r.seen)) + r.damping * rounded_speed;
         return std::max(l - rounding * (share * terms), 0.0);
     }
