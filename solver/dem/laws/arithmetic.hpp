@@ -80,10 +80,10 @@ struct Arithmetic<double> {
         return length > 0 ? a / length : std::numeric_limits<double>::infinity();
     }
     /// Compares k |s| with a limit.
-    static Cut<double, bool> cut(double k, const Vector& s, double limit, double least) {
+    [[gnu::always_inline]] static Cut<double, bool> cut(double k, const Vector& s, double limit, double least) {
         return cut_to(k * std::sqrt(geometry::dot(s, s)), limit, least);
     }
-    static Cut<double, bool> cut(const Vector& s, double limit, double least) {
+    [[gnu::always_inline]] static Cut<double, bool> cut(const Vector& s, double limit, double least) {
         return cut_to(geometry::norm(s), limit, least);
     }
     /// k scale s + viscosity v
@@ -94,7 +94,7 @@ struct Arithmetic<double> {
 
 private:
     // Both results are computed and one is selected, because a branch would be hard to predict.
-    static Cut<double, bool> cut_to(double size, double limit, double least) {
+    [[gnu::always_inline]] static Cut<double, bool> cut_to(double size, double limit, double least) {
         const bool exceeds = size > limit;
         return {exceeds, exceeds ? limit / size : 1.0, exceeds ? least : larger(limit - size, least)};
     }
