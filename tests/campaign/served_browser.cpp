@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 const char* config = R"({"campaign": "a", "scene": "rehearsal", "fixed": {"wait_seconds": 0.05},
  "notes": "<img src=x onerror='window.intruder=1'></script><script>window.intruder=1</script>",
  "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
- "design": {"kind": "halton", "points": 400}})";
+ "design": {"kind": "halton", "points": 4000}})";
 
 struct ServedInABrowser : testing::Test {
     Folder folder;
