@@ -113,9 +113,9 @@ void require_out_of_wall(const Spec& spec, std::size_t number, const dem::Moving
                          const std::vector<Placed>& placed) {
     std::vector<dem::WallTouch> touches;
     for (const auto& [species, sphere] : placed) {
-        if (!sphere.mobile) continue;
-        touches.clear();
         const Vec3& x = sphere.position;
+        if (!sphere.mobile || spec.domain.outside(x)) continue;  // outside: it is refused for that
+        touches.clear();
         wall.find(0, wall.image().of(x), sphere.radius, touches);
         for (const dem::WallTouch& touch : touches) {
             const double share = (sphere.radius - touch.place.distance) / (2 * sphere.radius);

@@ -181,7 +181,7 @@ namespace {
 
 /// Keeps the equally long parts of a column at these places.
 template <class Column>
-Column parts_of(Column& column, std::size_t parts, const std::vector<std::size_t>& places) {
+Column kept_parts(Column& column, std::size_t parts, const std::vector<std::size_t>& places) {
     const auto length = static_cast<std::ptrdiff_t>(column.size() / parts);
     Column kept;
     for (const std::size_t place : places) {
@@ -196,7 +196,7 @@ Column parts_of(Column& column, std::size_t parts, const std::vector<std::size_t
 void Film::keep(const std::vector<std::size_t>& frames) {
     for (Slice& slice : slices_) {
         if (slice.frames != times_.size()) continue;
-        for (auto& plane : slice.planes) plane = parts_of(plane, slice.frames, frames);
+        for (auto& plane : slice.planes) plane = kept_parts(plane, slice.frames, frames);
         slice.frames = frames.size();
     }
     std::vector<Wall> walls;
@@ -217,8 +217,8 @@ void Film::keep(const std::vector<std::size_t>& frames) {
         if (kept) walls.push_back(std::move(*kept));
     }
     walls_ = std::move(walls);
-    frames_ = parts_of(frames_, times_.size(), frames);
-    times_ = parts_of(times_, times_.size(), frames);
+    frames_ = kept_parts(frames_, times_.size(), frames);
+    times_ = kept_parts(times_, times_.size(), frames);
 }
 
 }  // namespace grainsweep::report

@@ -74,8 +74,8 @@ TEST(MachineOverlaps, AWallThatAppearsDeepInParticlesEndsTheRun) {
         json machine = sphere_at_wall(0.2);
         machine["walls"]["plate"]["during"] = {"second"};
         const std::string reason = ending(machine, precision).reason;
-        EXPECT_EQ(reason.find("wall 'plate' appears 0.2 diameters deep (limit 0.05) in a particle at "), 0U) << reason;
-        machine = sphere_at_wall(0.049);
+        EXPECT_EQ(reason.find("wall 'plate' appears 0.2 diameters deep (limit 0.15) in a particle at "), 0U) << reason;
+        machine = sphere_at_wall(0.149);
         machine["walls"]["plate"]["during"] = {"second"};
         EXPECT_EQ(ending(machine, precision).reason, "");
     }
