@@ -19,10 +19,10 @@ void Run::judge_walls_that_appear() {
         const MachineWall& wall = spec_.walls[static_cast<std::size_t>(-1 - contact.second)];
         const std::size_t i = place_of(sight, contact.first);
         const double share = contact.overlap / (2 * state_.radius[i]);
-        if (share <= deepest_appearing || !appears(wall)) continue;
+        if (share <= deepest_at_start || !appears(wall)) continue;
         const Vec3& x = state_.position[i];
         fault_ = "wall '" + wall.name + "' appears" +
-                 kit::sentence(" %.3g diameters deep (limit %.3g) in a particle", share, deepest_appearing) +
+                 kit::sentence(" %.3g diameters deep (limit %.3g) in a particle", share, deepest_at_start) +
                  kit::sentence(" at (%.4g, %.4g, %.4g) m, after %.6g s", x[0], x[1], x[2], time());
         return;
     }

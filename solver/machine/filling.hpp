@@ -12,7 +12,7 @@ namespace grainsweep::machine {
 /// Largest overlap of a placed sphere with a wall at the start, divided by its diameter, and of a particle with a wall
 /// that appears: the flights of a rheometer's blade or the rim of a plate do so in a bed. Deeper ones would throw
 /// particles out.
-inline constexpr double deepest_at_start = 0.05, deepest_appearing = 0.15;
+inline constexpr double deepest_at_start = 0.15;
 
 struct Filled {
     std::vector<dem::Sphere> spheres;

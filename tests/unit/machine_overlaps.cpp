@@ -58,12 +58,12 @@ std::string refusal(const json& machine) {
 
 TEST(MachineOverlaps, RefuseASphereThatStartsDeepInAWall) {
     EXPECT_NE(refusal(sphere_at_wall(0.4))
-                  .find("$.fill: ball: a sphere at (0, 0, 0.0005) m starts 0.4 diameters deep (limit 0.05) in wall "
+                  .find("$.fill: ball: a sphere at (0, 0, 0.0005) m starts 0.4 diameters deep (limit 0.15) in wall "
                         "'plate'"),
               std::string::npos)
         << refusal(sphere_at_wall(0.4));
-    EXPECT_NE(refusal(sphere_at_wall(0.051)), "");
-    EXPECT_EQ(refusal(sphere_at_wall(0.049)), "");
+    EXPECT_NE(refusal(sphere_at_wall(0.151)), "");
+    EXPECT_EQ(refusal(sphere_at_wall(0.149)), "");
     json glued = sphere_at_wall(0.4);
     glued["fill"][0]["glued"] = true;
     EXPECT_EQ(refusal(glued), "") << "part of the wall";
