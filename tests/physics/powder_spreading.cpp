@@ -60,7 +60,7 @@ void expect_equal(const Observations& a, const Observations& b) {
 
 TEST(PowderSpreading, MeasuresWhatItDeclares) {
     Inputs inputs = small_case();
-    inputs["layer_area"] = 4e-4;  // enough for a heap ahead of the blade
+    inputs["layer_area"] = 4e-4;                         // enough for a heap ahead of the blade
     inputs["tangential_limit"] = std::string("spring");  // more of the layer is left behind
     const auto scene = make(inputs);
     const auto seen = finish(*scene);

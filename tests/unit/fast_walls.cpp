@@ -133,8 +133,9 @@ TEST(FastWalls, AWallTooFastForTheStepIsReported) {
         engine->run(1);
         return engine->fault();
     };
-    EXPECT_NE(fault({dem::Plane{}, {dem::Translation{.velocity = {0, 0, 1100}}}}).find("wall 0 moves at 1100 m/s, 1.1 of"),
-              std::string::npos);
+    EXPECT_NE(
+        fault({dem::Plane{}, {dem::Translation{.velocity = {0, 0, 1100}}}}).find("wall 0 moves at 1100 m/s, 1.1 of"),
+        std::string::npos);
     EXPECT_EQ(fault({dem::Plane{}, {dem::Translation{.velocity = {1100, 0, 0}}}}), "") << "a belt";
     EXPECT_NE(fault({dem::Bar{0.02, 0.01, 0.02, 0.03, 0}, {dem::Rotation{.speed = 1e5}}}), "");
 }
