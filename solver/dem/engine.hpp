@@ -216,8 +216,8 @@ public:
     /// Returns the booked changes of the kinetic energy of a wall that the powder moves, exact to rounding. Speeds and
     /// energy are those of the full step in double precision, and in mixed precision those half a step later.
     [[nodiscard]] virtual const geometry::BodyEnergy& wall_energy(std::size_t wall) const = 0;
-    /// Moves the crossings of Setup::counting since the last call behind `into`, in the order of the steps. Crossings
-    /// that nobody took are not part of a saved state.
+    /// Appends the crossings of Setup::counting since the last call to `into`, in the order of the steps, and forgets
+    /// them. save() does not store crossings: call this function before it.
     virtual void take_crossings(std::vector<Crossing>& into) = 0;
     /// Returns the fault of an unsound state, with place and time; empty: the state is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
