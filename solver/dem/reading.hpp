@@ -4,6 +4,7 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/dem/laws/any_contact.hpp"
+#include "solver/dem/network.hpp"
 
 #include <cmath>
 
@@ -59,6 +60,24 @@ template <Partner partner>
     seen.rounded_speed = before.terms;
     seen.time_step = 0;
     return seen;
+}
+
+/// Returns a contact as a bond of the network (network.hpp), of the bodies with these numbers. `slides`: a contact that
+/// the last step has cut has no tangential spring. `rounding`: as of as_in_step().
+template <Partner partner>
+[[nodiscard]] Bond bond_of(const AnyContact& laws, const Touch<partner>& t, const double* memory, std::uint64_t key,
+                           std::int32_t first, std::int32_t second, bool slides, double rounding) {
+    Bond bond{.key = key,
+              .first = first,
+              .second = second,
+              .normal = t.normal,
+              .lever_first = t.radius_i - t.overlap / 2,
+              .lever_second = t.radius_j - t.overlap / 2,
+              .springs = laws.springs(t)};
+    if (t.apart) bond.springs = {};
+    if (slides && bond.springs.tangential > 0 && laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory).slides)
+        bond.springs.tangential = bond.springs.tangential_damper = 0;
+    return bond;
 }
 
 /// Returns the contact: its force at `seen`, all other members at `now`.

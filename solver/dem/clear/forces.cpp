@@ -294,18 +294,7 @@ void ClearEngine::gather_network(bool slides) {
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
     const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
                           const double* memory) {
-        Bond b{.key = key_of(p_.id[i], id),
-               .first = static_cast<std::int32_t>(i),
-               .second = j,
-               .normal = t.normal,
-               .lever_first = t.radius_i - t.overlap / 2,
-               .lever_second = t.radius_j - t.overlap / 2,
-               .springs = laws.springs(t)};
-        if (t.apart) b.springs = {};
-        if (slides && b.springs.tangential > 0 &&
-            laws.respond(as_in_step(t, RelativeMotion{}, rounding), memory).slides)
-            b.springs.tangential = b.springs.tangential_damper = 0;
-        return b;
+        return bond_of(laws, t, memory, key_of(p_.id[i], id), static_cast<std::int32_t>(i), j, slides, rounding);
     };
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
         network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), p_.id[j], t, memory));

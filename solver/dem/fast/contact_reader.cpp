@@ -214,18 +214,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
     const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
                           const Memory& memory) {
         t.damping_root = std::sqrt(t.root * t.reduced_mass);
-        Bond b{.key = key_of(id_[i], id),
-               .first = i,
-               .second = j,
-               .normal = t.normal,
-               .lever_first = t.radius_i - t.overlap / 2,
-               .lever_second = t.radius_j - t.overlap / 2,
-               .springs = laws.springs(t)};
-        if (t.apart) b.springs = {};
-        if (slides && b.springs.tangential > 0 &&
-            laws.respond(as_in_step(t, RelativeMotion{}, rounding_at_rest), memory.data()).slides)
-            b.springs.tangential = b.springs.tangential_damper = 0;
-        return b;
+        return bond_of(laws, t, memory.data(), key_of(id_[i], id), i, j, slides, rounding_at_rest);
     };
     for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
         complete(i, j, t);
