@@ -11,8 +11,9 @@ namespace grainsweep::observables {
 /// left out.
 [[nodiscard]] double block_standard_error(std::span<const double> series, std::size_t blocks);
 
-/// Returns a standard error s of the mean of a correlated series of n values. The mean lies within 1.96 s of the
-/// expectation with probability 0.95.
+/// Returns a standard error s of the mean of a correlated series of n values, so that 1.96 s is meant as half of a 95 %
+/// interval. Measured over 200 series, with correlations of neighbours up to 0.8: at least 0.91
+/// (tests/physics/series_error.cpp).
 ///
 ///     s^2 = (t/1.96)^2 v/n,   v = (2 sum_j G_j - g_0)/(1 - (2 w + 1)/n),   G_j = g_2j + g_2j+1
 ///
@@ -20,7 +21,7 @@ namespace grainsweep::observables {
 /// before it: Geyer (1992), Statistical Science 7, 473, initial monotone sequence. The denominator corrects for the
 /// mean, which comes from the same values. t: quantile of Student's distribution with half as many degrees of freedom
 /// as there are independent values, n g_0/v. v is at least that of the means of ten blocks. NaN for fewer than ten
-/// values, or fewer than four independent ones. Measured coverage: tests/physics/series_error.cpp.
+/// values, or fewer than four independent ones.
 [[nodiscard]] double standard_error_of_mean(std::span<const double> series);
 
 }  // namespace grainsweep::observables

@@ -318,7 +318,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         if (reduction.error != nullptr)
             all.push_back({name + "_error",
                            unit,
-                           fmt::format("standard error of {}; 1.96 of it on both sides hold 95 %", name),
+                           fmt::format("standard error of {}, which counts how long values stay alike", name),
                            Shape::scalar,
                            {},
                            "fewer than ten frames, or too few independent ones"});
