@@ -2,6 +2,7 @@
 
 #include "stats/confidence.hpp"
 #include "stats/moment_statistics.hpp"
+#include "stats/response/beyond_cases.hpp"
 #include "stats/response/fit.hpp"
 #include "stats/response/kriging.hpp"
 #include "stats/spread.hpp"
@@ -17,25 +18,13 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t least_sequences = 4, least_rare = 30, least_scramblings = 4;
+constexpr std::size_t first_of_shape = 2;  // g1, in the order of the statistics
+constexpr double most_unforeseen = 0.03;
 constexpr double contradiction = 2;  // in joint half-widths
-constexpr double normal_95 = 1.959963984540054;
 constexpr std::int64_t least_freedom = 2;
 // Cases from which on, and error of the models (in sd) below which, two estimates of one variance are averaged.
 constexpr std::size_t fewest_averaged = 200;
 constexpr double largest_error_averaged = 0.5;
-using Moment4 = std::array<double, 4>;
-
-/// z^p or E[z^p | m, v].
-Moment4 closure(double m, double v) {
-    const double m2 = m * m;
-    return {m, m2 + v, m2 * m + 3 * m * v, m2 * m2 + 6 * m2 * v + 3 * v * v};
-}
-
-double dot(const RawMoments& gradient, const Moment4& moments) {
-    double sum = 0;
-    for (std::size_t p = 0; p < 4; ++p) sum += gradient[p] * moments[p];
-    return sum;
-}
 
 /// Cases with a value, in the box and standardised.
 struct Cases {
@@ -120,10 +109,11 @@ std::optional<Refusal> reason_against_assisting(const AssistedInput& input, cons
 
 /// Sums over integration points and residuals, by sequence.
 struct Parts {
-    std::vector<std::vector<Moment4>> integrals;  ///< [sequence][scrambling]: mean of g_p
-    std::vector<Moment4> residuals;               ///< of each case: z^p - g_p
-    std::vector<double> predicted;                ///< m_s(x_i)
-    double error = 0;                             ///< rms of z_i - m_s(x_i)
+    std::vector<std::vector<RawMoments>> integrals;  ///< [sequence][scrambling]: mean of g_p
+    std::vector<RawMoments> residuals;               ///< of each case: z^p - g_p
+    std::vector<double> predicted;                   ///< m_s(x_i)
+    response::BeyondCases beyond;
+    double error = 0;  ///< rms of z_i - m_s(x_i)
 };
 
 /// Everything for the sequences of one parity, with hyperparameters of the others.
@@ -147,14 +137,17 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
     }
     const response::FoldWeights weights = response::leave_folds_out(*model, left_out);
     const double v = h->noise() > 2 * response::smallest_noise ? h->noise() : 0;
+    const Eigen::MatrixXd taught = c.x(training, Eigen::all);
+    parts.beyond.add(*model, taught, integration, v);
 
     const Eigen::MatrixXd means = weights.predict(*model, response::mapped(*h, integration));
     const auto each = static_cast<std::size_t>(means.rows()) / scramblings;
     for (std::size_t f = 0; f < folds.size(); ++f) {
         auto& integrals = parts.integrals[folds[f]];
-        integrals.assign(scramblings, Moment4{});
+        integrals.assign(scramblings, RawMoments{});
         for (std::size_t q = 0; q < each * scramblings; ++q) {
-            const Moment4 g = closure(means(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(f)), v);
+            const RawMoments g =
+                response::closure(means(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(f)), v);
             for (std::size_t p = 0; p < 4; ++p) integrals[q / each][p] += g[p] / static_cast<double>(each);
         }
     }
@@ -163,40 +156,30 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
         if (c.sequence[i] % 2 != parity) continue;
         const auto row = static_cast<Eigen::Index>(i);
         parts.predicted[i] = at_cases(row, static_cast<Eigen::Index>(c.sequence[i] / 2));
-        const Moment4 seen = closure(c.z(row), 0), expected = closure(parts.predicted[i], v);
+        const RawMoments seen = response::closure(c.z(row), 0), expected = response::closure(parts.predicted[i], v);
         for (std::size_t p = 0; p < 4; ++p) parts.residuals[i][p] = seen[p] - expected[p];
     }
     return true;
 }
 
 /// M^(s) of every sequence.
-std::vector<Moment4> by_sequence(const Parts& parts, const Cases& c) {
-    std::vector<Moment4> all(c.sequences, Moment4{});
+std::vector<RawMoments> by_sequence(const Parts& parts, const Cases& c) {
+    std::vector<RawMoments> all(c.sequences, RawMoments{});
     std::vector<double> sizes(c.sequences, 0);
     for (const std::size_t s : c.sequence) ++sizes[s];
     for (std::size_t i = 0; i < c.sequence.size(); ++i)
         for (std::size_t p = 0; p < 4; ++p) all[c.sequence[i]][p] += parts.residuals[i][p] / sizes[c.sequence[i]];
     for (std::size_t s = 0; s < c.sequences; ++s)
-        for (const Moment4& g : parts.integrals[s])
+        for (const RawMoments& g : parts.integrals[s])
             for (std::size_t p = 0; p < 4; ++p) all[s][p] += g[p] / static_cast<double>(parts.integrals[s].size());
     return all;
 }
 
-RawMoments averaged(const std::vector<Moment4>& all) {
+RawMoments averaged(const std::vector<RawMoments>& all) {
     RawMoments mean{};
-    for (const Moment4& m : all)
+    for (const RawMoments& m : all)
         for (std::size_t p = 0; p < 4; ++p) mean[p] += m[p] / static_cast<double>(all.size());
     return mean;
-}
-
-/// Var[sum_p gradient_p (m + s e)^p] for a standard normal e, from the moments 1, 3, 15, 105 of e^2, e^4, e^6, e^8.
-double normal_variance(const RawMoments& gradient, double m, double s) {
-    const double m2 = m * m;
-    const double c1 = s * (gradient[0] + 2 * gradient[1] * m + 3 * gradient[2] * m2 + 4 * gradient[3] * m2 * m);
-    const double c2 = s * s * (gradient[1] + 3 * gradient[2] * m + 6 * gradient[3] * m2);
-    const double c3 = s * s * s * (gradient[2] + 4 * gradient[3] * m);
-    const double c4 = s * s * s * s * gradient[3];
-    return c1 * c1 + 2 * c2 * c2 + 15 * c3 * c3 + 96 * c4 * c4 + 6 * c1 * c3 + 24 * c2 * c4;
 }
 
 /// (b) and (c) of the header.
@@ -205,10 +188,10 @@ double half_width_by_cases(const RawMoments& gradient, const Parts& parts) {
     const double s =
         std::min(parts.error, 1.0);  // a model that says less than the mean is no noisier than the responses
     for (std::size_t i = 0; i < parts.residuals.size(); ++i) {
-        const double square = std::pow(dot(gradient, parts.residuals[i]), 2);
+        const double square = std::pow(response::dot(gradient, parts.residuals[i]), 2);
         squares += square;
         fourths += square * square;
-        expected += normal_variance(gradient, parts.predicted[i], s);
+        expected += response::normal_variance(gradient, parts.predicted[i], s);
     }
     const auto n = static_cast<double>(parts.residuals.size());
     const double effective = fourths > 0 ? squares * squares / fourths : n;
@@ -217,26 +200,26 @@ double half_width_by_cases(const RawMoments& gradient, const Parts& parts) {
 }
 
 /// (a), (b), (c) and the error of Q of the header, for one gradient.
-double half_width(const RawMoments& gradient, const std::vector<Moment4>& sequences, const Parts& parts) {
+double half_width(const RawMoments& gradient, const std::vector<RawMoments>& sequences, const Parts& parts) {
     std::vector<double> values;
-    for (const Moment4& m : sequences) values.push_back(dot(gradient, m));
+    for (const RawMoments& m : sequences) values.push_back(response::dot(gradient, m));
     const double by_cases = half_width_by_cases(gradient, parts);
     const std::size_t scramblings = parts.integrals.front().size();
     std::vector<double> integrals(scramblings, 0);
     for (const auto& sequence : parts.integrals)
         for (std::size_t k = 0; k < scramblings; ++k)
-            integrals[k] += dot(gradient, sequence[k]) / static_cast<double>(parts.integrals.size());
+            integrals[k] += response::dot(gradient, sequence[k]) / static_cast<double>(parts.integrals.size());
     const double by_points = scramblings >= least_scramblings ? student_half_width(integrals) : 0;
     const double by_sequences = student_half_width(values);
     const bool averaged = parts.residuals.size() >= fewest_averaged && parts.error < largest_error_averaged;
     const double error = averaged ? std::sqrt((by_sequences * by_sequences + by_cases * by_cases) / 2)
                                   : std::max(by_sequences, by_cases);
-    return std::hypot(error, by_points);
+    return std::hypot(error, by_points, parts.beyond.half_width(gradient));
 }
 
 /// What scatter adds to M_1 ... M_4, and how that moves with them.
 struct Scatter {
-    Moment4 added{};
+    RawMoments added{};
     double variance = 0;  ///< E v
 
     /// Gradient by the M with scatter of a function of the M without.
@@ -303,7 +286,7 @@ void add_assisted(AssistedMoments& result, const Cases& c, const Parts& parts, d
         s.shorter = s.assisted.half_width < s.plain.half_width;
         if (c.noise.empty()) continue;
         const RawMoments gradient = scatter.through(without[k].gradient);
-        const double by_noise = normal_95 * noise_error * std::abs(dot(without[k].gradient, scatter.added));
+        const double by_noise = normal_95 * noise_error * std::abs(response::dot(without[k].gradient, scatter.added));
         const double error = std::hypot(half_width(gradient, sequences, parts), by_noise);
         s.without_scatter = in_unit(c, k, without[k].value, error);
     }
@@ -322,18 +305,29 @@ std::string reason_for_the_plain(const AssistedMoments& result) {
 }
 
 void choose(AssistedMoments& result, const AssistedSettings& settings, const AssistedMoments* previous) {
-    const bool good = result.model_error < settings.refused_error;
-    if (!good)
+    const bool good = result.model_error < settings.refused_error && !result.unforeseen;
+    if (result.unforeseen)
+        result.remark =
+            "the plain estimates stand: the response has no visible end, and predicted from all others its " +
+            std::to_string(response::outermost) + " outermost cases are missed by " + shown(100 * *result.unforeseen) +
+            " % of their distance from the mean (limit " + shown(100 * most_unforeseen) + ")";
+    else if (!good)
         result.remark = "the plain estimates stand: left-out sequences are predicted with an error of " +
                         shown(result.model_error) + " standard deviations (limit " + shown(settings.refused_error) +
                         ")";
+    if (good && result.endless)
+        result.remark =
+            "g1 and kurtosis are the plain ones: the response has no visible end, and a model says nothing of "
+            "its tail";
     for (std::size_t k = 0; k < assisted_statistics.size(); ++k) {
         auto& s = result.statistics[k];
         const double joint = std::hypot(s.plain.half_width, s.assisted.half_width);
         const bool finite = std::isfinite(s.assisted.half_width + s.assisted.value);
         const bool differs = good && std::abs(s.assisted.value - s.plain.value) > contradiction * joint;
-        s.withdrawn = !good || (differs && result.excluded == 0);
-        s.takes_assisted = finite && good && !differs && (previous == nullptr || previous->statistics[k].shorter);
+        const bool of_tails = result.endless && k >= first_of_shape;
+        s.withdrawn = !good || of_tails || (differs && result.excluded == 0);
+        s.takes_assisted =
+            finite && good && !of_tails && !differs && (previous == nullptr || previous->statistics[k].shorter);
         if (!differs) continue;
         result.remark += (result.remark.empty() ? "the model-assisted " : "; the model-assisted ") +
                          std::string(to_string(assisted_statistics[k])) + " " + shown(s.assisted.value) + " +- " +
@@ -346,8 +340,9 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
 std::variant<AssistedMoments, Refusal> assisted_estimate(const AssistedInput& input, const AssistedSettings& settings) {
     const Cases c = gather(input, settings);
     if (const auto reason = reason_against_assisting(input, c)) return *reason;
-    Parts parts{std::vector<std::vector<Moment4>>(c.sequences), std::vector<Moment4>(c.sequence.size()),
-                std::vector<double>(c.sequence.size())};
+    Parts parts{std::vector<std::vector<RawMoments>>(c.sequences), std::vector<RawMoments>(c.sequence.size()),
+                std::vector<double>(c.sequence.size()),
+                response::BeyondCases({c.z.data(), static_cast<std::size_t>(c.z.size())}, c.sequences)};
     const Eigen::MatrixXd integration = in_box(input.integration, settings);
     for (const std::size_t parity : {std::size_t{0}, std::size_t{1}})
         if (!add_half(parts, c, integration, input.scramblings, settings, parity))
@@ -360,6 +355,8 @@ std::variant<AssistedMoments, Refusal> assisted_estimate(const AssistedInput& in
         squares += std::pow(c.z(static_cast<Eigen::Index>(i)) - parts.predicted[i], 2);
     result.model_error = parts.error = std::sqrt(squares / static_cast<double>(result.cases));
     add_assisted(result, c, parts, input.noise_variance_error);
+    result.endless = parts.beyond.endless();
+    if (result.endless && parts.beyond.unforeseen() > most_unforeseen) result.unforeseen = parts.beyond.unforeseen();
     return result;
 }
 

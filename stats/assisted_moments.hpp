@@ -23,6 +23,14 @@
 // The root of the mean of their squares is taken: it reached the truth in 96.4 % of campaigns of 400 cases, the larger
 // one in 97.4 %. In quadrature the error of Q from its independent scramblings (Student t over their means).
 //
+// Cases say nothing beyond the outermost of them. Two terms in quadrature: (d) for each end of each feature the 4
+// outermost cases, predicted from all others: |grad T . sum (z^p - g_p)/n|, less what noise gives it; (e) where a tail
+// of the responses has no visible end (tail.hpp), a share of the error that the tail gives the plain estimate: three
+// times the part of their distance from the mean by which the model misses those 4, and 0.3 at least if Q reaches far
+// beyond the cases (features without an end, such as a normal factor). Above a part of 0.03 the model is not taken, and
+// never for g1 and kurtosis: of a response like exp(normal) or a waiting time, which its cases seem to give exactly,
+// intervals without (e) held in 0 to 0.8.
+//
 // Two targets. With scatter: moments of single runs, what the plain estimate says. Without: of the mean response. By
 // the law of total cumulance, with noise of variance v_i that is symmetric about the mean,
 //   M - (0, E v, 3 E[m v], 6 E[m^2 v] + 3 E[v^2]),
@@ -45,6 +53,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -107,6 +116,10 @@ struct AssistedMoments {
     std::size_t cases = 0;
     std::size_t excluded = 0;                                       ///< without a value
     double model_error = std::numeric_limits<double>::quiet_NaN();  ///< rms on left-out sequences over the sd
+    bool endless = false;                                           ///< a tail of the response has no visible end
+    /// Of such a response: the share of the outermost cases that the model misses, if it is too
+    /// large for a model to say anything of the tail.
+    std::optional<double> unforeseen = std::nullopt;
     std::array<AssistedStatistic, assisted_statistics.size()> statistics;
     std::array<ScatterBudget, 3> budget;  ///< variance, third, fourth central moment; NaN where the noise is unknown
     /// Why assisted estimates were withdrawn or not taken: one sentence for each, with semicolons; empty: none was.

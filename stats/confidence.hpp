@@ -6,6 +6,9 @@
 
 namespace grainsweep::stats {
 
+/// Half-width of a 95 % interval in standard errors of a normal estimate.
+inline constexpr double normal_95 = 1.959963984540054;
+
 /// Returns t_{freedom, 0.975}, the half-width in standard errors. NaN below one degree of freedom.
 [[nodiscard]] double student_factor(std::int64_t freedom);
 

@@ -13,6 +13,8 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
+constexpr std::size_t most_halvings = 3;
+constexpr double steepest_fall = 0.35355339059327376;  // 2^(-3/2)
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns whether repetitions of a statistic differ by more than rounding; only then can an error be estimated from
@@ -132,6 +134,13 @@ Middle SortedSample::middle() {
     return {sorted_[(sorted_.size() - 1) / 2], sorted_[sorted_.size() / 2]};
 }
 
+std::vector<Tail> SortedSample::tails(std::size_t together) const {
+    std::vector<Tail> tails;
+    for (const bool upper : {false, true})
+        if (auto tail = Tail::of(sorted_, upper, together)) tails.push_back(std::move(*tail));
+    return tails;
+}
+
 double SortedSample::carriers(double centre, double p) const {
     if (sorted_.empty()) return 0;
     const double farthest = std::max(std::abs(sorted_.front() - centre), std::abs(sorted_.back() - centre));
@@ -172,7 +181,9 @@ void Convergence::add(std::int64_t point, double value, std::int64_t earlier) {
     }
     auto& sequence = sequences_[static_cast<std::size_t>(point % settings_.sequences)];
     sequence.moments.add(value);
-    if (finite) sequence.sample.add(value);
+    if (!finite) return;
+    sequence.sample.add(value);
+    sequence.values.push_back(value);
 }
 
 void Convergence::settle(std::int64_t points) {
@@ -221,10 +232,49 @@ void Convergence::find_errors(Checkpoint& now) {
         now.estimates[s].error =
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
     }
-    judge_shape(now, summaries);
+    doubt_agreement(now);
+    const auto tails = pooled_.sample.tails(std::max<std::size_t>(1, sequences_.size()));
+    judge_shape(now, summaries, !tails.empty());
+    doubt_tails(now, tails);
 }
 
-void Convergence::judge_shape(Checkpoint& now, std::span<const Summary> repetitions) const {
+void Convergence::doubt_tails(Checkpoint& now, std::span<const Tail> tails) {
+    const auto of = [&](Statistic statistic) { return now.of(statistic).value; };
+    const double mean = of(Statistic::mean), sd = of(Statistic::sd);
+    const auto widen = [&](Statistic statistic, const auto& influence) {
+        double variance = 0;
+        for (const Tail& tail : tails)
+            variance += tail.variance_of_mean([&](double y) { return influence((y - mean) / sd); });
+        double& error = now.estimates[static_cast<std::size_t>(statistic)].error;
+        if (error < tail_95 * std::sqrt(variance)) error = tail_95 * std::sqrt(variance);
+    };
+    widen(Statistic::mean, [&](double z) { return sd * z; });
+    widen(Statistic::sd, [&](double z) { return sd * z * z / 2; });
+    widen(Statistic::skewness, [&](double z) { return 3 * z - of(Statistic::skewness) * z * z / 2; });
+    widen(Statistic::g1, [&](double z) { return z * z * z - 1.5 * of(Statistic::g1) * z * z - 3 * z; });
+    widen(Statistic::kurtosis,
+          [&](double z) { return z * z * (z * z - 2 * of(Statistic::kurtosis)) - 4 * of(Statistic::g1) * z; });
+}
+
+void Convergence::doubt_agreement(Checkpoint& now) const {
+    double fall = 1;
+    for (std::size_t halved = 1; halved <= most_halvings; ++halved) {
+        fall *= steepest_fall;
+        std::vector<Summary> halves;
+        for (const auto& sequence : sequences_) {
+            halves.push_back(summarise(std::span(sequence.values).first(sequence.values.size() >> halved)));
+        }
+        if (std::ranges::any_of(halves, [](const Summary& x) { return x.count < fewest_values; })) return;
+        std::vector<double> repetitions(halves.size());
+        for (const Statistic statistic : statistics) {
+            double& error = now.estimates[static_cast<std::size_t>(statistic)].error;
+            std::ranges::transform(halves, repetitions.begin(), [&](const Summary& x) { return x.of(statistic); });
+            if (differ(repetitions)) error = std::max(error, fall * student_half_width(repetitions));
+        }
+    }
+}
+
+void Convergence::judge_shape(Checkpoint& now, std::span<const Summary> repetitions, bool endless) const {
     std::vector<Summary> without;
     if (!sequences_.empty()) {
         std::vector<Moments> parts;
@@ -248,8 +298,9 @@ void Convergence::judge_shape(Checkpoint& now, std::span<const Summary> repetiti
         const double carriers =
             pooled_.sample.carriers(now.of(Statistic::mean).value, statistic == Statistic::g1 ? 3 : 4) *
             static_cast<double>(runs_) / static_cast<double>(places_);
-        if (carriers >= fewest_carriers(statistic)) continue;
-        estimate.carriers = carriers;
+        const double needed = statistic == Statistic::g1 ? (endless ? 60 : 30) : (endless ? 200 : 50);
+        if (carriers >= needed) continue;
+        estimate.carriers = {carriers, needed};
         estimate.error = nan;
     }
 }
@@ -273,7 +324,6 @@ void Convergence::widen_errors(Checkpoint& now) const {
         }
         return nan;
     };
-    constexpr double normal_95 = 1.96;
     const double share = std::sqrt(excess_) / static_cast<double>(places_);
     for (const Statistic statistic : statistics) {
         double& error = now.estimates[static_cast<std::size_t>(statistic)].error;

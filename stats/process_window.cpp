@@ -3,6 +3,8 @@
 #include "stats/confidence.hpp"
 #include "stats/sobol_sequence.hpp"
 
+#include <boost/math/special_functions/gamma.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,17 +16,33 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t integration_points = 1024;
+constexpr std::size_t integration_points = 1024, fewest_scores = 40;
+constexpr double narrowest_share = 0.1;
 
 double normal_density(double u) {
     return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
 }
 
 /// The response whose error is `t` standard errors; of a probability see the header.
-double response_at(const Prediction& p, Judged judged, double t) {
-    if (!p.latent) return p.mean + (judged == Judged::mean ? p.mean_error : p.run_error()) * t;
+double response_at(const Prediction& p, Judged judged, double error, double t) {
+    if (!p.latent) return p.mean + error * t;
     if (judged == Judged::mean) return normal_cdf(p.latent->mean + p.latent->error * t);
     return normal_cdf(t) > 1 - p.mean ? 1 : 0;
+}
+
+/// Standard error of what is judged. `widest`: of the header.
+double judged_error(const Prediction& p, Judged judged, double widest) {
+    if (judged == Judged::mean) return p.mean_error;
+    if (!std::isfinite(p.even_scatter)) return p.run_error();
+    return std::hypot(p.mean_error, std::min(widest * p.scatter, std::max(p.scatter, p.even_scatter)));
+}
+
+/// The quantile of a sample, linear between its values.
+double sample_quantile(std::span<const double> sorted, double u) {
+    const double at =
+        std::clamp(u * static_cast<double>(sorted.size()) - 0.5, 0.0, static_cast<double>(sorted.size() - 1));
+    const auto below = std::min(static_cast<std::size_t>(at), sorted.size() - 2);
+    return std::lerp(sorted[below], sorted[below + 1], at - static_cast<double>(below));
 }
 
 /// m* of the header; none where the condition is nowhere more likely than not.
@@ -44,15 +62,28 @@ std::optional<double> effective_best(std::span<const Prediction> objective, std:
 }  // namespace
 
 /// By Sobol points, cells centred.
-SampledErrors::SampledErrors(std::span<const double> freedom) : models_(freedom.size()) {
+SampledErrors::SampledErrors(std::span<const double> freedom, std::span<const std::vector<double>> scores)
+    : models_(freedom.size()) {
     if (freedom.empty()) throw std::invalid_argument("process window: no model");
+    std::vector<std::vector<double>> sorted(models_);
+    for (std::size_t k = 0; k < models_; ++k) {
+        if (k < scores.size() && scores[k].size() >= fewest_scores) sorted[k] = scores[k];
+        std::ranges::sort(sorted[k]);
+        const double f = freedom[k];
+        widest_.push_back(std::isfinite(f) ? std::sqrt(f / (2 * boost::math::gamma_p_inv(f / 2, narrowest_share))) : 1);
+    }
     SobolSequence sequence(models_);
     constexpr double cells = 0x1p64;
     for (std::size_t i = 0; i < integration_points * models_; ++i) {
         const double drawn = (static_cast<double>(sequence.next()) + 0.5 * cells / integration_points) / cells;
         const double u = std::min(drawn, 1 - 0x1p-53);
         const double f = freedom[i % models_];
-        errors_.push_back(std::isfinite(f) ? student_quantile(f, u) : normal_quantile(u));
+        double error = std::isfinite(f) ? student_quantile(f, u) : normal_quantile(u);
+        if (const auto& seen = sorted[i % models_]; !seen.empty()) {
+            const double observed = sample_quantile(seen, u);
+            error = u < 0.5 ? std::min(error, observed) : std::max(error, observed);
+        }
+        errors_.push_back(error);
     }
 }
 
@@ -65,12 +96,14 @@ std::vector<double> probability_of(std::span<const std::vector<Prediction>> pred
     const std::size_t d = predictions.size();
     if (d != errors.models()) throw std::invalid_argument("process window: errors of another number of models");
     const std::size_t n = predictions.front().size();
-    std::vector<double> probability(n), responses(d);
+    std::vector<double> probability(n), responses(d), scale(d);
     for (std::size_t i = 0; i < n; ++i) {
         std::size_t held = 0;
+        for (std::size_t k = 0; k < d; ++k) scale[k] = judged_error(predictions[k][i], judged, errors.widest(k));
         for (std::size_t q = 0; q < errors.points(); ++q) {
             const auto error = errors.at(q);
-            for (std::size_t k = 0; k < d; ++k) responses[k] = response_at(predictions[k][i], judged, error[k]);
+            for (std::size_t k = 0; k < d; ++k)
+                responses[k] = response_at(predictions[k][i], judged, scale[k], error[k]);
             held += condition(responses) ? 1U : 0U;
         }
         probability[i] = static_cast<double>(held) / static_cast<double>(errors.points());

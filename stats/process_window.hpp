@@ -7,6 +7,14 @@
 //
 // A response that is a probability (stats/probability_model.hpp) is Phi(f), f normal; a single run of it is 1 or 0.
 //
+// Of a single run the promise must outlast a search, which finds the settings whose scatter is estimated too small.
+// There the scatter s is
+//
+//   s^2 = min(f s_local^2/q, max(s_local^2, s_even^2)),   q: 10 % quantile of chi-squared, f degrees of freedom
+//
+// s_local from the f or so cases about x, s_even from all; and where a quantile of the residuals of left-out cases lies
+// farther out than that of Student's distribution, it is taken instead: errors of runs need not be normal.
+//
 // The integral uses 1,024 Sobol points, the same for all x, so that contours are smooth (error about 0.002).
 //
 // Next cases: augmented expected improvement of Huang, Allen, Notz & Zeng (2006), J. Global Optim. 34, 441, eq. 12
@@ -38,11 +46,14 @@ using Condition = std::function<bool(std::span<const double> responses)>;
 /// probability.
 class SampledErrors {
 public:
-    /// `freedom`: degrees of freedom of each model (ResponseModel::freedom), in their order.
-    explicit SampledErrors(std::span<const double> freedom);
+    /// `freedom`: degrees of freedom of each model (ResponseModel::freedom), in their order. `scores`: residuals of
+    /// left-out cases over their errors, of each model whose single runs are judged; fewer than 40 say nothing.
+    explicit SampledErrors(std::span<const double> freedom, std::span<const std::vector<double>> scores = {});
 
     [[nodiscard]] std::size_t models() const { return models_; }
     [[nodiscard]] std::size_t points() const;
+    /// Returns sqrt(f/q) of the header, by which a local scatter may be larger than its estimate.
+    [[nodiscard]] double widest(std::size_t model) const { return widest_[model]; }
     /// Returns one error per model at an integration point.
     [[nodiscard]] std::span<const double> at(std::size_t point) const {
         return std::span(errors_).subspan(point * models_, models_);
@@ -51,6 +62,7 @@ public:
 private:
     std::size_t models_;
     std::vector<double> errors_;  ///< (points, models)
+    std::vector<double> widest_;
 };
 
 /// Returns the probability that a condition holds at each point: predictions[k][i] of model k at point i. Throws

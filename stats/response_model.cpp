@@ -220,7 +220,8 @@ std::vector<Prediction> ResponseModel::predict(Rows points) const {
         const bool inside = x.row(i).minCoeff() >= -outside_by && x.row(i).maxCoeff() <= 1 + outside_by;
         const double mean = s.mean_at(p.mean(i));
         result.push_back({mean, s.deviation(mean, local(i) * p.variance(i)),
-                          s.deviation(mean, local(i) * s.kriging.h.noise()), inside, freedom()});
+                          s.deviation(mean, local(i) * s.kriging.h.noise()), inside, freedom(),
+                          s.deviation(mean, s.kriging.h.noise())});
     }
     return result;
 }

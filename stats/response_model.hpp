@@ -110,6 +110,8 @@ struct Prediction {
     /// Degrees of freedom of the two errors. They are estimated from few cases nearby, so intervals are Student's, not
     /// normal.
     double freedom = std::numeric_limits<double>::infinity();
+    /// The scatter if the noise were the same everywhere; NaN: as `scatter`.
+    double even_scatter = std::numeric_limits<double>::quiet_NaN();
     /// For a probability Phi(f): mean and standard deviation of the normal f.
     struct Latent {
         double mean = 0, error = 0;

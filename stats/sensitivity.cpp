@@ -74,7 +74,15 @@ BinnedIndex binned_index(std::span<const Entry> sorted, std::size_t bins) {
             per_value ? 0 : steps / (12 * static_cast<double>(ends.size() - 1)) / variance};
 }
 
-/// Value, and half-width with what scatter in the bins may have added: the bias that the jackknife estimates.
+/// What bins of half the size see more than scatter gives them: an effect that turns within the bins.
+double missed_by_bins(std::span<const Entry> sorted, const BinnedIndex& all, std::size_t bins) {
+    const double by_scatter = static_cast<double>(bins) / static_cast<double>(sorted.size());
+    const double finer = binned_index(sorted, 2 * bins).value();
+    return std::isnan(finer) ? undefined : std::max(0.0, finer - all.value() - by_scatter);
+}
+
+/// Value, and half-width with what scatter in the bins may have added (the bias that the jackknife estimates) and with
+/// what the bins may have missed.
 SensitivityIndex binned_with_error(std::span<const Entry> sorted, const BinnedIndex& all, std::size_t groups,
                                    std::size_t bins) {
     std::vector<double> leave_one_out;
@@ -86,7 +94,9 @@ SensitivityIndex binned_with_error(std::span<const Entry> sorted, const BinnedIn
         leave_one_out.push_back(binned_index(others, bins).value());
         bias += (leave_one_out.back() - all.value()) * static_cast<double>(groups - 1) / static_cast<double>(groups);
     }
-    return {all.value(), std::hypot(jackknife_half_width(leave_one_out), all.within) + std::max(0.0, bias)};
+    return {all.value(),
+            std::hypot(jackknife_half_width(leave_one_out), all.within, missed_by_bins(sorted, all, bins)) +
+                std::max(0.0, bias)};
 }
 
 /// Base rows of a Saltelli design whose d + 2 values are all there.

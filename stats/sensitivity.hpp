@@ -40,8 +40,9 @@ struct GivenDataIndices {
 /// 1)(1 - S)/n for independent points, less for low-discrepancy points.
 ///
 /// Half-widths: jackknife and second term in quadrature, plus the bias that the jackknife estimates, which is the bias
-/// from scatter. `groups` labels the rows 0 ... G-1, for example by sequence; empty: 8 consecutive stretches. NaN if
-/// there are fewer than two rows per bin or no variance.
+/// from scatter, and in quadrature what bins of half the size see more than scatter gives them. `groups` labels the
+/// rows 0 ... G-1, for example by sequence; empty: 8 consecutive stretches. NaN if there are fewer than two rows per
+/// bin (of the half-width: four) or no variance.
 [[nodiscard]] GivenDataIndices first_order_indices(std::span<const double> points, std::size_t dimensions,
                                                    std::span<const double> values,
                                                    std::span<const std::size_t> groups = {}, std::size_t bins = 16);

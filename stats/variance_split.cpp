@@ -3,25 +3,18 @@
 #include "stats/confidence.hpp"
 #include "stats/undefined.hpp"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <utility>
+#include <numeric>
 #include <vector>
 
 namespace grainsweep::stats {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 constexpr std::size_t fewest_parts = 4;
 constexpr std::size_t most_columns = 240;
-constexpr std::size_t least_degree = 3, most_degree = 10;  // of products
 
 /// A design point with its replicates taken together.
 struct Point {
@@ -46,24 +39,14 @@ std::vector<Point> collapse(std::span<const std::int64_t> points, std::span<cons
     return all;
 }
 
-/// Legendre polynomial of degree 1 or more by its recurrence (Abramowitz & Stegun 1964, eq. 8.5.3).
-double legendre(std::size_t degree, double x) {
-    double before = 1, p = x;
-    for (std::size_t l = 1; l < degree; ++l) {
-        const auto n = static_cast<double>(l);
-        before = std::exchange(p, ((2 * n + 1) * x * p - n * before) / (n + 1));
-    }
-    return p;
-}
-
 /// How finely the models resolve the response; the coarse ones show what finer ones may still lack.
 enum class Resolution { fine, coarse };
 
-/// Functions of one factor: columns of the additive model, and the functions that enter products.
+/// Functions of one factor: columns of the additive model.
 class FactorFunctions {
 public:
     FactorFunctions(const SplitFactor& factor, std::span<const Point> points, Resolution resolution)
-        : coordinates_(factor.coordinates), ordered_(factor.ordered) {
+        : coordinates_(factor.coordinates) {
         std::vector<double> sorted;
         for (const auto& point : points) sorted.push_back(coordinates_[point.row]);
         std::ranges::sort(sorted);
@@ -80,13 +63,6 @@ public:
     }
 
     [[nodiscard]] std::size_t alone() const { return knots_.size() - 1; }
-    /// Functions that enter products of so many degrees in total.
-    [[nodiscard]] std::size_t in_products(std::size_t degree) const {
-        return ordered_ ? std::min(degree - 1, knots_.size() - 1) : knots_.size() - 1;
-    }
-    /// Degree of the k-th function that enters products; words have no degree to speak of.
-    [[nodiscard]] std::size_t degree(std::size_t k) const { return ordered_ ? k + 1 : 1; }
-
     void write_alone(std::size_t row, double* into) const {
         const double x = coordinates_[row];
         const auto upper = std::ranges::lower_bound(knots_, x);
@@ -100,86 +76,55 @@ public:
         into[k - 1] = share;
         if (k > 1) into[k - 2] = 1 - share;
     }
-    [[nodiscard]] double in_product(std::size_t row, std::size_t k) const {
-        const double x = coordinates_[row];
-        if (!ordered_) return x == knots_[k + 1] ? 1 : 0;
-        return legendre(k + 1, 2 * x - 1);
-    }
 
 private:
     std::span<const double> coordinates_;
-    bool ordered_;
     bool per_value_ = true;
     std::vector<double> knots_;  ///< or the distinct values
 };
 
-/// Columns of both models: the constant, the factors alone, the products.
+/// Columns of the model: the constant, then those of each factor.
 class Columns {
 public:
-    Columns(std::span<const SplitFactor> factors, std::span<const Point> points, bool with_products,
-            Resolution resolution) {
+    Columns(std::span<const SplitFactor> factors, std::span<const Point> points, Resolution resolution) {
         for (const auto& factor : factors) {
             factors_.emplace_back(factor, points, resolution);
-            additive_ += factors_.back().alone();
+            count_ += factors_.back().alone();
         }
-        const std::size_t most = std::min(most_columns, points.size() / 3);
-        std::size_t degree = with_products ? least_degree : 0;
-        while (degree >= least_degree && degree < most_degree && additive_ + products(degree + 1).size() <= most)
-            ++degree;
-        if (with_products && additive_ + products(degree).size() <= most)
-            products_ = products(resolution == Resolution::fine ? degree : degree - 2);
-        all_ = additive_ + products_.size();
     }
-    [[nodiscard]] std::size_t additive() const { return additive_; }
-    [[nodiscard]] std::size_t all() const { return all_; }
+    [[nodiscard]] std::size_t count() const { return count_; }
 
-    [[nodiscard]] VectorXd of(std::size_t row) const {
-        VectorXd columns = VectorXd::Zero(static_cast<Index>(all_));
+    [[nodiscard]] std::vector<double> of(std::size_t row) const {
+        std::vector<double> columns(count_, 0);
         columns[0] = 1;
         std::size_t at = 1;
         for (const auto& factor : factors_) {
             factor.write_alone(row, columns.data() + at);
             at += factor.alone();
         }
-        for (const auto& [a, i, b, j] : products_)
-            columns[static_cast<Index>(at++)] = factors_[a].in_product(row, i) * factors_[b].in_product(row, j);
         return columns;
     }
 
 private:
-    struct Product {
-        std::size_t a, i, b, j;
-    };
-
-    /// Of two factors each, up to a degree in total.
-    [[nodiscard]] std::vector<Product> products(std::size_t degree) const {
-        std::vector<Product> all;
-        for (std::size_t a = 0; a < factors_.size(); ++a)
-            for (std::size_t b = a + 1; b < factors_.size(); ++b)
-                for (std::size_t i = 0; i < factors_[a].in_products(degree); ++i)
-                    for (std::size_t j = 0; j < factors_[b].in_products(degree); ++j)
-                        if (factors_[a].degree(i) + factors_[b].degree(j) <= degree) all.push_back({a, i, b, j});
-        return all;
-    }
-
     std::vector<FactorFunctions> factors_;
-    std::vector<Product> products_;
-    std::size_t additive_ = 1, all_ = 1;
+    std::size_t count_ = 1;
 };
 
 /// Everything the fits need of a set of points; sets add and subtract.
 struct Sums {
-    MatrixXd gram;
-    VectorXd products;
+    std::vector<double> gram;                         ///< X^T X, row-major, its lower half
+    std::vector<double> products;                     ///< X^T y
     double squares = 0, points = 0, reciprocals = 0;  ///< of the means; of 1/r
     double error_squares = 0, error_freedom = 0;
 
-    explicit Sums(std::size_t columns)
-        : gram(MatrixXd::Zero(static_cast<Index>(columns), static_cast<Index>(columns))),
-          products(VectorXd::Zero(static_cast<Index>(columns))) {}
-    void add(const Point& point, const VectorXd& columns, double mean) {
-        gram.selfadjointView<Eigen::Lower>().rankUpdate(columns);
-        products += mean * columns;
+    explicit Sums(std::size_t columns) : gram(columns * columns, 0), products(columns, 0) {}
+    void add(const Point& point, std::span<const double> columns, double mean) {
+        const std::size_t p = columns.size();
+        for (std::size_t i = 0; i < p; ++i) {
+            if (columns[i] == 0) continue;
+            for (std::size_t j = 0; j <= i; ++j) gram[i * p + j] += columns[i] * columns[j];
+            products[i] += mean * columns[i];
+        }
         squares += mean * mean;
         points += 1;
         reciprocals += 1 / static_cast<double>(point.repeats);
@@ -187,8 +132,8 @@ struct Sums {
         error_freedom += static_cast<double>(point.repeats - 1);
     }
     void add(const Sums& other, double sign) {
-        gram += sign * other.gram;
-        products += sign * other.products;
+        for (std::size_t k = 0; k < gram.size(); ++k) gram[k] += sign * other.gram[k];
+        for (std::size_t k = 0; k < products.size(); ++k) products[k] += sign * other.products[k];
         squares += sign * other.squares;
         points += sign * other.points;
         reciprocals += sign * other.reciprocals;
@@ -202,29 +147,51 @@ struct Fit {
     double coefficients = 0;      ///< that the points can tell apart
 };
 
-Fit fit(const Sums& sums, std::size_t columns) {
-    const auto p = static_cast<Index>(columns);
-    const MatrixXd gram = sums.gram.topLeftCorner(p, p).selfadjointView<Eigen::Lower>();
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
-    solver.setThreshold(1e-10);
-    solver.compute(gram);
-    const VectorXd coefficients = solver.solve(sums.products.head(p));
-    const double explained = coefficients.dot(sums.products.head(p));
+/// Least squares by the Cholesky factor of X^T X with the largest pivot first, as far as pivots are above 1e-10 of the
+/// first: columns that others give are left out (Golub & Van Loan 2013, section 4.2.8).
+Fit fit(const Sums& sums) {
+    constexpr double least_pivot = 1e-10;
+    const std::size_t p = sums.products.size();
+    auto left = sums.gram;  // its lower half, what the columns taken so far leave of it
+    auto right = sums.products;
+    const auto entry = [&](std::size_t i, std::size_t j) -> double& {
+        return left[std::max(i, j) * p + std::min(i, j)];
+    };
+    std::vector<std::size_t> rest(p);
+    std::iota(rest.begin(), rest.end(), std::size_t{0});
+    double explained = 0, first = 0, rank = 0;
+    while (!rest.empty()) {
+        const auto at = std::ranges::max_element(rest, {}, [&](std::size_t i) { return entry(i, i); });
+        const std::size_t k = *at;
+        const double pivot = entry(k, k);
+        if (rank == 0) first = pivot;
+        if (!(pivot > least_pivot * first)) break;
+        rest.erase(at);
+        ++rank;
+        explained += right[k] * right[k] / pivot;
+        for (const std::size_t i : rest) {
+            const double share = entry(i, k) / pivot;
+            if (share == 0) continue;
+            right[i] -= share * right[k];
+            for (const std::size_t j : rest)
+                if (j <= i) entry(i, j) -= share * entry(j, k);
+        }
+    }
     // If the model reproduces the response exactly, the rest is rounding.
-    const double left = sums.squares - explained;
-    return {left > 1e-12 * sums.squares ? left : 0, static_cast<double>(solver.rank())};
+    const double residual = sums.squares - explained;
+    return {residual > 1e-12 * sums.squares ? residual : 0, rank};
 }
 
 /// Variances by their parts; NaN where a part cannot be had.
 struct SplitParts {
     double total = undefined, main = undefined, rest = undefined, interactions = undefined, scatter = undefined,
-           pairs = undefined, coefficients = 0;
+           coefficients = 0;
 };
 
-SplitParts parts_of(const Sums& sums, const Columns& columns, bool all_points) {
+SplitParts parts_of(const Sums& sums, bool all_points) {
     SplitParts parts;
     const double n = sums.points;
-    const Fit additive = fit(sums, columns.additive());
+    const Fit additive = fit(sums);
     parts.coefficients = additive.coefficients;
     if (all_points ? n <= additive.coefficients : n < 2 * additive.coefficients) return parts;
     const double mean = sums.products[0] / n;
@@ -243,9 +210,6 @@ SplitParts parts_of(const Sums& sums, const Columns& columns, bool all_points) {
     if (repeated) {
         parts.scatter = scatter;
         parts.interactions = interactions;
-    } else if (columns.all() > columns.additive()) {
-        const Fit full = fit(sums, columns.all());
-        if (n >= 2 * full.coefficients) parts.pairs = residual - full.residual / (n - full.coefficients);
     }
     return parts;
 }
@@ -311,18 +275,18 @@ Estimates split_estimate(const Columns& columns, std::span<const Point> points, 
     double centre = 0;
     for (const auto& point : points) centre += point.mean / static_cast<double>(points.size());
     const std::size_t group_count = groups.empty() ? 1 : *std::ranges::max_element(groups) + 1;
-    std::vector<Sums> by_group(group_count, Sums(columns.all()));
+    std::vector<Sums> by_group(group_count, Sums(columns.count()));
     for (const auto& point : points)
         by_group[groups.empty() ? 0 : groups[point.row]].add(point, columns.of(point.row), point.mean - centre);
-    Estimates estimates{{}, {}, Sums(columns.all())};
+    Estimates estimates{{}, {}, Sums(columns.count())};
     for (const auto& group : by_group) estimates.sums.add(group, 1);
-    estimates.parts = parts_of(estimates.sums, columns, all_points);
+    estimates.parts = parts_of(estimates.sums, all_points);
     if (all_points || groups.empty()) return estimates;
     for (const auto& group : by_group) {
         if (group.points == 0) continue;
         Sums others = estimates.sums;
         others.add(group, -1);
-        estimates.leave_one_out.push_back(parts_of(others, columns, all_points));
+        estimates.leave_one_out.push_back(parts_of(others, all_points));
     }
     return estimates;
 }
@@ -337,16 +301,13 @@ VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<con
     const auto collapsed = collapse(points, values);
     split.points = std::ssize(collapsed);
     if (collapsed.empty()) return split;
-    const bool with_products = !all_points && split.pure.freedom == 0;
-    const Columns columns(factors, collapsed, with_products, Resolution::fine);
-    if (columns.additive() > most_columns) return split;
+    const Columns columns(factors, collapsed, Resolution::fine);
+    if (columns.count() > most_columns) return split;
     const auto [parts, leave_one_out, sums] = split_estimate(columns, collapsed, groups, all_points);
     split.coefficients = static_cast<std::size_t>(parts.coefficients);
-    SplitParts coarse = all_points ? parts
-                                   : split_estimate(Columns(factors, collapsed, with_products, Resolution::coarse),
-                                                    collapsed, {}, false)
-                                         .parts;
-    if (std::isfinite(parts.pairs) && !std::isfinite(coarse.pairs)) coarse.pairs = 0;
+    const SplitParts coarse =
+        all_points ? parts
+                   : split_estimate(Columns(factors, collapsed, Resolution::coarse), collapsed, {}, false).parts;
     // Of interactions over points more even than random ones: the coefficients take nothing from their residuals.
     const double evenness =
         std::abs((std::isfinite(parts.interactions) ? parts.interactions : parts.rest) / parts.total) *
@@ -364,8 +325,6 @@ VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<con
     split.unexplained = share([](const SplitParts& p) { return p.rest; }, evenness);
     split.scatter = share([](const SplitParts& p) { return p.scatter; }, 0);
     split.interactions = share([](const SplitParts& p) { return p.interactions; }, evenness);
-    split.pairs = share([](const SplitParts& p) { return p.pairs; }, evenness);
-    split.remainder = share([](const SplitParts& p) { return p.rest - p.pairs; }, 0);
     if (all_points && std::isfinite(parts.total)) normal_errors(split, parts, sums);
     return split;
 }

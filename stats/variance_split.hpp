@@ -11,14 +11,13 @@
 //   sampled points     E[RSS/(P - p)] = V_int + sigma^2 mean(1/r)
 //   all points there   E[RSS/P]       = V_int + sigma^2 mean(1/r) (P - p)/P     (a lattice: V is over its own points)
 //
-// Replicates therefore separate interactions from scatter. Without replicates, a second model adds products of two
-// factors (Legendre polynomials up to a total degree of 3 to 10, limited by three points per coefficient). It gives the
-// interactions of two factors. The remainder is scatter, higher interactions and the error of the products.
+// Replicates therefore separate interactions from scatter. Without replicates both are one share, `unexplained`: what
+// the factors together would still explain, only a model of the response can tell (stats/model_indices.hpp). Products
+// of functions of two factors cannot: of a deterministic response with a jump they called what they missed scatter.
 //
-// Half-widths of a sample are the sum in quadrature of two parts: the jackknife, and the change of a share if the
-// models have half of the pieces and two degrees less, an estimate of the change by finer models. Shares with
-// interactions get share times p/P in addition, because on points more even than random ones the coefficients take less
-// than p/P of RSS.
+// Half-widths of a sample are the sum in quadrature of two parts: the jackknife, and the change of a share if the model
+// has half of the pieces, an estimate of the change by a finer one. Shares with interactions get share times p/P in
+// addition, because on points more even than random ones the coefficients take less than p/P of RSS.
 #pragma once
 
 #include "stats/sensitivity.hpp"
@@ -47,7 +46,6 @@ struct PureError {
 /// Factor of the models.
 struct SplitFactor {
     std::span<const double> coordinates;  ///< one per row: position in the range, 0 to 1, or the index of a level
-    bool ordered = true;                  ///< false: levels without an order, words
     /// Pieces of its piecewise linear function. One mean per value if 0, or if not fewer than its distinct values.
     std::size_t pieces = 0;
 };
@@ -59,8 +57,6 @@ struct VarianceSplit {
     SensitivityIndex unexplained;
     SensitivityIndex scatter;       ///< with replicates: sigma^2
     SensitivityIndex interactions;  ///< with replicates: of any order; interactions + scatter = unexplained
-    SensitivityIndex pairs;         ///< sampled points without replicates: interactions of two factors
-    SensitivityIndex remainder;     ///< as for pairs: scatter and higher interactions; pairs + remainder = unexplained
     PureError pure;
     std::int64_t points = 0;       ///< points with a value
     std::size_t coefficients = 0;  ///< of the additive model

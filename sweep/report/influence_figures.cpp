@@ -97,9 +97,7 @@ std::vector<std::pair<std::string, double>> parts_of(const stats::VarianceSplit&
     std::vector<std::pair<std::string, double>> parts;
     for (const auto& [name, part] : {std::pair{"main effects", split.main_effects},
                                      {"interactions", split.interactions},
-                                     {"interactions of two", split.pairs},
-                                     {"scatter of single runs", split.scatter},
-                                     {"scatter and higher interactions", split.remainder}})
+                                     {"scatter of single runs", split.scatter}})
         if (std::isfinite(part.value)) parts.emplace_back(name, part.value);
     if (parts.size() == 1 && std::isfinite(split.unexplained.value))
         parts.emplace_back("unexplained", split.unexplained.value);

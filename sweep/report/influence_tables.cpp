@@ -176,8 +176,8 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
               {"unexplained", index_json(split.unexplained)},
               {"interactions", index_json(split.interactions)},
               {"scatter", index_json(split.scatter)},
-              {"interactions_of_two", index_json(split.pairs)},
-              {"scatter_and_higher", index_json(split.remainder)},
+              {"interactions_of_two", nullptr},  // what a model of the response says, under "model"
+              {"scatter_and_higher", nullptr},
               {"pure_error", split.pure.variance},
               {"pure_error_freedom", split.pure.freedom}}},
             {"notes", influence.notes}};

@@ -109,9 +109,7 @@ Json page_json(const Influence& influence) {
                {{"main_effects", drawn(split.main_effects.value)},
                 {"unexplained", drawn(split.unexplained.value)},
                 {"interactions", drawn(split.interactions.value)},
-                {"scatter", drawn(split.scatter.value)},
-                {"pairs", drawn(split.pairs.value)},
-                {"remainder", drawn(split.remainder.value)}}},
+                {"scatter", drawn(split.scatter.value)}}},
               {"unexplained", unexplained_text(influence)}});
 }
 

@@ -115,8 +115,8 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
     }
     if (const auto carriers = check.of(*check.held_back).carriers)
         return fmt::format("{} has no error yet: it rests on {:.0f} of the {} values at {} points, {:.0f} are needed",
-                           stats::to_string(*check.held_back), *carriers, check.count, check.points,
-                           stats::fewest_carriers(*check.held_back));
+                           stats::to_string(*check.held_back), carriers->count, check.count, check.points,
+                           carriers->needed);
     return fmt::format("{} is undefined after {} points ({} values)", measure_name(*check.held_back, settings),
                        check.points, check.count);
 }

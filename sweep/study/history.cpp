@@ -163,9 +163,9 @@ void warn_of_few(History& history, const Responses& responses) {
                         history.all.runs, 100 * stats::largest_unseen_share(history.all.runs)));
     for (const auto statistic : {Statistic::g1, Statistic::kurtosis})
         if (const auto carriers = history.all.of(statistic).carriers)
-            history.warnings.push_back(fmt::format(
-                "{} has no error yet: it rests on {:.0f} of the {} values, {:.0f} are needed",
-                stats::to_string(statistic), *carriers, history.all.count, stats::fewest_carriers(statistic)));
+            history.warnings.push_back(
+                fmt::format("{} has no error yet: it rests on {:.0f} of the {} values, {:.0f} are needed",
+                            stats::to_string(statistic), carriers->count, history.all.count, carriers->needed));
 }
 
 void warn(History& history, const Responses& responses, const ResponseColumn& response) {

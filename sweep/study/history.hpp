@@ -11,8 +11,8 @@
 namespace grainsweep::study {
 
 struct History {
-    stats::ConvergenceSettings settings;  ///< of the campaign; else of the default rule, or of all_change if the
-                                          ///< default cannot be used
+    stats::ConvergenceSettings settings;    ///< of the campaign; else of the default rule, or of all_change if the
+                                            ///< default cannot be used
     bool has_rule = false;                  ///< the campaign gives a rule
     std::vector<stats::Checkpoint> checks;  ///< one per complete block of the settled prefix
     /// All settled points: the numbers to quote. If the points are no multiple of the block, it is shown but not

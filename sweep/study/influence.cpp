@@ -178,10 +178,10 @@ stats::VarianceSplit split_of(const Responses& responses, std::span<const double
         const auto& factor = responses.factors[j];
         for (std::size_t row = 0; row < responses.settled; ++row) coordinates[j].push_back(factor.coordinate(row));
         const bool levels = lattice || !factor.continuous();
-        factors.push_back({coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
-                           levels ? 0
-                                  : std::clamp<std::size_t>(known.size() / (5 * d), 2,
-                                                            std::min(most_pieces, most_coefficients / d))});
+        factors.push_back(
+            {coordinates[j], levels ? 0
+                                    : std::clamp<std::size_t>(known.size() / (5 * d), 2,
+                                                              std::min(most_pieces, most_coefficients / d))});
     }
     return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
 }
@@ -289,12 +289,6 @@ std::string unexplained_text(const Influence& influence) {
             "freedom)",
             text, share_text(split.interactions), share_text(split.scatter), std::sqrt(split.pure.variance),
             split.pure.freedom);
-    }
-    if (std::isfinite(split.pairs.value)) {
-        return fmt::format(
-            "{}: interactions of two factors {}, scatter of single runs and higher interactions {}; replicates would "
-            "tell these apart",
-            text, share_text(split.pairs), share_text(split.remainder));
     }
     return text + ": interactions and scatter of single runs, which replicates would tell apart";
 }

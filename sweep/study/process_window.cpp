@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t candidates_of_next = 192, points_of_front = 12;
 constexpr std::size_t points_about_best = 64, rounds_about_best = 8;
 constexpr double first_reach = 0.15;
+constexpr std::size_t share_of_doubted = 4;  // of the settings searched, one in so many
 
 /// The best of the judged points, improved by points about it.
 std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& question, std::span<const BoxPoint> points,
@@ -96,6 +97,25 @@ std::vector<double> gains(const WindowQuestion& question, std::span<const Judgem
     if (!objective.empty()) return stats::expected_improvement(objective, probability, request.maximise);
     for (double& p : probability) p = std::min(p, 1 - p);  // where the condition is least decided
     return probability;
+}
+
+/// 95 % half-width of a share of the box: of counting, and for each model of how far the share moves if its mean lies
+/// everywhere at the same end of its interval.
+double share_error(const WindowQuestion& question, std::span<const Judgement> judged, double share) {
+    const auto doubted = judged.first(judged.size() / share_of_doubted);
+    double below = 0, above = 0;
+    for (std::size_t k = 0; k < question.models().size() && !doubted.empty(); ++k) {
+        const auto at = [&](std::size_t end) {
+            const auto inside = std::ranges::count_if(
+                doubted, [&](const Judgement& one) { return question.meets(one.at_ends[2 * k + end]); });
+            return static_cast<double>(inside) / static_cast<double>(doubted.size());
+        };
+        const auto [low, high] = std::minmax({at(0), at(1)});
+        below = std::hypot(below, std::max(share - low, 0.0));
+        above = std::hypot(above, std::max(high - share, 0.0));
+    }
+    return std::hypot(std::max(below, above),
+                      1.96 * std::sqrt(share * (1 - share) / static_cast<double>(judged.size())));
 }
 
 /// NaN, averaged over, is the same as NaN.
@@ -196,7 +216,7 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     window.answers = question.answers();
     window.objective_is_factor = question.objective_is_factor();
     for (const auto& point : points) window.searched.push_back(point.setting);
-    auto judged = question.judge(window.searched);
+    auto judged = question.judge(window.searched, window.searched.size() / share_of_doubted);
 
     if (std::ranges::none_of(judged, [](const auto& one) { return one.answers >= 0.5; }))
         throw campaign::wrong_question("window", "",
@@ -208,8 +228,7 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     };
     window.share_failed = share([&](const Judgement& one) { return one.answers < 1 - request.risk; });
     window.share_of_box = share([&](const Judgement& one) { return question.meets(one); });
-    window.share_error =
-        std::sqrt(window.share_of_box * (1 - window.share_of_box) / static_cast<double>(judged.size()));
+    window.share_error = share_error(question, judged, window.share_of_box);
     auto [best, seen] = improved(question, points, judged);
     (question.meets(best) ? window.best : window.surest) = best;
     find_front(window, question, request, judged);

@@ -37,7 +37,7 @@ struct Window {
     double risk = 0.05;                  ///< of WindowRequest
     std::vector<Setting> searched;       ///< settings searched in the box
     double share_of_box = 0;             ///< share of the searched points with P >= 1 - risk
-    double share_error = 0;              ///< standard error of that share: sqrt(s (1 - s)/n), an upper bound for Sobol
+    double share_error = 0;              ///< its 95 % half-width, with the errors of the models
     double share_failed = 0;             ///< share of the searched points where P(answer) is below 1 - risk
     std::optional<Judgement> best;       ///< best setting with P >= 1 - risk; empty: there is no such setting
     std::optional<Judgement> surest;     ///< setting of largest P, if there is no best

@@ -125,6 +125,16 @@ std::size_t ObservableModel::cases() const {
     return std::visit([](const auto& one) { return one.quality().cases; }, model);
 }
 
+std::vector<double> ObservableModel::scores() const {
+    std::vector<double> scores;
+    if (const auto* response = std::get_if<stats::ResponseModel>(&model)) {
+        const auto& quality = response->quality();
+        for (std::size_t i = 0; i < quality.residuals.size(); ++i)
+            scores.push_back(quality.residuals[i] / quality.errors[i]);
+    }
+    return scores;
+}
+
 double ObservableModel::freedom() const {
     if (const auto* response = std::get_if<stats::ResponseModel>(&model)) return response->freedom();
     return std::numeric_limits<double>::infinity();

@@ -43,6 +43,8 @@ struct ObservableModel {
     [[nodiscard]] bool is_probability() const { return std::holds_alternative<stats::ProbabilityModel>(model); }
     /// Returns the degrees of freedom of its predictions, the same at every setting.
     [[nodiscard]] double freedom() const;
+    /// Returns residuals of left-out cases over their errors; none of a probability.
+    [[nodiscard]] std::vector<double> scores() const;
 };
 
 /// Treatment of a response that the factors hardly explain.

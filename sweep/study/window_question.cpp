@@ -1,5 +1,6 @@
 #include "sweep/study/window_question.hpp"
 
+#include "stats/confidence.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <algorithm>
@@ -16,11 +17,19 @@ bool is_finite(const Judgement& one) {
                                [](const auto& p) { return std::isfinite(p.mean) && std::isfinite(p.mean_error); });
 }
 
+/// The prediction if the mean is known to be `end`.
+stats::Prediction known_mean(stats::Prediction p, double end) {
+    p.mean_error = 0;
+    p.mean = end;
+    if (p.latent) p.latent = {stats::normal_quantile(std::clamp(end, 1e-12, 1 - 1e-12)), 0};
+    return p;
+}
+
 /// Mean over settings of one weight, see the header.
 stats::Prediction mean_prediction(std::span<const Judgement> behind, std::size_t model) {
     const auto n = static_cast<double>(behind.size());
     stats::Prediction sum{.mean = 0, .mean_error = 0, .scatter = 0};
-    double squares = 0;
+    double squares = 0, even = 0;
     for (const auto& one : behind) {
         const auto& p = one.predictions[model];
         sum.mean += p.mean / n;
@@ -30,9 +39,12 @@ stats::Prediction mean_prediction(std::span<const Judgement> behind, std::size_t
     }
     for (const auto& one : behind) {
         const auto& p = one.predictions[model];
-        squares += (p.scatter * p.scatter + (p.mean - sum.mean) * (p.mean - sum.mean)) / n;
+        const double moved = (p.mean - sum.mean) * (p.mean - sum.mean);
+        squares += (p.scatter * p.scatter + moved) / n;
+        even += (p.even_scatter * p.even_scatter + moved) / n;
     }
     sum.scatter = std::sqrt(squares);
+    sum.even_scatter = std::sqrt(even);
     return sum;
 }
 
@@ -54,8 +66,12 @@ WindowQuestion::WindowQuestion(const ModelCases& cases, const WindowRequest& req
             if (name < cases.observables.size()) add_model(name, learned);
     if (models_.empty()) return;
     std::vector<double> freedom;
-    for (const auto& model : models_) freedom.push_back(model.freedom());
-    errors_.emplace(freedom);
+    std::vector<std::vector<double>> scores;
+    for (const auto& model : models_) {
+        freedom.push_back(model.freedom());
+        if (request.judged == stats::Judged::single_run) scores.push_back(model.scores());
+    }
+    errors_.emplace(freedom, scores);
 }
 
 /// An observable goes before a factor of the same name, as in the condition.
@@ -85,18 +101,18 @@ void WindowQuestion::add_model(std::size_t name, std::span<const ObservableModel
     name_of_model_.push_back(name);
 }
 
-std::vector<Judgement> WindowQuestion::judge(std::span<const Setting> settings) const {
-    return judge_by(models_, settings);
+std::vector<Judgement> WindowQuestion::judge(std::span<const Setting> settings, std::size_t doubted) const {
+    return judge_by(models_, settings, doubted);
 }
 
-std::vector<Judgement> WindowQuestion::judge_by(std::span<const ObservableModel> by,
-                                                std::span<const Setting> settings) const {
-    if (!space_.averages()) return judge_each(by, settings);
+std::vector<Judgement> WindowQuestion::judge_by(std::span<const ObservableModel> by, std::span<const Setting> settings,
+                                                std::size_t doubted) const {
+    if (!space_.averages()) return judge_each(by, settings, doubted);
     std::vector<Judgement> judged;
     std::vector<Setting> behind;
     std::vector<std::vector<std::size_t>> sizes;
     const auto judge_those = [&] {
-        const auto each = judge_each(by, behind);
+        const auto each = judge_each(by, behind, judged.size() < doubted ? behind.size() : 0);
         std::size_t from = 0;
         for (const auto& of_one : sizes) {
             const auto count = std::accumulate(of_one.begin(), of_one.end(), std::size_t{0});
@@ -119,7 +135,7 @@ std::vector<Judgement> WindowQuestion::judge_by(std::span<const ObservableModel>
 }
 
 std::vector<Judgement> WindowQuestion::judge_each(std::span<const ObservableModel> by,
-                                                  std::span<const Setting> settings) const {
+                                                  std::span<const Setting> settings, std::size_t doubted) const {
     std::vector<Judgement> judged(settings.size());
     const auto answers = answers_->at(settings);
     for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -144,7 +160,20 @@ std::vector<Judgement> WindowQuestion::judge_each(std::span<const ObservableMode
         else if (modelled_objective())
             one.objective = one.predictions.front();
     }
+    for (auto& one : std::span(judged).first(std::min(doubted, judged.size()))) add_ends(one);
     return judged;
+}
+
+void WindowQuestion::add_ends(Judgement& one) const {
+    const bool known = is_finite(one) && std::isfinite(one.answers);
+    for (std::size_t k = 0; k < one.predictions.size(); ++k) {
+        const auto predicted = one.predictions[k];
+        for (const double end : {predicted.mean_low(), predicted.mean_high()}) {
+            one.predictions[k] = known_mean(predicted, end);
+            one.at_ends.push_back(known ? one.answers * probability(one) : 0);
+        }
+        one.predictions[k] = predicted;
+    }
 }
 
 Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::size_t> sizes,
@@ -156,11 +185,15 @@ Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::
         from += size;
         if (size == 0) continue;
         double probability = 0, answers = 0, low = 0;
+        std::vector<double> ends(group.front().at_ends.size(), 0);
         for (const auto& each : group) {
             probability += each.probability / static_cast<double>(size);
             answers += each.answers / static_cast<double>(size);
             low += each.answers_low / static_cast<double>(size);
+            for (std::size_t e = 0; e < ends.size(); ++e) ends[e] += each.at_ends[e] / static_cast<double>(size);
         }
+        if (one.at_ends.empty()) one.at_ends = ends;
+        for (std::size_t e = 0; e < ends.size(); ++e) one.at_ends[e] = std::min(one.at_ends[e], ends[e]);
         one.probability = std::min(one.probability, probability);
         one.answers = std::min(one.answers, answers);
         one.answers_low = std::min(one.answers_low, low);
@@ -184,7 +217,7 @@ Setting WindowQuestion::least_known(std::span<const ObservableModel> by, const S
     if (!space_.averages()) return setting;
     std::vector<Setting> all;
     for (auto& group : space_.behind(setting)) std::ranges::move(group, std::back_inserter(all));
-    const auto judged = judge_each(by, all);
+    const auto judged = judge_each(by, all, 0);
     const auto unknown = [&](const Judgement& one) {
         return by.empty() ? -std::abs(one.probability - 0.5) : one.predictions.front().mean_error;
     };

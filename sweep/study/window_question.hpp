@@ -49,6 +49,9 @@ struct Judgement {
     bool believed = true;                        ///< an answer is more likely than a failure, and every feature is
                                                  ///< defined
     double probability = std::numeric_limits<double>::quiet_NaN();
+    /// Where asked for: the probability if the mean of a model is known, and lies at the lower and at the upper end of
+    /// its 95 % interval; two for each model.
+    std::vector<double> at_ends = {};
 };
 
 class WindowQuestion {
@@ -57,10 +60,11 @@ public:
     WindowQuestion(const ModelCases& cases, const WindowRequest& request, Admits admits,
                    std::span<const ObservableModel> learned = {}, std::shared_ptr<const Answers> answers = nullptr);
 
-    [[nodiscard]] std::vector<Judgement> judge(std::span<const Setting> settings) const;
+    /// Returns judgements, the first `doubted` of them with `at_ends`.
+    [[nodiscard]] std::vector<Judgement> judge(std::span<const Setting> settings, std::size_t doubted = 0) const;
     /// Returns the judgement of settings by the models in `by`, which are in the order of models().
     [[nodiscard]] std::vector<Judgement> judge_by(std::span<const ObservableModel> by,
-                                                  std::span<const Setting> settings) const;
+                                                  std::span<const Setting> settings, std::size_t doubted = 0) const;
     /// Returns the full setting of a window's setting (window_space.hpp) at which a case is most informative: the
     /// largest error of the first model, or the probability nearest to 1/2.
     [[nodiscard]] Setting least_known(std::span<const ObservableModel> by, const Setting& setting) const;
@@ -70,7 +74,8 @@ public:
     /// cases fail beyond a sharp border and the objective grows towards it, the best setting would be where P has just
     /// fallen to 1 - risk. One of 20 such settings lies beyond the border.
     [[nodiscard]] bool better(const Judgement& a, const Judgement& b) const;
-    [[nodiscard]] bool meets(const Judgement& one) const { return one.probability >= 1 - request_->risk; }
+    [[nodiscard]] bool meets(const Judgement& one) const { return meets(one.probability); }
+    [[nodiscard]] bool meets(double probability) const { return probability >= 1 - request_->risk; }
 
     [[nodiscard]] const WindowSpace& space() const { return space_; }
     [[nodiscard]] const std::shared_ptr<const Answers>& answers() const { return answers_; }
@@ -85,7 +90,8 @@ private:
     void find_objective(std::span<const ObservableModel> learned);
     void add_model(std::size_t name, std::span<const ObservableModel> learned);
     [[nodiscard]] std::vector<Judgement> judge_each(std::span<const ObservableModel> by,
-                                                    std::span<const Setting> settings) const;
+                                                    std::span<const Setting> settings, std::size_t doubted) const;
+    void add_ends(Judgement& one) const;
     [[nodiscard]] Judgement averaged(const Setting& setting, std::span<const std::size_t> sizes,
                                      std::span<const Judgement> behind) const;
     [[nodiscard]] double probability_given(const Judgement& one, std::size_t undefined) const;

@@ -144,7 +144,6 @@ void count_bins(const KnownIndices& known, std::int64_t n, std::int64_t sequence
 void count_splits(const KnownIndices& known, std::int64_t n, std::int64_t sequences, Range& range) {
     Tallies tallies;
     const double main = std::accumulate(known.first.begin(), known.first.end(), 0.0) * known.share;
-    const double pairs = std::accumulate(known.pairs.begin(), known.pairs.end(), 0.0) * known.share;
     for (std::uint64_t seed = 1; seed <= campaigns(); ++seed) {
         const auto campaign = ask(known, n, sequences, seed);
         std::vector<std::int64_t> points(campaign.values.size());
@@ -154,14 +153,11 @@ void count_splits(const KnownIndices& known, std::int64_t n, std::int64_t sequen
         for (std::size_t j = 0; j < known.dimensions; ++j) {
             for (std::size_t i = 0; i < points.size(); ++i)
                 columns[j].push_back(campaign.points[i * known.dimensions + j]);
-            factors.push_back(
-                {columns[j], true, std::clamp<std::size_t>(points.size() / (5 * known.dimensions), 2, 15)});
+            factors.push_back({columns[j], std::clamp<std::size_t>(points.size() / (5 * known.dimensions), 2, 15)});
         }
         const auto found = split_variance(points, factors, campaign.values, campaign.groups, false);
         tallies.add("main effects", found.main_effects, main);
         tallies.add("unexplained", found.unexplained, 1 - main);
-        tallies.add("pairs", found.pairs, pairs);
-        tallies.add("remainder", found.remainder, 1 - main - pairs);
     }
     tallies.widen(range);
     tallies.print(known.name, n, sequences > 1 ? "split, 8 sequences" : "split, 1 sequence");

@@ -225,7 +225,7 @@ TEST_F(Study, SensitivityTellsInteractionFromScatterWhereReplicatesAllow) {
     influence = influence_of(responses, responses.observable("y"));
     EXPECT_TRUE(std::isnan(influence.split.scatter.value));
     EXPECT_NEAR(influence.split.unexplained.value, 0.5, 2 * influence.split.unexplained.half_width);
-    EXPECT_THAT(unexplained_text(influence), HasSubstr("replicates would tell these apart"));
+    EXPECT_THAT(unexplained_text(influence), HasSubstr("which replicates would tell apart"));
     const auto json = tests::parsed(to_json(responses, responses.observable("y"), influence));
     EXPECT_TRUE(json["variance"]["scatter"]["value"].is_null());
     EXPECT_GT(json["variance"]["unexplained"]["error"], 0);

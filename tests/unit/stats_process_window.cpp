@@ -55,8 +55,12 @@ TEST(ProcessWindow, AConditionHoldsWithItsProbability) {
             predictions, [](auto y) { return y[0] >= 0.85 && y[1] >= 0.5 && y[1] <= 1.2; }, judged, errors);
         for (std::size_t i = 0; i < integrated.size(); ++i) {
             const Prediction &a = predictions[0][i], &b = predictions[1][i];
-            const double of_a = judged == Judged::mean ? a.mean_error : a.run_error();
-            const double of_b = judged == Judged::mean ? b.mean_error : b.run_error();
+            const auto error = [&](const Prediction& p, std::size_t model) {
+                if (judged == Judged::mean) return p.mean_error;
+                const double widest = errors.widest(model) * p.scatter;
+                return std::hypot(p.mean_error, std::min(widest, std::max(p.scatter, p.even_scatter)));
+            };
+            const double of_a = error(a, 0), of_b = error(b, 1);
             EXPECT_NEAR(integrated[i],
                         probability(a, of_a, 0.85) * (probability(b, of_b, 0.5) - probability(b, of_b, 1.2)), 0.01);
         }
@@ -65,6 +69,39 @@ TEST(ProcessWindow, AConditionHoldsWithItsProbability) {
     EXPECT_THROW((void)probability_of(
                      one, [](auto) { return true; }, Judged::mean, errors),
                  std::invalid_argument);
+}
+
+TEST(ProcessWindow, APromiseOfRunsTrustsNoSmallLocalScatter) {
+    // chi-squared of 10 degrees of freedom is below 4.865 in 10 %.
+    const SampledErrors errors(std::vector{10.0});
+    EXPECT_NEAR(errors.widest(0), std::sqrt(10 / 4.86518), 1e-5);
+    const auto promised = [&](double scatter, double even) {
+        Prediction p{.mean = 1, .mean_error = 0, .scatter = scatter, .freedom = 10};
+        p.even_scatter = even;
+        const std::vector<std::vector<Prediction>> one{{p}};
+        return probability_of(
+                   one, [](auto y) { return y[0] >= 0; }, Judged::single_run, errors)
+            .front();
+    };
+    const auto expected = [](double scatter) { return boost::math::cdf(boost::math::students_t(10), 1 / scatter); };
+    EXPECT_NEAR(promised(0.4, 0.5), expected(0.5), 0.002) << "as everywhere";
+    EXPECT_NEAR(promised(0.5, 0.4), expected(0.5), 0.002) << "larger here";
+    EXPECT_NEAR(promised(0.2, 0.9), expected(0.2 * std::sqrt(10 / 4.86518)), 0.002) << "clearly smaller here";
+}
+
+TEST(ProcessWindow, ErrorsOfRunsNeedNotBeNormal) {
+    // Scores of an exponential distribution, mean 0 and variance 1: below 2 in 1 - exp(-3).
+    std::vector<double> scores;
+    for (int i = 0; i < 2000; ++i) scores.push_back(-std::log(1 - (i + 0.5) / 2000) - 1);
+    const SampledErrors errors(std::vector{200.0}, std::vector{scores});
+    const std::vector<std::vector<Prediction>> one{{{.mean = 0, .mean_error = 0, .scatter = 1, .freedom = 200}}};
+    const auto below = [&](double limit) {
+        return probability_of(
+                   one, [&](auto y) { return y[0] <= limit; }, Judged::single_run, errors)
+            .front();
+    };
+    EXPECT_NEAR(below(2), 1 - std::exp(-3.0), 0.002);
+    EXPECT_NEAR(1 - below(-2), boost::math::cdf(boost::math::students_t(200), 2.0), 0.002) << "the worse of the two";
 }
 
 TEST(ProcessWindow, ExpectedImprovementIsItsIntegral) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace grainsweep::tests::stats_sensitivity_test {
@@ -104,6 +105,17 @@ TEST(FirstOrder, WhatBinsLoseAndScatterAddsIsInTheBars) {
     }
     EXPECT_GE(waves, 88);
     EXPECT_GE(nothing, 88);
+}
+
+TEST(FirstOrder, AnEffectThatTurnsWithinItsBinsIsInTheBars) {
+    // Two periods in four bins: the means of the bins are equal, the index is 1.
+    const auto set = ask_design("random", 1, {{"points", 64}});
+    std::vector<double> values;
+    for (std::size_t i = 0; i < set.size(); ++i)
+        values.push_back(std::pow(std::sin(std::numbers::pi * (2 * set.point(i)[0] - 1)), 2));
+    const auto index = first_order_indices(set.coordinates, 1, values, {}, 4).first[0];
+    EXPECT_LT(index.value, 0.3);
+    EXPECT_GT(index.value + index.half_width, 0.9);
 }
 
 TEST(Saltelli, IncompleteRowsAreLeftOutWhole) {

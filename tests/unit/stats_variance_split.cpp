@@ -46,7 +46,7 @@ struct Rows {
     }
     [[nodiscard]] VarianceSplit split(std::size_t pieces, bool all_points = false) const {
         std::vector<SplitFactor> factors;
-        for (const auto& column : columns) factors.push_back({column, true, pieces});
+        for (const auto& column : columns) factors.push_back({column, pieces});
         return split_variance(points, factors, values, groups, all_points);
     }
 };
@@ -108,7 +108,7 @@ TEST(VarianceSplitOfASample, CoversTheTruthAsOftenAsItSays) {
     EXPECT_GE(scatter, 88);
 }
 
-TEST(VarianceSplitOfASample, SequencesWithoutReplicatesShowPairsOfFactors) {
+TEST(VarianceSplitOfASample, WithoutReplicatesInteractionsAreNotToldFromScatter) {
     const auto set = ask_design("halton", 3, {{"points", 1600}, {"sequences", 8}});
     const double c = std::sqrt(6.0);
     const Rows rows(set, 1, std::sqrt(1.0 / 12), 5, [&](auto u) { return bilinear(u, c); });
@@ -116,25 +116,6 @@ TEST(VarianceSplitOfASample, SequencesWithoutReplicatesShowPairsOfFactors) {
     EXPECT_TRUE(std::isnan(split.scatter.value));
     EXPECT_TRUE(std::isnan(split.interactions.value));
     EXPECT_NEAR(split.unexplained.value, 3.0 / 7, 2 * split.unexplained.half_width);
-    EXPECT_NEAR(split.pairs.value, 1.0 / 7, 2 * split.pairs.half_width);
-    EXPECT_NEAR(split.remainder.value, 2.0 / 7, 2 * split.remainder.half_width);
-    EXPECT_LT(split.pairs.half_width, 0.05);
-    EXPECT_NEAR(split.pairs.value + split.remainder.value, split.unexplained.value, 1e-12);
-}
-
-TEST(VarianceSplitOfASample, InteractionsOfHigherDegreeAreNoScatter) {
-    // Ishigami: all interaction is of x1 and x3, sin(pi x1) x3^4, a share of 0.2437; nothing is left.
-    for (const std::int64_t n : {128, 512, 1024}) {
-        const auto set = ask_design("halton", 3, {{"points", n}, {"sequences", std::int64_t{8}}});
-        const Rows rows(set, 1, 0, 1, [](auto u) {
-            const auto x = [&](std::size_t j) { return std::numbers::pi * (2 * u[j] - 1); };
-            return std::sin(x(0)) + 7 * std::pow(std::sin(x(1)), 2) + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
-        });
-        const auto split = rows.split(static_cast<std::size_t>(n == 128 ? 8 : 15));
-        EXPECT_LE(std::abs(split.pairs.value - 0.2437), split.pairs.half_width) << n;
-        EXPECT_LE(std::abs(split.remainder.value), split.remainder.half_width) << n;
-        EXPECT_LT(split.remainder.half_width, n > 128 ? 0.1 : 0.4);
-    }
 }
 
 TEST(VarianceSplitOfASample, AnAdditiveResponseWithoutScatterIsExplained) {
@@ -171,14 +152,13 @@ TEST(VarianceSplitOfALattice, WithoutReplicatesHasAnExactRestAndNoError) {
     EXPECT_NEAR(split.unexplained.value, c * c * v * v / (2 * v + c * c * v * v), 1e-12);
     EXPECT_TRUE(std::isnan(split.unexplained.half_width));
     EXPECT_TRUE(std::isnan(split.scatter.value));
-    EXPECT_TRUE(std::isnan(split.pairs.value));
 }
 
 TEST(VarianceSplitOfALattice, LevelsWithoutOrderAndMissingRowsAreAnsweredToo) {
     const std::vector<double> word = {0, 0, 1, 1, 2, 2}, number = {0, 1, 0, 1, 0, 1};
     const std::vector<std::int64_t> points = {0, 1, 2, 3, 4, 5};
     const std::vector<std::size_t> groups(6, 0);
-    const std::vector<SplitFactor> factors = {{word, false, 0}, {number, true, 0}};
+    const std::vector<SplitFactor> factors = {{word, 0}, {number, 0}};
     const std::vector<double> additive = {1, 2, 7, 8, missing, 4};
     EXPECT_NEAR(split_variance(points, factors, additive, groups, true).unexplained.value, 0, 1e-12);
     EXPECT_EQ(split_variance(points, factors, additive, groups, true).points, 5);

@@ -128,8 +128,8 @@ function influenceFigure(response) {
 
 // Parts of the variance, as one bar.
 function varianceBar(variance) {
-  const parts = [["main effects", variance.main_effects, "one"], ["interactions", variance.interactions, "two"], ["interactions of two", variance.pairs, "two"],
-    ["scatter of single runs", variance.scatter, "four"], ["scatter and higher interactions", variance.remainder, "four"]].filter(([, share]) => share !== null);
+  const parts = [["main effects", variance.main_effects, "one"], ["interactions", variance.interactions, "two"],
+    ["scatter of single runs", variance.scatter, "four"]].filter(([, share]) => share !== null);
   if (parts.length === 1 && variance.unexplained !== null) parts.push(["unexplained", variance.unexplained, "four"]);
   if (parts.length < 2) return null;
   const percent = (share) => `${(100 * Math.max(0, share)).toFixed(share < 0.1 ? 1 : 0)} %`;

@@ -1,0 +1,108 @@
+#include "stats/response/beyond_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace grainsweep::stats::response {
+namespace {
+
+constexpr double beyond_unforeseen = 3, unforeseen_far_out = 0.3;
+
+/// The cases in the order of each feature.
+std::vector<std::vector<Eigen::Index>> orders_of(const Eigen::MatrixXd& x) {
+    std::vector<std::vector<Eigen::Index>> orders;
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+        auto& order = orders.emplace_back(static_cast<std::size_t>(x.rows()));
+        std::iota(order.begin(), order.end(), Eigen::Index{0});
+        std::ranges::stable_sort(order, {}, [&](Eigen::Index i) { return x(i, j); });
+    }
+    return orders;
+}
+
+/// Returns whether the points q end farther from the outermost case of a feature than that is from the eighth.
+bool reaches_far_out(const Eigen::MatrixXd& x, const std::vector<std::vector<Eigen::Index>>& orders,
+                     const Eigen::MatrixXd& q) {
+    const auto inner = std::min<std::size_t>(2 * outermost, static_cast<std::size_t>(x.rows())) - 1;
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+        const auto& order = orders[static_cast<std::size_t>(j)];
+        const double low = x(order.front(), j), high = x(order.back(), j);
+        const double from_low = x(order[inner], j), from_high = x(order[order.size() - 1 - inner], j);
+        if (low - q.col(j).minCoeff() > from_low - low || q.col(j).maxCoeff() - high > high - from_high) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+RawMoments closure(double m, double v) {
+    const double m2 = m * m;
+    return {m, m2 + v, m2 * m + 3 * m * v, m2 * m2 + 6 * m2 * v + 3 * v * v};
+}
+
+double dot(const RawMoments& gradient, const RawMoments& moments) {
+    double sum = 0;
+    for (std::size_t p = 0; p < gradient.size(); ++p) sum += gradient[p] * moments[p];
+    return sum;
+}
+
+/// From the moments 1, 3, 15, 105 of e^2, e^4, e^6, e^8.
+double normal_variance(const RawMoments& gradient, double m, double s) {
+    const double m2 = m * m;
+    const double c1 = s * (gradient[0] + 2 * gradient[1] * m + 3 * gradient[2] * m2 + 4 * gradient[3] * m2 * m);
+    const double c2 = s * s * (gradient[1] + 3 * gradient[2] * m + 6 * gradient[3] * m2);
+    const double c3 = s * s * s * (gradient[2] + 4 * gradient[3] * m);
+    const double c4 = s * s * s * s * gradient[3];
+    return c1 * c1 + 2 * c2 * c2 + 15 * c3 * c3 + 96 * c4 * c4 + 6 * c1 * c3 + 24 * c2 * c4;
+}
+
+BeyondCases::BeyondCases(std::span<const double> z, std::size_t sequences) : cases_(z.size()) {
+    std::vector<double> sorted(z.begin(), z.end());
+    std::ranges::sort(sorted);
+    for (const bool upper : {false, true})
+        if (auto tail = Tail::of(sorted, upper, sequences)) tails_.push_back(std::move(*tail));
+}
+
+void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v) {
+    const auto orders = orders_of(x);
+    far_out_ = far_out_ || reaches_far_out(x, orders, q);
+    std::vector<std::vector<Eigen::Index>> edges;
+    const auto count = std::min<std::size_t>(outermost, static_cast<std::size_t>(x.rows()));
+    for (const auto& order : orders) {
+        edges.emplace_back(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+        edges.emplace_back(order.end() - static_cast<std::ptrdiff_t>(count), order.end());
+    }
+    const Eigen::MatrixXd means = leave_folds_out(model, edges).predict(model, model.points);
+    const auto n = static_cast<double>(x.rows()), of_edge = static_cast<double>(count);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        Edge& edge = edges_.emplace_back();
+        edge.noise = std::sqrt(v);
+        double missed = 0, all = 0;
+        for (const Eigen::Index k : edges[e]) {
+            const double z = model.values(k), m = means(k, static_cast<Eigen::Index>(e));
+            const RawMoments seen = closure(z, 0), expected = closure(m, v);
+            for (std::size_t p = 0; p < seen.size(); ++p) edge.missed[p] += (seen[p] - expected[p]) / n;
+            edge.predicted.push_back(m);
+            missed += (z - m) * (z - m);
+            all += z * z;
+        }
+        const double beyond_noise = std::max(missed - 2 * of_edge * v, 0.0) / std::max(all, of_edge);
+        unforeseen_ = std::max(unforeseen_, std::min(std::sqrt(beyond_noise), 1.0));
+    }
+}
+
+double BeyondCases::half_width(const RawMoments& gradient) const {
+    double by_edges = 0, by_tails = 0;
+    const auto n = static_cast<double>(cases_);
+    for (const Edge& edge : edges_) {
+        double by_noise = 0;
+        for (const double m : edge.predicted) by_noise += normal_variance(gradient, m, edge.noise) / (n * n);
+        by_edges += std::max(std::pow(dot(gradient, edge.missed), 2) - by_noise, 0.0) / 2;  // of two models
+    }
+    for (const Tail& tail : tails_)
+        by_tails += tail.variance_of_mean([&](double z) { return dot(gradient, closure(z, 0)); });
+    const double left = std::clamp(beyond_unforeseen * unforeseen_, far_out_ ? unforeseen_far_out : 0, 1.0);
+    return std::hypot(std::sqrt(by_edges), left * tail_95 * std::sqrt(by_tails));
+}
+
+}  // namespace grainsweep::stats::response

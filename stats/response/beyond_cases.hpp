@@ -1,0 +1,61 @@
+// What a model of the response as control variate (stats/assisted_moments.hpp) says beyond the outermost cases, and its
+// error in the moments E[z^p].
+//
+//   closure   g_p = E[z^p | m, v] = m, m^2 + v, m^3 + 3 m v, m^4 + 6 m^2 v + 3 v^2      (normal z of mean m, variance
+//   v) edges     |gradient . sum over the 4 outermost cases of an end of a feature of (z^p - g_p)/n|, g_p from all
+//   others tails     u times the error that tails without a visible end give a sample (stats/tail.hpp),
+//             u = 3 times the missed part of the 4 cases: rms of z - m over rms of z, without noise; at least 0.3 if
+//             the points of the integral reach farther beyond an outermost case than that is from the eighth
+#pragma once
+
+#include "stats/moment_statistics.hpp"
+#include "stats/response/kriging.hpp"
+#include "stats/tail.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace grainsweep::stats::response {
+
+/// Returns E[z^p | m, v], p = 1 ... 4.
+[[nodiscard]] RawMoments closure(double m, double v);
+[[nodiscard]] double dot(const RawMoments& gradient, const RawMoments& moments);
+/// Returns Var[sum_p gradient_p (m + s e)^p] for a standard normal e.
+[[nodiscard]] double normal_variance(const RawMoments& gradient, double m, double s);
+
+/// Number of cases of an edge.
+inline constexpr std::size_t outermost = 4;
+
+class BeyondCases {
+public:
+    /// Takes standardised responses of so many sequences.
+    BeyondCases(std::span<const double> z, std::size_t sequences);
+
+    /// Adds one of two models: `x`, features of its cases; `q`, of the points of the integral; `v`, its noise variance.
+    void add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v);
+
+    /// Returns whether a tail of the responses has no visible end.
+    [[nodiscard]] bool endless() const { return !tails_.empty(); }
+    /// Returns the missed part of the outermost cases, the largest over the edges.
+    [[nodiscard]] double unforeseen() const { return unforeseen_; }
+    /// Returns the 95 % half-width of gradient . M by both errors of the header.
+    [[nodiscard]] double half_width(const RawMoments& gradient) const;
+
+private:
+    struct Edge {
+        RawMoments missed{};  ///< sum of (z^p - g_p)/n
+        std::vector<double> predicted;
+        double noise = 0;  ///< standard deviation of a single run
+    };
+
+    std::size_t cases_;
+    std::vector<Tail> tails_;
+    std::vector<Edge> edges_;
+    double unforeseen_ = 0;
+    bool far_out_ = false;
+};
+
+}  // namespace grainsweep::stats::response
