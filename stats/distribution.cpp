@@ -1,9 +1,11 @@
 #include "stats/distribution.hpp"
 
 #include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/extreme_value.hpp>
 #include <boost/math/distributions/lognormal.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/triangular.hpp>
+#include <boost/math/distributions/weibull.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +29,14 @@ bm::normal_distribution<double, Policy> in_boost(const Normal& form) {
 
 bm::lognormal_distribution<double, Policy> in_boost(const Lognormal& form) {
     return {std::log(form.median), form.sigma};
+}
+
+bm::weibull_distribution<double, Policy> in_boost(const Weibull& form) {
+    return {form.shape, form.scale};
+}
+
+bm::extreme_value_distribution<double, Policy> in_boost(const Gumbel& form) {
+    return {form.location, form.scale};
 }
 
 bm::triangular_distribution<double, Policy> in_boost(const Triangular& form) {
@@ -58,6 +68,8 @@ struct TailsOf {
     double x;
     Tails operator()(const Normal& form) const { return tails_at(in_boost(form), x); }
     Tails operator()(const Lognormal& form) const { return x <= 0 ? Tails{0, 1} : tails_at(in_boost(form), x); }
+    Tails operator()(const Weibull& form) const { return x <= 0 ? Tails{0, 1} : tails_at(in_boost(form), x); }
+    Tails operator()(const Gumbel& form) const { return tails_at(in_boost(form), x); }
     Tails operator()(const Triangular& form) const {
         return tails_at(in_boost(form), std::clamp(x, form.low, form.high));
     }
@@ -74,6 +86,8 @@ struct QuantileOf {
     Tails tails;
     double operator()(const Normal& form) const { return quantile_at(in_boost(form), tails); }
     double operator()(const Lognormal& form) const { return quantile_at(in_boost(form), tails); }
+    double operator()(const Weibull& form) const { return quantile_at(in_boost(form), tails); }
+    double operator()(const Gumbel& form) const { return quantile_at(in_boost(form), tails); }
     double operator()(const Triangular& form) const { return quantile_at(in_boost(form), tails); }
     double operator()(const Beta& form) const {
         return form.low + (form.high - form.low) * quantile_at(in_boost(form), tails);
@@ -104,7 +118,8 @@ Distribution::Distribution(Form form, double low, double high) : form_(std::move
 }
 
 bool Distribution::has_ends() const {
-    return !std::holds_alternative<Normal>(form_) && !std::holds_alternative<Lognormal>(form_);
+    return !std::holds_alternative<Normal>(form_) && !std::holds_alternative<Lognormal>(form_) &&
+           !std::holds_alternative<Weibull>(form_) && !std::holds_alternative<Gumbel>(form_);
 }
 
 std::pair<double, double> Distribution::range() const {

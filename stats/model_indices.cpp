@@ -170,21 +170,178 @@ std::optional<ModelIndices::Noise> noise_of(const Versions& versions, const Base
     if (noise.empty() || controls.empty()) return std::nullopt;
     const Eigen::MatrixXd moved = versions.at(base.exchanged(base.a, base.b, noise), base.dimensions);
     const Eigen::ArrayXXd each = (moved - a).array().square() / 2;
-    ModelIndices::Noise found{whole.index_of(means_of(each)), {}};
+    const Part all = means_of(each);
+    ModelIndices::Noise found{whole.index_of(all), {}};
     constexpr std::size_t eighths = 8;
     for (const auto j : controls) {
         const auto levels = j < roles.levels.size() ? roles.levels[j] : 0;
         const auto parts = static_cast<double>(levels > 0 ? levels : eighths);
-        ModelIndices::Calmest least{j, 0, 1, found.total};
+        ModelIndices::Calmest least{j, 0, 1, found.total, {0, 0}};
         for (double part = 0; part < parts; ++part) {
             const double from = part / parts, to = (part + 1) / parts;
-            const auto left = whole.index_of(means_within(each, base, j, from, to));
-            if (left.value < least.left.value) least = {j, from, to, left};
+            const Part within = means_within(each, base, j, from, to);
+            const auto left = whole.index_of(within);
+            if (left.value < least.left.value) least = {j, from, to, left, whole.index_of(all - within)};
         }
         found.controls.push_back(least);
     }
     std::ranges::stable_sort(found.controls, {}, [](const auto& one) { return one.left.value; });
     return found;
+}
+
+/// Rows of a sample that are nearest to a row in some of its columns.
+class NearRows {
+public:
+    NearRows(const JointSample& sample, std::vector<std::size_t> columns) : sample_(sample) {
+        for (const auto c : columns) {
+            const auto values = sample.column(c);
+            const Eigen::Map<const Eigen::ArrayXd> x(values.data(), static_cast<Eigen::Index>(values.size()));
+            const double sd = std::sqrt((x - x.mean()).square().mean());
+            scaled_.emplace_back(sd > 0 ? Eigen::ArrayXd((x - x.mean()) / sd) : Eigen::ArrayXd::Zero(x.size()));
+        }
+        near_.resize(sample.rows());
+    }
+    /// One of the nearest rows, by 64 random bits; the row itself if it is the only one.
+    [[nodiscard]] std::size_t one_near(std::size_t row, std::uint64_t bits) {
+        auto& near = near_[row];
+        if (near.empty()) near = nearest(row);
+        return near[bits % near.size()];
+    }
+
+private:
+    static constexpr std::size_t neighbours = 4;
+
+    [[nodiscard]] std::vector<std::size_t> nearest(std::size_t row) const {
+        Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(sample_.rows()));
+        for (const auto& x : scaled_) squares += (x - x(static_cast<Eigen::Index>(row))).square();
+        std::vector<std::size_t> order;
+        for (std::size_t i = 0; i < sample_.rows(); ++i)
+            if (i != row) order.push_back(i);
+        if (order.empty()) return {row};
+        const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(neighbours, order.size()));
+        std::ranges::partial_sort(order, end, {}, [&](std::size_t i) { return squares(static_cast<Eigen::Index>(i)); });
+        order.erase(end, order.end());
+        return order;
+    }
+
+    const JointSample& sample_;
+    std::vector<Eigen::ArrayXd> scaled_;
+    std::vector<std::vector<std::size_t>> near_;
+};
+
+/// Factors of one sample, by their columns.
+struct Block {
+    const JointSample* sample;
+    std::vector<std::size_t> factors;
+};
+
+std::vector<Block> blocks_of(const FactorRoles& roles) {
+    std::vector<Block> blocks;
+    for (std::size_t j = 0; j < roles.together.size(); ++j) {
+        if (!roles.together[j]) continue;
+        const auto* sample = roles.together[j]->sample.get();
+        auto found = std::ranges::find(blocks, sample, &Block::sample);
+        if (found == blocks.end()) {
+            blocks.push_back({sample, std::vector<std::size_t>(sample->columns(), roles.together.size())});
+            found = blocks.end() - 1;
+        }
+        found->factors[roles.together[j]->column] = j;
+    }
+    // A sample of which a column is no factor gives independent factors.
+    std::erase_if(blocks, [&](const Block& block) {
+        return block.factors.size() < 2 ||
+               std::ranges::find(block.factors, roles.together.size()) != block.factors.end();
+    });
+    return blocks;
+}
+
+/// A^u of the header: points of A with the factors of the mask u, the others given these.
+std::vector<double> given(const Base& base, const std::vector<Block>& blocks, std::uint64_t seed, std::size_t mask) {
+    const auto d = base.dimensions;
+    const auto keeps = [&](std::size_t j) { return (mask >> j & 1U) != 0; };
+    auto points = base.b;
+    for (std::size_t i = 0; i < base_points; ++i)
+        for (std::size_t j = 0; j < d; ++j)
+            if (keeps(j)) points[i * d + j] = base.a[i * d + j];
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        const auto& block = blocks[k];
+        std::vector<std::size_t> columns;
+        for (std::size_t c = 0; c < block.factors.size(); ++c)
+            if (keeps(block.factors[c])) columns.push_back(c);
+        if (columns.empty() || columns.size() == block.factors.size()) continue;
+        NearRows rows(*block.sample, columns);
+        std::vector<double> place(block.factors.size()), values(place.size());
+        for (std::size_t i = 0; i < base_points; ++i) {
+            for (std::size_t c = 0; c < place.size(); ++c) place[c] = base.a[i * d + block.factors[c]];
+            const auto row = rows.one_near(block.sample->row_at(place), bits_at(seed, mask * blocks.size() + k, i));
+            for (std::size_t c = 0; c < values.size(); ++c) values[c] = block.sample->column(c)[row];
+            const auto there = block.sample->place_of(values).value();
+            for (std::size_t c = 0; c < there.size(); ++c) points[i * d + block.factors[c]] = there[c];
+        }
+    }
+    return points;
+}
+
+/// Sums of one quantity over parts of the rows of the first sample: its half-width with respect to the rows.
+class RowParts {
+public:
+    RowParts(const Base& base, const Block& block) : part_(base_points) {
+        std::vector<double> place(block.factors.size());
+        for (std::size_t i = 0; i < base_points; ++i) {
+            for (std::size_t c = 0; c < place.size(); ++c) place[c] = base.a[i * base.dimensions + block.factors[c]];
+            part_[i] = splitmix64(block.sample->row_at(place)) % stretches;
+            count_(static_cast<Eigen::Index>(part_[i])) += 1;
+        }
+    }
+    /// Means of the values without the points of each part.
+    [[nodiscard]] Eigen::ArrayXd without_each(const Eigen::ArrayXd& values) const {
+        Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(stretches);
+        for (std::size_t i = 0; i < base_points; ++i)
+            sums(static_cast<Eigen::Index>(part_[i])) += values(static_cast<Eigen::Index>(i));
+        return (sums.sum() - sums) / (static_cast<double>(base_points) - count_);
+    }
+
+private:
+    std::vector<std::size_t> part_;
+    Eigen::ArrayXd count_ = Eigen::ArrayXd::Zero(stretches);
+};
+
+std::vector<SensitivityIndex> shapley_effects(const Versions& versions, const Base& base, const Whole& whole,
+                                              const Eigen::MatrixXd& a, const Eigen::RowVectorXd& centre,
+                                              const FactorRoles& roles, std::uint64_t seed) {
+    const auto blocks = blocks_of(roles);
+    const std::size_t d = base.dimensions;
+    if (blocks.empty() || d > most_shared_factors) return {};
+    const std::size_t all = (std::size_t{1} << d) - 1;
+    const RowParts rows(base, blocks.front());
+    const Eigen::ArrayXXd about = (a.rowwise() - centre).array();
+    std::vector<Part> explained;               // W of every subset
+    std::vector<Eigen::ArrayXd> in_row_parts;  // the same without each part of the rows
+    for (std::size_t mask = 0; mask <= all; ++mask) {
+        Eigen::ArrayXXd each = Eigen::ArrayXXd::Zero(about.rows(), about.cols());
+        if (mask == all) each = about.square();
+        if (mask != 0 && mask != all)
+            each = about * (versions.at(given(base, blocks, seed, mask), d).rowwise() - centre).array();
+        explained.push_back(mask == all ? whole.variance : means_of(each));
+        in_row_parts.push_back(rows.without_each(each.col(0)));
+    }
+    std::vector<SensitivityIndex> effects;
+    for (std::size_t j = 0; j < d; ++j) {
+        Part part = Part::Zero(whole.variance.rows(), whole.variance.cols());
+        Eigen::ArrayXd without = Eigen::ArrayXd::Zero(stretches);
+        for (std::size_t mask = 0; mask <= all; ++mask) {
+            if ((mask >> j & 1U) != 0) continue;
+            const auto size = static_cast<double>(std::popcount(mask)), n = static_cast<double>(d);
+            const double weight = std::tgamma(size + 1) * std::tgamma(n - size) / std::tgamma(n + 1);
+            const auto with = mask | std::size_t{1} << j;
+            part += weight * (explained[with] - explained[mask]);
+            without += weight * (in_row_parts[with] - in_row_parts[mask]);
+        }
+        without /= in_row_parts[all];
+        auto& effect = effects.emplace_back(whole.index_of(part));
+        effect.half_width = std::hypot(effect.half_width, jackknife_half_width({without.data(), stretches}));
+    }
+    return effects;
 }
 
 }  // namespace
@@ -194,7 +351,8 @@ ModelIndices model_indices(const ResponseModel& model, std::size_t factors, std:
     if (factors == 0 || (!features && factors != model.dimensions()))
         throw std::invalid_argument("indices of a model: factors and features are of different numbers");
     const Versions versions(model, groups, features);
-    const Base base = base_of(factors, seed_of(model.state().kriging.values));
+    const auto seed = seed_of(model.state().kriging.values);
+    const Base base = base_of(factors, seed);
     const Eigen::MatrixXd a = versions.at(base.a, factors), b = versions.at(base.b, factors);
     const Eigen::RowVectorXd centre = (a.colwise().mean() + b.colwise().mean()) / 2;
     const Whole whole{means_of(((a.rowwise() - centre).array().square() + (b.rowwise() - centre).array().square()) / 2),
@@ -211,6 +369,7 @@ ModelIndices model_indices(const ResponseModel& model, std::size_t factors, std:
         result.interactions.push_back(whole.index_of(interactions));
     }
     result.noise = noise_of(versions, base, whole, a, roles);
+    result.shapley = shapley_effects(versions, base, whole, a, centre, roles, seed);
     const auto second_difference = [&](const std::vector<double>& points, const std::vector<double>& from,
                                        const Eigen::MatrixXd& at, const std::vector<Eigen::MatrixXd>& moved,
                                        std::size_t j, std::size_t k) {

@@ -11,6 +11,16 @@
 //
 //   V T_N       =  E[(f(A_N) - f(A))^2]/2
 //
+// If factors are columns of one sample, they depend on each other, and f has no unique decomposition. Shapley effects
+// share the variance between them (Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245; Song, Nelson & Staum 2016, ibid.
+// 4, 1060). They are not negative, add to one, and do not depend on the order of the columns:
+//
+//   V H_j       =  sum over the subsets u without j of |u|! (d - |u| - 1)!/d! (W(u + j) - W(u)),  W(u) = Var E[f | x_u]
+//   W(u)        =  E[(f(A) - mean)(f(A^u) - mean)],  A^u: the factors u as in A, the others drawn given these
+//
+// Given a part of the columns of a sample, A^u has one of the four rows nearest to the row of A in these columns, in
+// standard deviations (Broto, Bachoc & Depecker 2020, SIAM/ASA J. Uncertain. Quantif. 8, 693).
+//
 // f is the model's mean, so no share includes the scatter of runs. The equations follow from the Hoeffding
 // decomposition of f. The differences remove all parts without the factors (Liu & Owen 2006, J. Am. Stat. Assoc. 101,
 // 712). The product of the differences at A and at B removes the parts with further factors (Owen, Dick & Chen 2014,
@@ -27,6 +37,7 @@
 //                index of a factor without influence on the model still has an error
 #pragma once
 
+#include "stats/joint_sample.hpp"
 #include "stats/response_model.hpp"
 #include "stats/sensitivity.hpp"
 
@@ -52,18 +63,27 @@ struct ModelIndices {
         std::size_t factor = 0;
         double from = 0, to = 1;  ///< in the factor's coordinate u
         SensitivityIndex left;    ///< share of the variance over the whole box
+        SensitivityIndex saved;   ///< total of the noise minus `left`, with the error of this difference
+
+        /// Returns whether `saved` is above 0 by three standard errors, because the smallest of many parts is chosen.
+        [[nodiscard]] bool significant() const { return saved.value > 1.5 * saved.half_width; }
     };
     struct Noise {
         SensitivityIndex total;
         std::vector<Calmest> controls;  ///< the smallest first
     };
-    std::optional<Noise> noise;  ///< empty: no factor is noise, or all are
+    std::optional<Noise> noise;             ///< empty: no factor is noise, or all are
+    std::vector<SensitivityIndex> shapley;  ///< per factor; empty: all are independent, or there are too many
 };
+
+/// Most factors of which Shapley effects are computed; their number of subsets is 2^factors.
+inline constexpr std::size_t most_shared_factors = 8;
 
 /// Roles and levels of the factors.
 struct FactorRoles {
-    std::vector<bool> noise;          ///< empty: no factor is noise
-    std::vector<std::size_t> levels;  ///< 0, or empty: continuous
+    std::vector<bool> noise;                            ///< empty: no factor is noise
+    std::vector<std::size_t> levels;                    ///< 0, or empty: continuous
+    std::vector<std::optional<SampleColumn>> together;  ///< column of a sample with several; empty: all are independent
 };
 
 /// Returns the indices. `groups`: group of every row that the model was fitted to, such as its sequence, at least 2

@@ -117,7 +117,7 @@ Prediction::Latent latent_with(const TwoMoments& moments) {
 
 /// Predictions at places in the box.
 std::vector<Prediction> mixed_predictions(std::span<const ProbabilityModel::State::Part> parts,
-                                          const Eigen::MatrixXd& x) {
+                                          const Eigen::MatrixXd& x, bool with_latent) {
     std::vector<TwoMoments> moments(static_cast<std::size_t>(x.rows()));
     response::Latent likeliest;
     for (const auto& [weight, found] : parts) {
@@ -137,6 +137,7 @@ std::vector<Prediction> mixed_predictions(std::span<const ProbabilityModel::Stat
                           .mean_error = std::sqrt(std::max(both.square - p * p, 0.0)),
                           .scatter = std::sqrt(p * (1 - p)),
                           .inside = x.row(i).minCoeff() >= -inside_by && x.row(i).maxCoeff() <= 1 + inside_by});
+        if (!with_latent) continue;
         if (parts.size() == 1 || std::min(p, 1 - p) < sure_within)
             result.back().latent = {likeliest.mean(i), std::sqrt(likeliest.variance(i))};
         else
@@ -173,19 +174,31 @@ bool only_zero_and_one(std::span<const double> values) {
     return zero && one;
 }
 
-std::vector<Prediction> ProbabilityModel::predict(Rows points) const {
-    const Eigen::MatrixXd x = place_in_box(points, state_->low, state_->high);
+namespace {
+
+std::vector<Prediction> predictions_of(const ProbabilityModel::State& state, Rows points, bool with_latent) {
+    const Eigen::MatrixXd x = place_in_box(points, state.low, state.high);
     std::vector<Prediction> result;
     for (Eigen::Index from = 0; from < x.rows(); from += places_at_once) {
         const Eigen::MatrixXd some = x.middleRows(from, std::min<Eigen::Index>(places_at_once, x.rows() - from));
-        std::ranges::move(mixed_predictions(state_->parts, some), std::back_inserter(result));
+        std::ranges::move(mixed_predictions(state.parts, some, with_latent), std::back_inserter(result));
     }
     return result;
 }
 
+}  // namespace
+
+std::vector<Prediction> ProbabilityModel::predict(Rows points) const {
+    return predictions_of(*state_, points, true);
+}
+
+std::vector<Prediction> ProbabilityModel::with_errors(Rows points) const {
+    return predictions_of(*state_, points, false);
+}
+
 std::vector<double> ProbabilityModel::probabilities(Rows points) const {
     std::vector<double> result;
-    for (const auto& one : predict(points)) result.push_back(one.mean);
+    for (const auto& one : with_errors(points)) result.push_back(one.mean);
     return result;
 }
 

@@ -45,6 +45,8 @@ public:
 
     /// Returns predictions at features in their own units. `latent` of every prediction is set, `freedom` is infinite.
     [[nodiscard]] std::vector<Prediction> predict(Rows points) const;
+    /// Returns the probabilities with their standard errors, without `latent`, which takes most of the time.
+    [[nodiscard]] std::vector<Prediction> with_errors(Rows points) const;
     /// Returns only the probabilities.
     [[nodiscard]] std::vector<double> probabilities(Rows points) const;
     /// Returns whether P is at least 1/2 with the most likely hyperparameters. Cost: n per point.

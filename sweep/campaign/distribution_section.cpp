@@ -98,6 +98,14 @@ std::variant<Between, stats::Distribution> read_distribution(const Section& fact
     };
     if (key == "uniform") return with(uniform_keys(), read_uniform);
     if (key == "lognormal") return shaped(lognormal_keys(), read_lognormal);
+    if (key == "weibull")
+        return shaped(weibull_keys(), [](const Reading& read) -> stats::Distribution::Form {
+            return stats::Weibull{read.amount("scale", above_zero), read.section.number("shape", 1)};
+        });
+    if (key == "gumbel")
+        return shaped(gumbel_keys(), [](const Reading& read) -> stats::Distribution::Form {
+            return stats::Gumbel{read.amount("location"), read.amount("scale", above_zero)};
+        });
     if (key == "triangular") return shaped(triangular_keys(), read_triangular);
     if (key == "beta") return shaped(beta_keys(), read_beta);
     return shaped(normal_keys(), [](const Reading& read) -> stats::Distribution::Form {

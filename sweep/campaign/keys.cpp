@@ -111,6 +111,8 @@ std::span<const Key> factor_keys() {
         {"uniform", Kind::object, "the same as between: low, high"},
         {"normal", Kind::object, "normal distribution: mean, sd"},
         {"lognormal", Kind::object, "lognormal distribution: median and sigma, the sd of ln x, or ratio, exp(sigma)"},
+        {"weibull", Kind::object, "Weibull distribution: scale, shape"},
+        {"gumbel", Kind::object, "Gumbel distribution of largest values: location, scale"},
         {"triangular", Kind::object, "triangular distribution: low, mode, high"},
         {"beta", Kind::object, "beta distribution from low to high: low, high, a, b"},
         {"sample", Kind::value,
@@ -130,8 +132,8 @@ std::span<const Key> factor_keys() {
 }
 
 std::span<const std::string_view> range_keys() {
-    static constexpr std::array<std::string_view, 8> keys = {"between",   "levels",     "uniform", "normal",
-                                                             "lognormal", "triangular", "beta",    "sample"};
+    static constexpr std::array<std::string_view, 10> keys = {"between", "levels", "uniform",    "normal", "lognormal",
+                                                              "weibull", "gumbel", "triangular", "beta",   "sample"};
     return keys;
 }
 
@@ -156,6 +158,22 @@ std::span<const Key> lognormal_keys() {
         needed({"median", Kind::value, "median, a number or a text with a unit, above 0"}),
         {"sigma", Kind::number, "standard deviation of the natural logarithm", {}, {0, 10, true}},
         {"ratio", Kind::number, "exp(sigma): 68 % lie between median/ratio and median*ratio", {}, {1, 20'000, true}},
+    });
+    return keys;
+}
+
+std::span<const Key> weibull_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"scale", Kind::value, "63.2 % are smaller: a number or a text with a unit, above 0"}),
+        needed({"shape", Kind::number, "exponent: P(value > x) = exp(-(x/scale)^shape)", {}, {0, 1000, true}}),
+    });
+    return keys;
+}
+
+std::span<const Key> gumbel_keys() {
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"location", Kind::value, "likeliest value, a number or a text with a unit; 36.8 % are smaller"}),
+        needed({"scale", Kind::value, "width, above 0: sd times sqrt(6)/pi"}),
     });
     return keys;
 }

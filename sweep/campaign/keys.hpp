@@ -39,6 +39,8 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> uniform_keys();
 [[nodiscard]] std::span<const Key> normal_keys();
 [[nodiscard]] std::span<const Key> lognormal_keys();
+[[nodiscard]] std::span<const Key> weibull_keys();
+[[nodiscard]] std::span<const Key> gumbel_keys();
 [[nodiscard]] std::span<const Key> triangular_keys();
 [[nodiscard]] std::span<const Key> beta_keys();
 [[nodiscard]] std::span<const Key> sample_keys();

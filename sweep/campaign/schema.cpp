@@ -125,11 +125,10 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
 
 /// Adds the figures of distributions. `value`: schema of one value of the parameter.
 void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
-    const std::pair<const char*, std::span<const Key>> forms[] = {{"uniform", uniform_keys()},
-                                                                  {"normal", normal_keys()},
-                                                                  {"lognormal", lognormal_keys()},
-                                                                  {"triangular", triangular_keys()},
-                                                                  {"beta", beta_keys()}};
+    const std::pair<const char*, std::span<const Key>> forms[] = {
+        {"uniform", uniform_keys()}, {"normal", normal_keys()}, {"lognormal", lognormal_keys()},
+        {"weibull", weibull_keys()}, {"gumbel", gumbel_keys()}, {"triangular", triangular_keys()},
+        {"beta", beta_keys()}};
     for (const auto& [name, keys] : forms) {
         auto& form = properties[name];
         form.update(section(keys));

@@ -68,6 +68,12 @@ std::string stated_text(const stats::Distribution& distribution) {
                    [&](const stats::Lognormal& form) {
                        return fmt::format("lognormal {} {}", shortest(form.median), shortest(form.sigma)) + within();
                    },
+                   [&](const stats::Weibull& form) {
+                       return fmt::format("weibull {} {}", shortest(form.scale), shortest(form.shape)) + within();
+                   },
+                   [&](const stats::Gumbel& form) {
+                       return fmt::format("gumbel {} {}", shortest(form.location), shortest(form.scale)) + within();
+                   },
                    [](const stats::Triangular& form) {
                        return fmt::format("triangular {} {} {}", shortest(form.low), shortest(form.mode),
                                           shortest(form.high));
@@ -93,6 +99,10 @@ std::variant<std::monostate, stats::Distribution, StatedColumn> distribution_in(
         return stats::Distribution(stats::Normal{numbers[0], numbers[1]}, numbers[3], numbers[4]);
     if (kind == "lognormal" && numbers.size() == 5)
         return stats::Distribution(stats::Lognormal{numbers[0], numbers[1]}, numbers[3], numbers[4]);
+    if (kind == "weibull" && numbers.size() == 5)
+        return stats::Distribution(stats::Weibull{numbers[0], numbers[1]}, numbers[3], numbers[4]);
+    if (kind == "gumbel" && numbers.size() == 5)
+        return stats::Distribution(stats::Gumbel{numbers[0], numbers[1]}, numbers[3], numbers[4]);
     if (kind == "triangular" && numbers.size() == 3)
         return stats::Distribution(stats::Triangular{numbers[0], numbers[1], numbers[2]});
     if (kind == "beta" && numbers.size() == 4)
@@ -110,6 +120,12 @@ std::string described(const stats::Distribution& distribution) {
             [](const stats::Normal& form) { return fmt::format("normal, mean {:.6g}, sd {:.6g}", form.mean, form.sd); },
             [](const stats::Lognormal& form) {
                 return fmt::format("lognormal, median {:.6g}, sigma {:.6g}", form.median, form.sigma);
+            },
+            [](const stats::Weibull& form) {
+                return fmt::format("weibull, scale {:.6g}, shape {:.6g}", form.scale, form.shape);
+            },
+            [](const stats::Gumbel& form) {
+                return fmt::format("gumbel, location {:.6g}, scale {:.6g}", form.location, form.scale);
             },
             [](const stats::Triangular& form) {
                 return fmt::format("triangular, low {:.6g}, mode {:.6g}, high {:.6g}", form.low, form.mode, form.high);

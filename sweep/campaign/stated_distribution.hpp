@@ -1,6 +1,7 @@
 // Text of a distribution in the identity of a campaign.
 //
 //   normal MEAN SD within LOW HIGH             lognormal MEDIAN SIGMA within LOW HIGH
+//   weibull SCALE SHAPE within LOW HIGH        gumbel LOCATION SCALE within LOW HIGH
 //   triangular LOW MODE HIGH                   beta LOW HIGH A B
 //   sample K of N in HASH: V V ...             column K of the N that are used of one file, all its values; HASH is
 //                                              that of all N columns

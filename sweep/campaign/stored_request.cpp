@@ -1,6 +1,8 @@
 #include "sweep/campaign/stored_request.hpp"
 
 #include "solver/plain_text.hpp"
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/expressions.hpp"
 
 #include <charconv>
 #include <sstream>
@@ -84,6 +86,24 @@ std::vector<Factor> factors_asked(const Identity& identity) {
         factors.push_back(std::move(factor));
     }
     return factors;
+}
+
+std::optional<ParameterSpace> space_of(const Identity& identity) {
+    const auto scene = find_scene(identity.scene);
+    if (scene == nullptr) return std::nullopt;
+    auto factors = factors_asked(identity);
+    for (auto& factor : factors) {
+        auto* levels = std::get_if<Levels>(&factor.range);
+        const auto* parameter = scene->find_parameter(factor.name);
+        if (parameter == nullptr) return std::nullopt;
+        if (levels == nullptr || std::holds_alternative<std::string>(parameter->default_value)) continue;
+        for (auto& value : levels->values)
+            if (const auto number = any_number_in(std::get<std::string>(value))) value = *number;
+    }
+    return ParameterSpace{.scene = scene,
+                          .factors = std::move(factors),
+                          .fixed = fixed_values(identity, *scene),
+                          .expressions = expressions_of(identity, *scene)};
 }
 
 designs::DesignRequest request_of(const Identity& identity) {

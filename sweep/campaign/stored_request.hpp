@@ -4,6 +4,7 @@
 #include "sweep/campaign/identity.hpp"
 #include "sweep/designs/design.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -13,6 +14,8 @@ namespace grainsweep::campaign {
 [[nodiscard]] designs::DesignRequest request_of(const Identity& identity);
 /// Returns the fixed values of the scene's parameters, without expressions.
 [[nodiscard]] Inputs fixed_values(const Identity& identity, const SceneInfo& scene);
+/// Returns the parameter space of a stored campaign, without compiled `when` clauses; empty for an unknown scene.
+[[nodiscard]] std::optional<ParameterSpace> space_of(const Identity& identity);
 /// Returns the factors of the campaign; levels as text.
 [[nodiscard]] std::vector<Factor> factors_asked(const Identity& identity);
 

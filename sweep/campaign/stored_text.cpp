@@ -94,6 +94,16 @@ Remarks remarks_in(std::string_view campaign_file) {
     return remarks;
 }
 
+std::vector<std::string> observables_as_written(std::string_view campaign_file) {
+    const auto document = nlohmann::ordered_json::parse(campaign_file, nullptr, false);
+    std::vector<std::string> names;
+    if (!document.is_object() || !document.contains("program") || !document["program"].is_object()) return names;
+    const auto observables = document["program"].find("observables");
+    if (observables == document["program"].end() || !observables->is_object()) return names;
+    for (const auto& [name, place] : observables->items()) names.push_back(name);
+    return names;
+}
+
 namespace {
 
 nlohmann::ordered_json list_design(std::span<const std::vector<Value>> rows) {

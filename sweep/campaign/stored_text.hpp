@@ -25,6 +25,10 @@ struct Remarks {
 /// Returns the remarks in a campaign file stored by this program or an older one; empty if the text is none.
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);
 
+/// Returns the observables of a program in the order of the campaign file; empty for a file without a program, or a
+/// text that is none.
+[[nodiscard]] std::vector<std::string> observables_as_written(std::string_view campaign_file);
+
 /// Writes a campaign file with further points of another campaign: its scene, factors, fixed values, condition,
 /// accuracy, features, limits and execution, with a design of kind `list`. One row per point, one value per factor in
 /// the order of the file. Its seed is the other seed plus `number`, so that a repeated setting is a new run. Paths of

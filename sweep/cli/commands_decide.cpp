@@ -14,13 +14,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <sstream>
+#include <stop_token>
+#include <thread>
 #include <utility>
 
 namespace grainsweep::cli {
@@ -32,9 +38,67 @@ using study::Setting;
 
 struct PredictRequest {
     std::string database, campaign, observable;
-    std::vector<std::string> at;
+    std::vector<std::string> at, left_out;
     std::filesystem::path points;
     bool extrapolate = false;
+};
+
+/// Outcomes of --leave-out.
+std::vector<campaign::Outcome> outcomes_in(const std::vector<std::string>& words) {
+    using enum campaign::Outcome;
+    constexpr std::array failures = {unstable, rejected, crashed, timed_out};
+    std::vector<campaign::Outcome> outcomes;
+    std::vector<std::string_view> known;
+    for (const auto outcome : failures) known.push_back(campaign::to_string(outcome));
+    for (const auto& word : words) {
+        const auto outcome = campaign::outcome_named(word);
+        if (!outcome || std::ranges::find(failures, *outcome) == failures.end())
+            throw campaign::wrong_question(
+                "--leave-out", word, fmt::format("must be an outcome of failed cases: {}", campaign::listed(known)),
+                campaign::nearest_word(word, known));
+        outcomes.push_back(*outcome);
+    }
+    return outcomes;
+}
+
+void declare_left_out(Parser& parser, std::vector<std::string>& words) {
+    parser
+        .add_option("--leave-out OUTCOME", words,
+                    "outcome of failed cases that is no property of the process (a licence, a node, a bug): these "
+                    "cases do not count; may be repeated")
+        ->allow_extra_args(false);
+}
+
+/// Writes the step at which a window is to stderr, one line every ten seconds; nothing for a fast window.
+class StepLines {
+public:
+    StepLines() : thread_([this](const std::stop_token& stop) { write_lines(stop); }) {}
+
+    void step(std::string_view name, double done) {
+        const std::scoped_lock lock(mutex_);
+        name_ = name;
+        done_ = done;
+    }
+
+private:
+    void write_lines(const std::stop_token& stop) {
+        using namespace std::chrono_literals;
+        const auto begun = std::chrono::steady_clock::now();
+        std::unique_lock lock(mutex_);
+        while (!wake_.wait_for(lock, stop, 10s, [] { return false; }) && !stop.stop_requested()) {
+            if (name_.empty()) continue;
+            const auto seconds =
+                std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begun).count();
+            std::cerr << fmt::format("window: {}{}, {} s\n", name_,
+                                     done_ > 0 ? fmt::format(" {:.0f} %", 100 * done_) : std::string(), seconds);
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    std::string name_;
+    double done_ = 0;
+    std::jthread thread_;
 };
 
 std::vector<Setting> settings_of(const PredictRequest& request, const study::ModelCases& cases) {
@@ -64,7 +128,7 @@ void refuse_extrapolation(const Store& store, const study::ModelCases& cases, co
 
 int predict(const PredictRequest& request, Format format) {
     const Store store(request.database, Store::Mode::read);
-    const auto cases = study::read_model_cases(store, request.campaign);
+    const auto cases = study::read_model_cases(store, request.campaign, outcomes_in(request.left_out));
     const auto& observable = cases.observable(request.observable);
     auto settings = settings_of(request, cases);
     if (!request.extrapolate) refuse_extrapolation(store, cases, settings);
@@ -91,6 +155,7 @@ void declare_predict(Parser& parser, PredictRequest& request) {
         ->allow_extra_args(false);
     parser.add_option("--points FILE.csv", request.points,
                       "CSV file of settings: a header with every factor, one setting per line");
+    declare_left_out(parser, request.left_out);
     parser.add_flag("--extrapolate", request.extrapolate,
                     "predict also outside the ranges of the factors and where a case is likelier to fail than not");
 }
@@ -98,7 +163,7 @@ void declare_predict(Parser& parser, PredictRequest& request) {
 struct WindowArguments {
     std::string database, campaign, maximise, minimise;
     std::string next_file, output;
-    std::vector<std::string> hold;
+    std::vector<std::string> hold, left_out;
     std::int64_t next = 0;
     bool single = false, run = false;
     double width = 0;
@@ -160,6 +225,9 @@ int window(const WindowArguments& arguments, Format format) {
     request.objective = arguments.maximise.empty() ? arguments.minimise : arguments.maximise;
     request.maximise = arguments.minimise.empty();
     request.judged = arguments.single ? stats::Judged::single_run : stats::Judged::mean;
+    request.left_out = outcomes_in(arguments.left_out);
+    StepLines lines;
+    request.progress = [&](std::string_view step, double done) { lines.step(step, done); };
     check_run(arguments, request);
     if (!arguments.hold.empty()) {
         const Store store(arguments.database, Store::Mode::read);
@@ -168,7 +236,7 @@ int window(const WindowArguments& arguments, Format format) {
     const auto end = run_first(arguments, request);
     request.next = arguments.run ? 0 : static_cast<std::size_t>(arguments.next);
     const Store store(arguments.database, Store::Mode::read);
-    const auto cases = study::read_model_cases(store, arguments.campaign);
+    const auto cases = study::read_model_cases(store, arguments.campaign, request.left_out);
     const auto found = study::window_of(store, cases, request);
     std::string written;
     if (!arguments.next_file.empty()) written = write_next(store, cases, found, arguments.next_file);
@@ -207,6 +275,7 @@ void declare_window(Parser& parser, WindowArguments& arguments) {
         .add_option("--hold NAME=VALUE", arguments.hold,
                     "one value of a factor, which is then neither searched nor averaged over; may be repeated")
         ->allow_extra_args(false);
+    declare_left_out(parser, arguments.left_out);
     parser.add_flag("--single", arguments.single,
                     "apply the condition to every single run; default: to the mean over seeds");
     parser.add_option("--next N", arguments.next, "number of cases to propose")->check(whole_number(0, 1000));

@@ -46,7 +46,7 @@ struct Standing {
 
 Standing standing_of(const WindowRun& run, study::WindowRequest request, std::int64_t most) {
     const Store store(run.database, Store::Mode::read);
-    const auto cases = study::read_model_cases(store, run.campaign);
+    const auto cases = study::read_model_cases(store, run.campaign, request.left_out);
     request.next = static_cast<std::size_t>(std::max<std::int64_t>(0, std::min(run.batch, most)));
     const auto window = study::window_of(store, cases, request);
     if (window.objective_is_factor)

@@ -19,8 +19,6 @@ constexpr std::int64_t fewest_candidates = 1 << 13, most_candidates = 1 << 15;
 constexpr std::size_t enough_kept = 8;       // candidates for each setting of the next wave
 constexpr std::size_t most_compared = 4096;  // among which the next settings are spread
 constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
-constexpr double failing_share = 0.05;       // of the settings, above which it is learned where they fail
-constexpr std::ptrdiff_t neighbours = 5;     // that say whether a case would answer
 
 /// Sobol points of the calibrated factors, rows of d.
 std::vector<double> even_points(const DesignRequest& request, std::size_t d, std::int64_t count, std::uint64_t stream) {
@@ -74,18 +72,31 @@ private:
         bool known = true;
         for (std::size_t i = 0; i < rows; ++i)
             for (const auto& condition : layout_.conditions) {
-                std::size_t at = 0;
-                for (std::size_t j = 0; j < request_.dimensions(); ++j)
-                    result_.points.coordinates.push_back(request_.levels[j] == 0
-                                                             ? settings[i * d_ + layout_.column[at++]]
-                                                             : (static_cast<double>(level_of(condition, j)) + 0.5) /
-                                                                   static_cast<double>(request_.levels[j]));
+                const auto point = point_of(std::span(settings).subspan(i * d_, d_), condition);
+                result_.points.coordinates.insert(result_.points.coordinates.end(), point.begin(), point.end());
                 result_.points.part.push_back(part);
                 result_.points.repeat.push_back(0);
             }
         for (std::size_t t = 0; t < result_.targets.size(); ++t)
             for (std::size_t i = 0; i < rows; ++i) known = known && answer(t, i).has_value();
         return known;
+    }
+    /// Returns the point of this experiment that runs a setting under a condition.
+    [[nodiscard]] std::vector<double> point_of(std::span<const double> setting,
+                                               const std::map<std::string, std::size_t>& condition) const {
+        std::vector<double> point;
+        std::size_t at = 0;
+        for (std::size_t j = 0; j < request_.dimensions(); ++j)
+            point.push_back(request_.levels[j] == 0 ? setting[layout_.column[at++]]
+                                                    : (static_cast<double>(level_of(condition, j)) + 0.5) /
+                                                          static_cast<double>(request_.levels[j]));
+        return point;
+    }
+    /// Returns whether `where` accepts a setting under every condition; otherwise some target would have no answer.
+    [[nodiscard]] bool admitted(std::span<const double> setting) const {
+        return !request_.admits || std::ranges::all_of(layout_.conditions, [&](const auto& condition) {
+            return request_.admits(point_of(setting, condition));
+        });
     }
     [[nodiscard]] std::size_t level_of(const std::map<std::string, std::size_t>& condition, std::size_t j) const {
         const auto found = condition.find(request_.factors[j].name);
@@ -105,13 +116,13 @@ private:
         auto& wave = result_.waves.emplace_back();
         wave.settings = rows;
         wave.of_checks = of_checks;
-        wave.cases = (result_.settings.size() / d_) * layout_.runs;
         result_.models.clear();
         result_.beyond.clear();
-        std::vector<bool> failed(result_.settings.size() / d_, false);
+        std::vector<bool> unanswered(result_.settings.size() / d_, false);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             for (std::size_t i = 0; i < rows; ++i) values_[t].push_back(*answer(t, i));
-            for (std::size_t i = 0; i < values_[t].size(); ++i) failed[i] = failed[i] || !std::isfinite(values_[t][i]);
+            for (std::size_t i = 0; i < values_[t].size(); ++i)
+                unanswered[i] = unanswered[i] || !std::isfinite(values_[t][i]);
         }
         auto fits = stats::fit_responses({result_.settings, d_}, values_);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
@@ -127,10 +138,22 @@ private:
             }
             result_.beyond.push_back(stats::beyond_what_was_reached(measured(t), values_[t]));
         }
+        learn_failures(unanswered);
+    }
+    void learn_failures(const std::vector<bool>& unanswered) {
+        std::vector<double> settings;
+        std::vector<bool> failed;
+        for (std::size_t i = 0; i < unanswered.size(); ++i) {
+            const auto setting = std::span(result_.settings).subspan(i * d_, d_);
+            if (!admitted(setting)) continue;
+            settings.insert(settings.end(), setting.begin(), setting.end());
+            failed.push_back(unanswered[i]);
+        }
+        auto& wave = result_.waves.back();
+        wave.excluded = unanswered.size() - failed.size();
+        wave.cases = failed.size() * layout_.runs;
         wave.failed = static_cast<std::size_t>(std::ranges::count(failed, true));
-        failed_ = static_cast<double>(wave.failed) > failing_share * static_cast<double>(failed.size())
-                      ? failed
-                      : std::vector<bool>{};
+        result_.answering = failed.empty() ? AnsweringSettings() : AnsweringSettings({settings, d_}, failed);
     }
     [[nodiscard]] stats::Target measured(std::size_t t) const {
         const auto& target = result_.targets[t];
@@ -156,36 +179,25 @@ private:
         return predictions;
     }
 
-    /// Whether a case at this setting is expected to answer: most of the settings nearest to it did.
-    [[nodiscard]] bool feasible(std::span<const double> at) const {
-        if (failed_.empty()) return true;
-        std::vector<std::pair<double, std::size_t>> nearest;
-        for (std::size_t i = 0; i < failed_.size(); ++i) {
-            double square = 0;
-            for (std::size_t j = 0; j < d_; ++j) square += std::pow(result_.settings[i * d_ + j] - at[j], 2);
-            nearest.emplace_back(square, i);
-        }
-        const auto end = nearest.begin() + std::min<std::ptrdiff_t>(neighbours, std::ssize(nearest));
-        std::ranges::partial_sort(nearest, end);
-        const auto failing = std::count_if(nearest.begin(), end, [&](const auto& one) { return failed_[one.second]; });
-        return 2 * failing < end - nearest.begin();
-    }
-
     /// Even points of the box and how implausible each is.
     struct Candidates {
-        std::vector<double> points, implausibility;
-        bool sure = true;  ///< the models are surer than all else at every point kept
+        std::vector<double> points, implausibility;  ///< without points that `where` excludes
+        std::vector<bool> answers;                   ///< not ruled out by failures
+        bool sure = true;                            ///< the models are surer than all else at every point kept
         std::vector<std::size_t> kept;
     };
     [[nodiscard]] Candidates candidates(std::int64_t count, std::uint64_t stream) const {
         Candidates all;
-        all.points = even_points(request_, d_, count, stream);
+        const auto box = even_points(request_, d_, count, stream);
+        for (std::size_t i = 0; i < box.size(); i += d_)
+            if (admitted(std::span(box).subspan(i, d_))) append(all.points, box, i / d_);
+        for (const double weight : result_.answering.log_weights({all.points, d_}))
+            all.answers.push_back(weight > -std::numeric_limits<double>::infinity());
         const auto predictions = predict({all.points, d_});
         const auto targets = modelled();
         all.implausibility = stats::deciding_implausibility(stats::implausibilities(targets, predictions));
         for (std::size_t i = 0; i < all.implausibility.size(); ++i) {
-            if (!(all.implausibility[i] < ruled_out)) continue;
-            if (!feasible(std::span(all.points).subspan(i * d_, d_))) continue;
+            if (!(all.implausibility[i] < ruled_out) || !all.answers[i]) continue;
             all.kept.push_back(i);
             for (std::size_t k = 0; k < targets.size(); ++k) {
                 const auto& p = predictions[k][i];
@@ -216,6 +228,7 @@ private:
             all = candidates(count, static_cast<std::uint64_t>(2 * wave + 1));
             count *= 4;
         } while (all.kept.size() < enough_kept * wanted && count <= most_candidates);
+        if (all.points.empty()) return fail("the campaign's `where` leaves no setting of the box");
         now.kept = static_cast<double>(all.kept.size()) / static_cast<double>(all.implausibility.size());
         result_.least_implausibility = *std::ranges::min_element(all.implausibility);
         best_ = starts(all);
@@ -253,7 +266,7 @@ private:
     [[nodiscard]] std::vector<double> starts(const Candidates& all) const {
         std::vector<std::size_t> order(all.implausibility.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        const auto answers = [&](std::size_t i) { return feasible(std::span(all.points).subspan(i * d_, d_)); };
+        const auto answers = [&](std::size_t i) { return all.answers[i]; };
         const auto sort = [&] {
             const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(chains_begin_at, order.size()));
             std::ranges::partial_sort(order, last, {},
@@ -309,8 +322,10 @@ private:
         return stats::sample_posterior(
             [&](stats::Rows points) {
                 auto density = stats::log_likelihood(targets, predict(points), covariance);
+                const auto weights = result_.answering.log_weights(points);
                 for (std::size_t i = 0; i < density.size(); ++i)
-                    if (!feasible(points.row(i))) density[i] = -std::numeric_limits<double>::infinity();
+                    density[i] =
+                        admitted(points.row(i)) ? density[i] + weights[i] : -std::numeric_limits<double>::infinity();
                 return density;
             },
             {best_, d_}, settings);
@@ -328,12 +343,12 @@ private:
         const auto checks = std::min(static_cast<std::size_t>(request_.count("checks")), rows.size());
         for (std::size_t k = 0; k < checks; ++k)
             append(result_.checked, result_.posterior->points, (2 * k + 1) * rows.size() / (2 * checks));
-        const bool known = ask(result_.checked);
+        result_.checks_known = ask(result_.checked);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             auto& answers = result_.check.emplace_back();
             for (std::size_t k = 0; k < checks; ++k) answers.push_back(answer(t, k).value_or(none));
         }
-        return known;
+        return result_.checks_known;
     }
     /// Whether the check missed a measurement of several experiments, and waves are left.
     [[nodiscard]] bool goes_on(std::int64_t wave) const {
@@ -346,7 +361,6 @@ private:
     CalibrationLayout layout_;
     std::size_t d_ = 0, asked_ = 0, first_ = 0;  ///< factors; settings so far; the first of the last request
     std::vector<std::vector<double>> values_;    ///< of each target
-    std::vector<bool> failed_;                   ///< of each setting; empty: too few to matter
     std::vector<double> best_;                   ///< settings of least implausibility
     Calibration result_;
 };

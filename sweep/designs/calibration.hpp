@@ -7,8 +7,8 @@
 // two cases: the error of the models is below all other errors at every kept setting, or a wave has ruled out less than
 // a share `shrink` of the kept settings. Then settings drawn from the posterior are run as the predictive check.
 //
-// If more than 5 % of the settings have no answer for some target, a setting is also ruled out if most of its five
-// nearest neighbours failed.
+// Settings without an answer for some target weigh only if that depends on the factors (answering_settings.hpp).
+// Settings that the campaign's `where` excludes are neither failures nor candidates, and the posterior is 0 there.
 //
 // With several experiments every wave runs all of them, and all targets share the posterior. If a predictive check
 // misses a target by more than 2 standard deviations and waves are left, its runs are added to the fit and another wave
@@ -19,6 +19,7 @@
 
 #include "stats/posterior.hpp"
 #include "stats/response_model.hpp"
+#include "sweep/designs/answering_settings.hpp"
 #include "sweep/designs/design.hpp"
 #include "sweep/designs/measured_targets.hpp"
 
@@ -34,10 +35,11 @@ namespace grainsweep::designs {
 struct CalibrationWave {
     std::size_t settings = 0;  ///< settings of the wave
     std::size_t cases = 0;     ///< cases so far, under all conditions
-    std::size_t failed = 0;    ///< settings so far without an answer to some target
+    std::size_t failed = 0;    ///< settings so far that were run and have no answer to some target
+    std::size_t excluded = 0;  ///< settings so far that `where` excludes
     bool of_checks = false;    ///< settings of a predictive check that missed; they are added to the fit, and another
                                ///< wave follows
-    double kept = 1;           ///< share of the box that is not ruled out
+    double kept = 1;           ///< share of the admitted box that is not ruled out
     /// Root mean square error of each target's model divided by the sd of its responses; NaN: no model.
     std::vector<double> model_error;
     std::vector<std::string> refusals;  ///< why a target has no model, target by target; empty: it has one
@@ -54,12 +56,14 @@ struct Calibration {
     std::vector<std::optional<stats::ResponseModel>> models;  ///< one per target, from all cases of the waves
     std::vector<double> beyond;                               ///< distance of each target from the range of all cases,
                                                               ///< in sd
+    AnsweringSettings answering;                              ///< from all cases of the waves
     std::optional<stats::PosteriorSample> posterior;          ///< in [0, 1]^d of the factors, after the last wave
     std::optional<stats::PosteriorShape> shape;               ///< shape of the posterior
     double least_implausibility = std::numeric_limits<double>::quiet_NaN();  ///< smallest value found
     std::vector<double> settings;            ///< settings of the completed waves, rows of d in [0, 1]
     std::vector<double> checked;             ///< settings of the predictive check, rows of d in [0, 1]
-    std::vector<std::vector<double>> check;  ///< answers of each target there, in their order; NaN: none yet
+    std::vector<std::vector<double>> check;  ///< answers of each target there, in their order; NaN: none
+    bool checks_known = false;               ///< every run of the predictive check is settled
     PointSet points;                         ///< all points that follow from the answers
 };
 

@@ -74,6 +74,9 @@ struct DesignRequest {
     /// Answers of the points so far, by observable and number; empty: the point is not settled; NaN: no answer. Used
     /// only by growing designs.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};
+    /// Whether the campaign's `where` clause accepts a point of the unit cube; empty: every point, or unknown. Used only
+    /// by growing designs.
+    std::function<bool(std::span<const double> u)> admits = {};
     /// Points that follow from the answers, if they have already been computed.
     std::shared_ptr<const PointSet> grown = {};
 

@@ -84,15 +84,13 @@ constexpr std::size_t drawn_on_page = 800;
 
 Json calibration_json(const CalibrationReport& report) {
     const auto wave = [](const auto& one) {
-        return Json{{"settings", one.settings},
-                    {"cases", one.cases},
-                    {"failed", one.failed},
-                    {"kept", one.kept},
-                    {"model_errors", one.model_error}};
+        return Json{{"settings", one.settings}, {"cases", one.cases}, {"failed", one.failed},
+                    {"excluded", one.excluded}, {"kept", one.kept},   {"model_errors", one.model_error}};
     };
     const auto factor = [](const study::FactorPosterior& one) {
-        return Json{{"factor", one.name}, {"mean", one.mean}, {"sd", one.sd},
-                    {"q05", one.low},     {"q95", one.high},  {"share_of_range", one.share_of_range}};
+        return Json{{"factor", one.name},   {"mean", one.mean}, {"sd", one.sd},
+                    {"q05", one.low},       {"q95", one.high},  {"share_of_range", one.share_of_range},
+                    {"verdict", one.word()}};
     };
     const auto target = [](const study::TargetCheck& one) {
         return Json{{"experiment", one.experiment},
@@ -132,13 +130,18 @@ std::string calibration_line(const CalibrationReport& report) {
 }
 
 store::Table waves_table(const CalibrationReport& report) {
-    store::Table table{{"wave", "settings", "cases", "failed", "kept"}, {}};
+    const bool excludes = !report.found.waves.empty() && report.found.waves.back().excluded > 0;
+    store::Table table{{"wave", "settings", "cases", "failed"}, {}};
+    if (excludes) table.columns.emplace_back("excluded");
+    table.columns.emplace_back("kept");
     for (const auto& target : report.targets) table.columns.push_back(fmt::format("model error of {}", target.name()));
     std::int64_t number = 0;
     for (const auto& wave : report.found.waves) {
         std::vector<Cell> row = {wave.of_checks ? Cell("checks") : Cell(++number),
                                  static_cast<std::int64_t>(wave.settings), static_cast<std::int64_t>(wave.cases),
-                                 static_cast<std::int64_t>(wave.failed), fmt::format("{:.3g} %", 100 * wave.kept)};
+                                 static_cast<std::int64_t>(wave.failed)};
+        if (excludes) row.emplace_back(static_cast<std::int64_t>(wave.excluded));
+        row.emplace_back(fmt::format("{:.3g} %", 100 * wave.kept));
         for (const double error : wave.model_error)
             row.emplace_back(std::isfinite(error) ? fmt::format("{:.2g} sd", error) : std::string("no model"));
         table.rows.push_back(std::move(row));
@@ -147,11 +150,12 @@ store::Table waves_table(const CalibrationReport& report) {
 }
 
 store::Table posterior_table(const CalibrationReport& report) {
-    store::Table table{{"factor", "unit", "mean", "sd", "5 %", "95 %", "width over range's"}, {}};
+    store::Table table{{"factor", "unit", "mean", "sd", "5 %", "95 %", "width over range's", "verdict"}, {}};
     for (const auto& factor : report.factors)
         table.rows.push_back({factor.name, factor.unit, fmt::format("{:.4g}", factor.mean),
                               fmt::format("{:.2g}", factor.sd), fmt::format("{:.4g}", factor.low),
-                              fmt::format("{:.4g}", factor.high), fmt::format("{:.2f}", factor.share_of_range)});
+                              fmt::format("{:.4g}", factor.high), fmt::format("{:.2f}", factor.share_of_range),
+                              std::string(factor.word())});
     return table;
 }
 

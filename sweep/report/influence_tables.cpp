@@ -185,8 +185,17 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
 
 store::Table model_influence_table(const ModelInfluence& influence) {
     store::Table table{{"factor", "first order", "total", "interactions"}, {}};
+    if (influence.depends()) table.columns = {"factor", "Shapley effect"};
     if (!influence.indices) return table;
     const auto& indices = *influence.indices;
+    if (influence.depends()) {
+        std::vector<std::size_t> by_effect(influence.factors.size());
+        std::iota(by_effect.begin(), by_effect.end(), std::size_t{0});
+        std::ranges::stable_sort(by_effect, std::ranges::greater{},
+                                 [&](std::size_t j) { return indices.shapley[j].value; });
+        for (const auto j : by_effect) table.rows.push_back({influence.factors[j], index_text(indices.shapley[j])});
+        return table;
+    }
     std::vector<std::size_t> order(influence.factors.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return indices.total[j].value; });
@@ -198,13 +207,17 @@ store::Table model_influence_table(const ModelInfluence& influence) {
 
 namespace {
 
-/// Returns a line on the variance from noise factors, and on the control factor that reduces it most.
+/// Returns a line on the variance from noise factors, and on the control factor that reduces it most, if one does so
+/// significantly.
 std::string noise_line(const ModelInfluence& influence) {
     const auto& noise = *influence.indices->noise;
-    const auto& best = noise.controls.front();
-    return fmt::format("noise ({}) makes {} of the variance of the mean response; {} reduces it most: to {} {}",
-                       campaign::listed(influence.noise), index_text(noise.total), influence.factors[best.factor],
-                       index_text(best.left), influence.calmest.front());
+    const auto text = fmt::format("noise ({}) makes {} of the variance of the mean response",
+                                  campaign::listed(influence.noise), index_text(noise.total));
+    const auto best = std::ranges::find_if(noise.controls, [](const auto& one) { return one.significant(); });
+    if (best == noise.controls.end()) return text + "; no control factor reduces it significantly";
+    return fmt::format("{}; {} reduces it most: to {} {}", text, influence.factors[best->factor],
+                       index_text(best->left),
+                       influence.calmest[static_cast<std::size_t>(best - noise.controls.begin())]);
 }
 
 Json noise_json(const ModelInfluence& influence) {
@@ -212,9 +225,10 @@ Json noise_json(const ModelInfluence& influence) {
     const auto& noise = *influence.indices->noise;
     Json controls = Json::array();
     for (std::size_t k = 0; k < noise.controls.size(); ++k)
-        controls.push_back(
-            Json{{"name", influence.factors[noise.controls[k].factor]}, {"where", influence.calmest[k]}}.add(
-                index_json(noise.controls[k].left)));
+        controls.push_back(Json{{"name", influence.factors[noise.controls[k].factor]},
+                                {"where", influence.calmest[k]},
+                                {"significant", noise.controls[k].significant()}}
+                               .add(index_json(noise.controls[k].left)));
     return Json{{"factors", influence.noise}, {"controls", controls}}.add(index_json(noise.total));
 }
 
@@ -224,7 +238,7 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
     if (!influence.indices) return {fmt::format("no indices from a response model: {}", influence.refused)};
     std::vector<std::pair<double, std::string>> pairs;
     for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
-        if (index.value > index.half_width)
+        if (!influence.depends() && index.value > index.half_width)
             pairs.emplace_back(-index.value, fmt::format("{} with {} {}", influence.factors[j], influence.factors[k],
                                                          index_text(index)));
     });
@@ -233,6 +247,11 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
     std::string text;
     for (const auto& [size, pair] : pairs) text += (text.empty() ? "interactions of pairs: " : ", ") + pair;
     if (!text.empty()) lines.push_back(text);
+    if (influence.depends())
+        lines.push_back(
+            fmt::format("{} are columns of one sample and depend on each other: Shapley effects share the "
+                        "variance between them, and do not depend on the order of the columns",
+                        campaign::listed(influence.dependent)));
     if (!influence.noise.empty()) lines.push_back(noise_line(influence));
     const auto& quality = std::get<stats::ResponseModel>(influence.model->model).quality();
     lines.push_back(fmt::format(
@@ -252,12 +271,18 @@ Json model_influence_json(const ModelInfluence& influence) {
     Json factors = Json::array(), pairs = Json::array(), scatter, unexplained, model;
     if (influence.indices) {
         const auto& indices = *influence.indices;
-        for (std::size_t j = 0; j < influence.factors.size(); ++j)
-            factors.push_back({{"name", influence.factors[j]},
-                               {"first", index_json(indices.first[j])},
-                               {"total", index_json(indices.total[j])},
-                               {"interactions", index_json(indices.interactions[j])}});
+        for (std::size_t j = 0; j < influence.factors.size(); ++j) {
+            Json factor = {{"name", influence.factors[j]}};
+            if (influence.depends())
+                factor.add("shapley", index_json(indices.shapley[j]));
+            else
+                factor.add({{"first", index_json(indices.first[j])},
+                            {"total", index_json(indices.total[j])},
+                            {"interactions", index_json(indices.interactions[j])}});
+            factors.push_back(factor);
+        }
         for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
+            if (influence.depends()) return;
             pairs.push_back(
                 Json{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(index_json(index)));
         });

@@ -133,11 +133,25 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, con
             {"model", model_json(model)}};
 }
 
+namespace {
+
+/// Returns the table with the columns of the factors, which may be many, behind the others.
+store::Table answer_first(store::Table table, std::size_t factors) {
+    const auto turn = [&](auto& cells) {
+        std::ranges::rotate(cells, cells.begin() + static_cast<std::ptrdiff_t>(factors));
+    };
+    turn(table.columns);
+    for (auto& row : table.rows) turn(row);
+    return table;
+}
+
+}  // namespace
+
 Document predictions_document(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
     Document shown{.rows = predictions_table(cases, model, predicted),
                    .value = predictions_json(cases, model, predicted)};
     shown.say(fmt::format("{}: {}", cases.campaign.name, with_unit(model.observable, model.unit))).say();
-    shown.show(shown.rows).say();
+    shown.show(answer_first(shown.rows, cases.factors.size())).say();
     if (const auto failures = failures_near(cases, predicted); !failures.empty()) shown.say(failures).say();
     return shown.say(model_lines(model));
 }

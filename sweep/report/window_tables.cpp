@@ -63,6 +63,30 @@ Json window_table_json(const ModelCases& cases, const WindowRequest& request, co
                        {"observables", observables}});
 }
 
+store::Table computed_table(const ModelCases& cases, const WindowRequest& request, const Window& window) {
+    store::Table table;
+    table.columns = cases.factor_names();
+    table.columns.emplace_back("runs");
+    if (!window.objective_is_factor) table.columns.push_back(request.objective);
+    table.columns.push_back(window.models[*window.against].observable);
+    for (const auto& one : window.computed_front) {
+        auto row = input_cells(cases.factors, one.setting);
+        row.emplace_back(one.runs);
+        if (!window.objective_is_factor) row.push_back(to_cell(one.objective));
+        row.push_back(to_cell(one.against));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json computed_json(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                   const study::ComputedSetting& one) {
+    Json observables = Json::object();
+    if (!window.objective_is_factor) observables.add(request.objective, one.objective);
+    observables.add(window.models[*window.against].observable, one.against);
+    return {{"inputs", inputs_json(cases.factors, one.setting)}, {"runs", one.runs}, {"observables", observables}};
+}
+
 std::string_view judged_text(stats::Judged judged) {
     return judged == stats::Judged::mean ? "mean" : "single_run";
 }
@@ -100,9 +124,13 @@ Json window_json(const ModelCases& cases, const WindowRequest& request, const Wi
             {"judged", judged_text(request.judged)},
             {"share_of_box", window.share_of_box},
             {"share_error", window.share_error},
+            {"share_low", window.share_low},
+            {"share_high", window.share_high},
             {"share_failed", window.share_failed},
             {"best", window.best ? json(*window.best) : Json()},
             {"surest", window.surest ? json(*window.surest) : Json()},
+            {"computed_front", Json::list(window.computed_front,
+                                          [&](const auto& one) { return computed_json(cases, request, window, one); })},
             {"front", Json::list(window.front, json)},
             {"next", Json::list(window.next, json)},
             {"models", Json::list(window.models, model_json)},
@@ -121,11 +149,15 @@ Document window_document(const ModelCases& cases, const WindowRequest& request, 
                           : fmt::format("{} {} there", request.maximise ? "largest" : "smallest", request.objective);
     say_settings(shown, goal, cases, window, list_of(window.best));
     say_settings(shown, "where the condition is likeliest", cases, window, list_of(window.surest));
-    if (window.against)
-        say_settings(shown,
-                     fmt::format("trade-off of {} and {}, whether the condition holds or not", request.objective,
-                                 window.models[*window.against].observable),
-                     cases, window, window.front);
+    if (window.against) {
+        const auto pair = fmt::format("{} and {}, whether the condition holds or not", request.objective,
+                                      window.models[*window.against].observable);
+        if (!window.computed_front.empty())
+            shown.say("trade-off of " + pair + ": computed cases, means over the runs of a setting")
+                .show(computed_table(cases, request, window))
+                .say();
+        say_settings(shown, "trade-off of " + pair + ": predictions with a small error", cases, window, window.front);
+    }
     say_settings(shown, "to run next", cases, window, window.next);
     for (const auto& model : window.models) shown.say(model_lines(model));
     return shown.say_notes(window.notes);

@@ -11,9 +11,10 @@ namespace grainsweep::report {
 /// and near_failed; for each model NAME, NAME_error, NAME_scatter.
 [[nodiscard]] Document window_document(const study::ModelCases& cases, const study::WindowRequest& request,
                                        const study::Window& window);
-/// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "share_failed", "best":
+/// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "share_low", "share_high",
+/// "share_failed", "best":
 /// {"inputs", "mean", "mean_error", "scatter", "probability", "answers", "near_cases", "near_failed", "observables"},
-/// "surest", "front", "next", "models", "notes"}
+/// "surest", "computed_front": [{"inputs", "runs", "observables"}], "front", "next", "models", "notes"}
 [[nodiscard]] Json window_json(const study::ModelCases& cases, const study::WindowRequest& request,
                                const study::Window& window);
 

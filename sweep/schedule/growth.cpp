@@ -1,6 +1,9 @@
 #include "sweep/schedule/growth.hpp"
 
 #include "sweep/campaign/experiments.hpp"
+#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/expression.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -35,6 +38,32 @@ Answers known_answers(const store::Store& store, const store::CampaignRecord& re
     return answers;
 }
 
+namespace {
+
+/// Which points the `where` clause of a stored campaign accepts; empty: all, or an older version accepted a clause that
+/// is refused now.
+std::function<bool(std::span<const double>)> admission(const store::CampaignRecord& record) {
+    if (record.condition.empty()) return {};
+    auto space = campaign::space_of(record);
+    if (!space) return {};
+    std::vector<std::string> names;
+    for (const auto& [name, value] : space->scene->defaults()) names.push_back(name);
+    try {
+        return [space = std::move(*space), filter = store::make_filter(record.condition, names)](
+                   std::span<const double> u) { return filter(space.at(u)); };
+    } catch (const campaign::WrongQuestion&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+void learn_answers(designs::DesignRequest& request, const store::Store& store, const store::CampaignRecord& record) {
+    const auto& design = designs::design_named(record.design);
+    request.answers = known_answers(store, record, design.rests_on(request));
+    if (design.calibrates) request.admits = admission(record);
+}
+
 bool grow(campaign::Campaign& campaign, const store::Store& store) {
     const auto& design = designs::design_named(campaign.design);
     if (!design.grows) return false;
@@ -42,7 +71,7 @@ bool grow(campaign::Campaign& campaign, const store::Store& store) {
     if (!record) return false;
     const auto before = design.size(campaign.request);
     campaign.request.grown.reset();
-    campaign.request.answers = known_answers(store, *record, design.rests_on(campaign.request));
+    learn_answers(campaign.request, store, *record);
     campaign.request.grown = std::make_shared<const designs::PointSet>(design.sample(campaign.request));
     return design.size(campaign.request) > before;
 }

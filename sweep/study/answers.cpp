@@ -1,5 +1,8 @@
 #include "sweep/study/answers.hpp"
 
+#include "stats/group_test.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +14,7 @@ namespace {
 
 constexpr std::size_t neighbours = 5;
 constexpr double tie = 1 + 1e-9;  // of a squared distance
+constexpr double dependence_level = 0.01;
 
 bool finite(std::span<const double> numbers) {
     return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
@@ -79,11 +83,12 @@ std::vector<Answers::Answer> Answers::at(std::span<const Setting> settings) cons
     if (model_) {
         const auto asked = rows(settings);
         const auto predicted = model_->predict({asked, features_.names.size()});
-        for (std::size_t i = 0; i < answers.size(); ++i) answers[i] = {predicted[i].mean, predicted[i].mean_low()};
+        for (std::size_t i = 0; i < answers.size(); ++i)
+            answers[i] = {predicted[i].mean, predicted[i].mean_low(), predicted[i].mean_high()};
     }
     if (possible_)
         for (std::size_t i = 0; i < answers.size(); ++i)
-            if (!possible_(settings[i])) answers[i] = {0, 0};
+            if (!possible_(settings[i])) answers[i] = {0, 0, 0};
     return answers;
 }
 
@@ -120,10 +125,59 @@ Near Answers::near(const Setting& setting) const {
     return near;
 }
 
+std::vector<OutcomeTest> Answers::tests(const ModelCases& cases) const {
+    std::vector<OutcomeTest> tests;
+    const auto width = features_.names.size();
+    if (width == 0 || rows_.empty()) return tests;
+    const auto box = box_of(rows_, width);
+    for (const auto outcome : campaign::outcomes) {
+        std::vector<double> seen;
+        std::vector<bool> failed;
+        for (std::size_t i = 0; i < rows_.size() / width; ++i) {
+            if (i < failed_ &&
+                (cases.failed[i].outcome != outcome || (possible_ && !possible_(cases.failed[i].setting))))
+                continue;
+            const auto row = std::span(rows_).subspan(i * width, width);
+            if (!finite(row)) continue;
+            seen.insert(seen.end(), row.begin(), row.end());
+            failed.push_back(i < failed_);
+        }
+        const auto count = static_cast<std::size_t>(std::ranges::count(failed, true));
+        if (count == 0) continue;
+        const auto found = stats::compare_groups({seen, width}, failed, box.low, box.high);
+        auto& test = tests.emplace_back(OutcomeTest{outcome, count, found.p_value, {}});
+        for (std::size_t j = 0; j < width; ++j)
+            if (found.p_of_feature[j] <= dependence_level) test.features.push_back(features_.names[j]);
+    }
+    return tests;
+}
+
+bool OutcomeTest::depends() const {
+    return p_value <= dependence_level;
+}
+
+std::string OutcomeTest::text() const {
+    const auto what = fmt::format("{} ({} case{})", campaign::to_string(outcome), cases, cases == 1 ? "" : "s");
+    const auto p = p_value < 0.0015 ? std::string("p <= 0.001") : fmt::format("p = {:.2g}", p_value);
+    if (!depends())
+        return fmt::format(
+            "{}: no evidence that the outcome depends on the factors ({}); if it is no property of the "
+            "process, --leave-out {} counts without these cases",
+            what, p, campaign::to_string(outcome));
+    return fmt::format("{}: the outcome depends on {} ({})", what,
+                       features.empty() ? std::string("the factors together") : campaign::listed(features), p);
+}
+
 std::string near_text(const ModelCases& cases, const Near& near) {
     if (near.failed.empty()) return fmt::format("none of the {} nearest cases failed", near.cases);
     return fmt::format("{} of the {} nearest cases failed ({})", near.failed.size(), near.cases,
                        outcomes_text(cases, near.failed));
+}
+
+std::string left_out_text(const ModelCases& cases) {
+    std::vector<std::string_view> names;
+    for (const auto outcome : cases.left_out) names.push_back(campaign::to_string(outcome));
+    return campaign::listed(names);
 }
 
 std::string failed_text(const ModelCases& cases) {

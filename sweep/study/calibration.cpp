@@ -21,10 +21,10 @@ namespace grainsweep::study {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double uniform_sd = 0.28867513459481287;  // of the uniform distribution over [0, 1]
-constexpr double not_determined = 0.8;              // share of the prior's sd
-constexpr double strongly_coupled = 0.8;            // correlation
-constexpr double out_of_reach = 3;                  // standard deviations beyond every case
+constexpr double uniform_sd = 0.28867513459481287;             // of the uniform distribution over [0, 1]
+constexpr double determined_below = 0.25, partly_below = 0.5;  // shares of the prior's sd
+constexpr double strongly_coupled = 0.8;                       // correlation
+constexpr double out_of_reach = 3;                             // standard deviations beyond every case
 constexpr double settled_chains = 1.05;
 
 double mean_of(const std::vector<double>& values) {
@@ -51,13 +51,26 @@ FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
     const auto rows = found.posterior->rows();
     std::vector<double> values;
     for (std::size_t i = 0; i < rows.size(); ++i) values.push_back(found.ranges[j].value_at(rows.row(i)[j]));
-    return {found.factors[j],
-            "",
-            mean_of(values),
-            sd_of(values),
-            quantile(values, 0.05),
-            quantile(values, 0.95),
-            found.shape->sd[j] / uniform_sd};
+    FactorPosterior one{found.factors[j],
+                        "",
+                        mean_of(values),
+                        sd_of(values),
+                        quantile(values, 0.05),
+                        quantile(values, 0.95),
+                        found.shape->sd[j] / uniform_sd};
+    using enum Determination;
+    one.determination = one.share_of_range <= determined_below ? determined
+                        : one.share_of_range <= partly_below   ? partly
+                                                               : not_determined;
+    const std::size_t d = found.factors.size();
+    double strongest = strongly_coupled;
+    for (std::size_t k = 0; k < d; ++k) {
+        const double coupling = k == j ? 0 : std::abs(found.shape->correlation[j * d + k]);
+        if (coupling < strongest) continue;
+        strongest = coupling;
+        one.ridge_with = found.factors[k];
+    }
+    return one;
 }
 
 std::string condition_text(const designs::MeasuredTarget& target, const std::vector<campaign::StatedFactor>& factors) {
@@ -142,6 +155,24 @@ std::size_t followed_points(const designs::Calibration& found, const Responses& 
     return followed;
 }
 
+/// Returns whether failures depend on the factors, in a sentence; empty: no setting failed.
+std::string failures_text(const designs::Calibration& found) {
+    const auto& answering = found.answering;
+    if (found.waves.back().failed == 0 || !answering.p_value()) return {};
+    const auto count = fmt::format("{} of {} settings have no answer to some target", found.waves.back().failed,
+                                   found.settings.size() / found.factors.size() - found.waves.back().excluded);
+    const auto p = fmt::format("p = {:.2g}", *answering.p_value());
+    if (!answering.decides())
+        return fmt::format("{}; there is no evidence that this depends on the factors ({}): it carries no information",
+                           count, p);
+    std::string names;
+    for (const auto j : answering.factors()) names += fmt::format("{}{}", names.empty() ? "" : ", ", found.factors[j]);
+    return fmt::format(
+        "{}; this depends on {} ({}): settings count with their probability of an answer, and not where "
+        "its 95 % interval lies below 1/2",
+        count, names, p);
+}
+
 /// Returns notes for users who quote the posterior.
 std::vector<std::string> notes_of(const CalibrationReport& report) {
     std::vector<std::string> notes;
@@ -163,8 +194,10 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
     }
     if (!found.waves.empty()) {
         const auto& last = found.waves.back();
-        if (last.failed > 0)
-            notes.push_back(fmt::format("{} settings have no answer to some target and are left out", last.failed));
+        if (last.excluded > 0)
+            notes.push_back(fmt::format("{} settings are excluded by the campaign's `where`: no case was run there",
+                                        last.excluded));
+        if (const auto text = failures_text(found); !text.empty()) notes.push_back(text);
         if (last.kept == 0 && found.least_implausibility > 3)
             notes.push_back(
                 fmt::format("the targets contradict each other: no setting is within 3 standard deviations of all "
@@ -173,7 +206,7 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
     }
     if (!found.posterior) return notes;
     for (const auto& factor : report.factors)
-        if (factor.share_of_range > not_determined)
+        if (factor.determination == Determination::not_determined)
             notes.push_back(
                 fmt::format("{} is not determined by these targets: its posterior is {:.0f} % as wide as its range",
                             factor.name, 100 * factor.share_of_range));
@@ -200,35 +233,48 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
     return notes;
 }
 
-/// The factors that the targets leave wide: by themselves, or along a ridge with another.
-std::string undetermined(const CalibrationReport& report) {
-    constexpr double half = 0.5;  // of the prior's sd, along a ridge
+/// Returns the factors of one determination as a list; empty: there is none.
+std::string listed(const CalibrationReport& report, Determination which) {
     std::string text;
-    const std::size_t d = report.factors.size();
-    for (std::size_t i = 0; i < d; ++i) {
-        const auto coupling = [&](std::size_t j) {
-            return j == i ? 0 : std::abs(report.found.shape->correlation[i * d + j]);
-        };
-        std::size_t partner = i;
-        for (std::size_t j = 0; j < d; ++j)
-            if (coupling(j) > coupling(partner)) partner = j;
-        const bool ridge = coupling(partner) >= strongly_coupled;
-        if (!(report.factors[i].share_of_range > (ridge ? half : not_determined))) continue;
-        text += fmt::format("{}{}{}", text.empty() ? "" : ", ", report.factors[i].name,
-                            ridge ? " along a ridge with " + report.factors[partner].name : "");
+    for (const auto& factor : report.factors) {
+        if (factor.determination != which) continue;
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", factor.name);
+        if (which == Determination::partly)
+            text += fmt::format(" ({:.2f} of its range's width)", factor.share_of_range);
+        if (!factor.ridge_with.empty()) text += " along a ridge with " + factor.ridge_with;
     }
     return text;
 }
 
+/// Returns why the fresh runs are no check; empty: they are.
+std::string unchecked(const CalibrationReport& report) {
+    const std::size_t requested = report.found.checked.size() / report.found.factors.size();
+    std::size_t alive = requested;
+    for (const auto& target : report.targets) alive = std::min(alive, target.runs);
+    const std::size_t needed = std::max(fewest_checks, (requested + 1) / 2);
+    if (alive >= needed) return {};
+    return fmt::format("{} of {} fresh runs {} an answer, and {} are needed", alive, requested,
+                       alive == 1 ? "has" : "have", needed);
+}
+
 std::optional<Verdict> calibration_verdict(const CalibrationReport& report) {
     const auto& found = report.found;
+    if (!found.waves_end || !found.posterior || !found.checks_known) return std::nullopt;
     const auto miss = designs::largest_miss(found.targets, found.check);
-    if (!found.waves_end || !found.posterior || !miss) return std::nullopt;
-    if (miss->size > designs::largest_miss_allowed)
+    if (miss && miss->size > designs::largest_miss_allowed)
         return Verdict{fmt::format("not reproduced: {} by {:.1f} sd", report.targets[miss->target].name(), miss->size),
                        false};
-    if (const auto wide = undetermined(report); !wide.empty()) return Verdict{"not determined: " + wide};
-    return Verdict{"calibrated"};
+    std::string sentence;
+    const auto add = [&](std::string_view what, const std::string& which) {
+        if (!which.empty()) sentence += fmt::format("{}{}: {}", sentence.empty() ? "" : "; ", what, which);
+    };
+    add("not determined", listed(report, Determination::not_determined));
+    add("partly determined", listed(report, Determination::partly));
+    if (!(found.posterior->scale_reduction < settled_chains))
+        add("not settled",
+            fmt::format("chains of the posterior, scale reduction {:.2f}", found.posterior->scale_reduction));
+    add("not checked", unchecked(report));
+    return Verdict{sentence.empty() ? "calibrated" : sentence};
 }
 
 /// The campaigns of the experiments by name; of a calibration without, this one by the empty name.
@@ -245,6 +291,11 @@ std::map<std::string, store::CampaignRecord> records_of(const store::Store& stor
 
 }  // namespace
 
+std::string_view FactorPosterior::word() const {
+    using enum Determination;
+    return determination == determined ? "determined" : determination == partly ? "partly" : "not determined";
+}
+
 std::string TargetCheck::name() const {
     return fmt::format("{}{}{}{}{}", experiment, experiment.empty() ? "" : " ", observable,
                        condition.empty() ? "" : " at ", condition);
@@ -254,7 +305,7 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
     const auto* design = designs::find_design(record.design);
     if (design == nullptr || !design->calibrates) return std::nullopt;
     auto request = campaign::request_of(record);
-    request.answers = schedule::known_answers(store, record, design->rests_on(request));
+    schedule::learn_answers(request, store, record);
     CalibrationReport report{designs::calibration_of(request), {}, {}, {}, {}};
     const auto followed = followed_points(report.found, read_responses(store, record));
     const bool by_another_program = followed < report.found.points.size();

@@ -7,10 +7,15 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace grainsweep::study {
+
+/// Result for one factor, by the width of its posterior divided by the width of its prior. Up to 1/4 the factor is
+/// determined (two bits). Above 1/2 it is not (less than one bit). Between them it is determined partly.
+enum class Determination { determined, partly, not_determined };
 
 /// Posterior of one factor.
 struct FactorPosterior {
@@ -19,6 +24,12 @@ struct FactorPosterior {
     double low = 0, high = 0;  ///< 5 and 95 % quantiles
     double share_of_range =
         0;  ///< sd divided by the sd of the uniform prior, in the scale of the factor; near 1: not determined
+    Determination determination = Determination::not_determined;
+    /// Factor with which it is strongly correlated; empty: none.
+    std::string ridge_with = {};
+
+    /// Returns "determined", "partly" or "not determined".
+    [[nodiscard]] std::string_view word() const;
 };
 
 /// Prediction and fresh runs of one target.
@@ -40,8 +51,12 @@ struct TargetCheck {
     [[nodiscard]] std::string name() const;
 };
 
-/// Result of a finished calibration in one line: "calibrated", "not determined: friction along a ridge with
-/// rolling_friction", "not reproduced: rate flow_time by 3.1 sd".
+/// Fewest fresh runs with an answer that check a posterior; at least half of the requested ones, too.
+inline constexpr std::size_t fewest_checks = 4;
+
+/// Result of a finished calibration in one line: "calibrated"; "not reproduced: rate flow_time by 3.1 sd"; or what is
+/// missing, "not determined: friction along a ridge with rolling_friction", "partly determined: gap (0.37 of its
+/// range's width)", "not settled: ...", "not checked: 2 of 8 fresh runs have an answer".
 struct Verdict {
     std::string sentence;
     bool reproduced = true;  ///< fresh runs meet every measurement within designs::largest_miss_allowed

@@ -198,7 +198,18 @@ void note_dependent_values(Influence& influence, const Responses& responses) {
         "the binned index of {} includes the effect of its condition, because the default stands where that is false; "
         "indices by a response model do not include it",
         [&](std::size_t j) { return responses.factors[j].conditional; });
-    if (responses.design().purpose == designs::Purpose::saltelli) return;  // the shares have one index there
+    const auto together = [&](std::size_t j) { return !responses.factors[j].shares.empty(); };
+    if (responses.design().purpose == designs::Purpose::saltelli) {  // shares that add to one have one index there
+        note(
+            "{} are columns of one sample and depend on each other: first and total indices depend on the order of the "
+            "columns; Shapley effects by a response model do not",
+            together);
+        return;
+    }
+    note(
+        "{} are columns of one sample and depend on each other: the binned index of each includes the effect of the "
+        "others, and the indices have no sum; Shapley effects by a response model share the variance",
+        together);
     note("{} add to one: the binned index of each includes the effect of the others, and the indices have no sum",
          [&](std::size_t j) { return responses.group_names[responses.groups[j]] == campaign::group_of_shares; });
 }
@@ -212,10 +223,9 @@ void add_given_data(Influence& influence, const Responses& responses, std::span<
         const auto& factor = responses.factors[j];
         auto& found = influence.factors[j];
         found.bins = bins_for(factor, lattice, responses.settled, points);
-        // Of columns that are drawn together the coordinate: an index is with respect to what the design varies.
-        const auto coordinates =
-            std::span(factor.shares.empty() ? factor.values : factor.shares).first(responses.settled);
-        const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
+        // Columns of one sample, too, have their values: a coordinate depends on the order of the columns.
+        const auto judged = std::span(factor.values).first(responses.settled);
+        const auto indices = stats::first_order_indices(judged, 1, values, labels, found.bins);
         found.first = indices.first[0];
         // Lines of a lattice are no sample of it: leaving some out says nothing about the error.
         if (lattice) found.first.half_width = not_a_number;

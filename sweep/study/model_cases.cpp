@@ -145,7 +145,8 @@ std::vector<std::string> ModelCases::factor_names() const {
     return names;
 }
 
-ModelCases read_model_cases(const store::Store& store, std::string_view name) {
+ModelCases read_model_cases(const store::Store& store, std::string_view name,
+                            std::span<const campaign::Outcome> left_out) {
     const auto records = chosen_campaigns(store, name);
     ModelCases cases;
     std::set<std::string> seen;
@@ -156,6 +157,10 @@ ModelCases read_model_cases(const store::Store& store, std::string_view name) {
         add_model_cases(cases, responses, seen);
         if (record.name != cases.campaign.name && cases.settings.size() > before) cases.further.push_back(record.name);
     }
+    cases.left_out.assign(left_out.begin(), left_out.end());
+    cases.cases_left_out = std::erase_if(cases.failed, [&](const FailedCase& one) {
+        return std::ranges::find(left_out, one.outcome) != left_out.end();
+    });
     cases.possible = possibility(store, cases);
     return cases;
 }

@@ -31,6 +31,8 @@ struct ModelCases {
     std::string main;                         ///< name of the main observable; empty: no observable has a value
     std::string case_id;                      ///< id of an answered case, which has the fixed values
     std::vector<FailedCase> failed;
+    std::vector<campaign::Outcome> left_out;  ///< outcomes whose failures are no property of the process
+    std::size_t cases_left_out = 0;           ///< failed cases with these outcomes, which are not in `failed`
     /// Check of the scene whether a setting is possible, without running it; empty: no case was rejected for its
     /// setting.
     std::function<bool(const Setting&)> possible;
@@ -43,8 +45,10 @@ struct ModelCases {
 };
 
 /// Returns the cases of the named campaign. Empty name: of the only campaign, or of all campaigns that differ in their
-/// points alone; throws WrongQuestion if more than one choice is left.
-[[nodiscard]] ModelCases read_model_cases(const store::Store& store, std::string_view campaign);
+/// points alone; throws WrongQuestion if more than one choice is left. `left_out`: outcomes of failed cases that are
+/// not used.
+[[nodiscard]] ModelCases read_model_cases(const store::Store& store, std::string_view campaign,
+                                          std::span<const campaign::Outcome> left_out = {});
 
 /// Returns only the answered cases of a campaign's settled prefix, from which its statistics are computed. `rows`: the
 /// row of each case in `responses`.

@@ -1,5 +1,7 @@
 #include "sweep/study/model_influence.hpp"
 
+#include "sweep/campaign/joint_column.hpp"
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/sample_parts.hpp"
 
@@ -40,6 +42,8 @@ stats::FactorRoles roles_of(const std::vector<ModelFactor>& factors, const std::
     for (const auto j : varied) {
         roles.noise.push_back(factors[j].noise);
         roles.levels.push_back(factors[j].is_word() ? factors[j].words.size() : factors[j].numbers.size());
+        const auto* column = campaign::column_of(factors[j].distribution ? &*factors[j].distribution : nullptr);
+        roles.together.push_back(column == nullptr ? std::nullopt : std::optional(*column));
     }
     return roles;
 }
@@ -53,7 +57,8 @@ std::string part_of_range(const ModelFactor& factor, double from, double to) {
     const double middle = (from + to) / 2;
     if (factor.is_word()) return "at " + factor.text(exact_setting(std::span(&factor, 1), {&middle, 1}).front());
     if (!factor.numbers.empty()) return "at " + at(middle);
-    return fmt::format("between {} and {}", at(from), at(to));
+    const auto low = at(from), high = at(to);
+    return low == high ? "at " + low : fmt::format("between {} and {}", low, high);
 }
 
 void describe_noise(ModelInfluence& found, const std::vector<ModelFactor>& factors,
@@ -93,10 +98,17 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
         if (cases.factors[j].varies()) varied.push_back(j);
     for (const auto j : varied) found.factors.push_back(cases.factors[j].name);
+    for (const auto j : varied)
+        if (!responses.factors[j].shares.empty()) found.dependent.push_back(cases.factors[j].name);
     found.model = model;
     found.without_value = responses.without_value(response);
     found.indices = stats::model_indices(*response_model, varied.size(), groups_of(responses, rows),
                                          model_map(model, cases.factors, varied), roles_of(cases.factors, varied));
+    if (found.depends() && found.indices->shapley.empty())
+        return refused_indices(
+            fmt::format("{} are columns of one sample and depend on each other; Shapley effects are "
+                        "computed for at most {} varied factors",
+                        campaign::listed(found.dependent), stats::most_shared_factors));
     if (found.indices->noise) describe_noise(found, cases.factors, varied);
     return found;
 }

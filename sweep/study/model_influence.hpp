@@ -22,11 +22,15 @@ struct ModelInfluence {
     std::vector<std::string> factors;            ///< varied factors, in the campaign's order
     std::optional<stats::ModelIndices> indices;  ///< empty: refused
     std::optional<ObservableModel> model;
-    std::size_t without_value = 0;     ///< settled cases
-    std::vector<std::string> noise;    ///< names of the varied noise factors; empty: there is no share of noise
-    std::vector<std::string> calmest;  ///< for each of indices->noise->controls the part of its range, as text:
-                                       ///< "between 0.005 and 0.006"
-    std::string refused;               ///< reason: one sentence without a full stop
+    std::size_t without_value = 0;       ///< settled cases
+    std::vector<std::string> noise;      ///< names of the varied noise factors; empty: there is no share of noise
+    std::vector<std::string> calmest;    ///< for each of indices->noise->controls the part of its range, as text:
+                                         ///< "between 0.005 and 0.006"
+    std::vector<std::string> dependent;  ///< varied factors that are columns of one sample: they have Shapley effects
+    std::string refused;                 ///< reason: one sentence without a full stop
+
+    /// Returns whether factors depend on each other, so that Shapley effects replace the indices.
+    [[nodiscard]] bool depends() const { return !dependent.empty(); }
 };
 
 /// Fits a model and returns its indices. Throws WrongQuestion if a feature of the campaign file cannot be evaluated.

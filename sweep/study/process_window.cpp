@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace grainsweep::study {
@@ -17,7 +18,11 @@ namespace {
 constexpr std::size_t candidates_of_next = 192, points_of_front = 12;
 constexpr std::size_t points_about_best = 64, rounds_about_best = 8;
 constexpr double first_reach = 0.15;
-constexpr std::size_t share_of_doubted = 4;  // of the settings searched, one in so many
+constexpr std::size_t share_of_doubted = 4;                // of the settings searched, one in so many
+constexpr double widest_apart = 0.1, least_apart = 0.025;  // of the range of a factor
+constexpr double enough_gain = 0.5;                        // of the best gain
+constexpr double least_gain = 0.01;                        // of the best gain, below which a case is not worth it
+constexpr double small_error = 0.1;                        // of the range of the computed values
 
 /// The best of the judged points, improved by points about it.
 std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& question, std::span<const BoxPoint> points,
@@ -30,6 +35,7 @@ std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& ques
     std::vector<Judgement> seen;
     double reach = first_reach;
     for (std::size_t round = 0; round < rounds_about_best; ++round, reach /= 2) {
+        question.report("about the best setting", static_cast<double>(round) / rounds_about_best);
         const auto near = question.space().about(centre, reach, points_about_best);
         std::vector<Setting> settings;
         for (const auto& point : near) settings.push_back(point.setting);
@@ -44,8 +50,51 @@ std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& ques
     return {std::move(best), std::move(seen)};
 }
 
-/// Trade-off of the objective and the first other observable that the condition bounds from one side.
-void find_front(Window& window, const WindowQuestion& question, const WindowRequest& request,
+/// Values of the objective in the answered cases.
+std::vector<double> objective_values(const ModelCases& cases, const WindowQuestion& question,
+                                     const WindowRequest& request) {
+    if (!question.objective_is_factor()) return cases.observable(request.objective).values;
+    const auto names = cases.factor_names();
+    const auto j = static_cast<std::size_t>(std::ranges::find(names, request.objective) - names.begin());
+    std::vector<double> values;
+    for (const auto& setting : cases.settings) values.push_back(setting[j]);
+    return values;
+}
+
+/// Means over the runs of each setting with both values, in the order of the first run.
+std::vector<ComputedSetting> computed_settings(const ModelCases& cases, std::span<const double> objective,
+                                               std::span<const double> against) {
+    std::map<Setting, std::size_t> known;
+    std::vector<ComputedSetting> computed;
+    for (std::size_t i = 0; i < cases.settings.size(); ++i) {
+        if (!std::isfinite(objective[i]) || !std::isfinite(against[i])) continue;
+        const auto [found, is_new] = known.try_emplace(cases.settings[i], computed.size());
+        if (is_new) computed.push_back({.setting = cases.settings[i]});
+        auto& one = computed[found->second];
+        ++one.runs;
+        one.objective += (objective[i] - one.objective) / static_cast<double>(one.runs);
+        one.against += (against[i] - one.against) / static_cast<double>(one.runs);
+    }
+    return computed;
+}
+
+/// Returns at most points_of_front of the indices, the first and the last among them.
+std::vector<std::size_t> thinned(std::span<const std::size_t> front) {
+    const auto shown = std::min(front.size(), points_of_front);
+    std::vector<std::size_t> chosen;
+    for (std::size_t k = 0; k < shown; ++k)
+        chosen.push_back(front[shown == 1 ? 0 : (k * (front.size() - 1) + (shown - 1) / 2) / (shown - 1)]);
+    return chosen;
+}
+
+std::vector<std::size_t> front_of(std::span<const double> first, std::span<const double> second, const Window& window,
+                                  const WindowRequest& request) {
+    return thinned(stats::trade_off_front(first, request.maximise, second, window.against_maximised));
+}
+
+/// Trade-off of the objective and the first other observable that the condition bounds from one side: of the computed
+/// cases, then of predictions with a small error.
+void find_front(Window& window, const ModelCases& cases, const WindowQuestion& question, const WindowRequest& request,
                 std::span<const Judgement> judged) {
     if (request.objective.empty() || !question.condition()) return;
     int direction = 0;
@@ -56,22 +105,33 @@ void find_front(Window& window, const WindowQuestion& question, const WindowRequ
     }
     if (!window.against) return;
     window.against_maximised = direction > 0;
+    const auto computed = computed_settings(cases, objective_values(cases, question, request),
+                                            cases.observable(window.models[*window.against].observable).values);
     std::vector<double> first, second;
+    for (const auto& one : computed) {
+        first.push_back(one.objective);
+        second.push_back(one.against);
+    }
+    for (const auto i : front_of(first, second, window, request)) window.computed_front.push_back(computed[i]);
+    const auto error_allowed = [](const std::vector<double>& values) {
+        return values.empty() ? 0 : small_error * (std::ranges::max(values) - std::ranges::min(values));
+    };
+    const double largest = error_allowed(first), largest_against = error_allowed(second);
+    first.clear();
+    second.clear();
     std::vector<std::size_t> usable;
     for (std::size_t i = 0; i < judged.size(); ++i) {
         const auto& defined = judged[i].defined;
+        const auto& against = judged[i].predictions[*window.against];
         const double least = std::min({judged[i].answers, defined.front(), defined[*window.against]});
-        if (!judged[i].believed || least < 1 - request.risk) continue;
+        if (!judged[i].believed || least < 1 - request.risk || judged[i].objective.mean_error > largest ||
+            against.mean_error > largest_against)
+            continue;
         usable.push_back(i);
         first.push_back(judged[i].objective.mean);
-        second.push_back(judged[i].predictions[*window.against].mean);
+        second.push_back(against.mean);
     }
-    const auto front = stats::trade_off_front(first, request.maximise, second, window.against_maximised);
-    const auto shown = std::min(front.size(), points_of_front);
-    for (std::size_t k = 0; k < shown; ++k) {
-        const auto place = shown == 1 ? 0 : (k * (front.size() - 1) + (shown - 1) / 2) / (shown - 1);
-        window.front.push_back(judged[usable[front[place]]]);
-    }
+    for (const auto i : front_of(first, second, window, request)) window.front.push_back(judged[usable[i]]);
 }
 
 /// P (x_j - x_j*) of the header; where nothing is in the window yet, P.
@@ -118,51 +178,92 @@ double share_error(const WindowQuestion& question, std::span<const Judgement> ju
                       1.96 * std::sqrt(share * (1 - share) / static_cast<double>(judged.size())));
 }
 
-/// NaN, averaged over, is the same as NaN.
-bool same_setting(const Setting& a, const Setting& b) {
-    return std::ranges::equal(a, b, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+/// Distance of two settings of a window: the largest along a factor, in ranges; different words are 1 apart.
+double apart(std::span<const ModelFactor> factors, const Setting& a, const Setting& b) {
+    double largest = 0;
+    for (std::size_t j = 0; j < factors.size(); ++j) {
+        if (a[j] == b[j] || (std::isnan(a[j]) && std::isnan(b[j]))) continue;
+        if (std::isnan(a[j]) || std::isnan(b[j]) || factors[j].is_word()) return 1;
+        const auto at = [&](double x) { return factors[j].log ? std::log(x) : x; };
+        largest = std::max(largest, std::abs(at(a[j]) - at(b[j])) / (at(factors[j].high) - at(factors[j].low)));
+    }
+    return largest;
 }
 
-/// Cases to run next: the largest gain, added to the models with its predicted responses, then the next.
-std::vector<Judgement> next_of(const WindowQuestion& question, const WindowRequest& request,
-                               std::vector<Judgement> judged) {
-    std::erase_if(judged, [](const auto& one) { return !one.believed; });
-    auto gain = gains(question, judged, request);
+double distance_from(std::span<const ModelFactor> factors, const Setting& setting, std::span<const Setting> others) {
+    double nearest = 1;
+    for (const auto& other : others) nearest = std::min(nearest, apart(factors, setting, other));
+    return nearest;
+}
+
+/// Settings of the largest gains, none a twin of another.
+std::vector<Setting> promising(std::span<const ModelFactor> factors, std::span<const Judgement> judged,
+                               std::span<const double> gain, std::size_t count) {
     std::vector<std::size_t> order(judged.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });
-    order.resize(std::min(order.size(), std::max(candidates_of_next, 4 * request.next)));
     std::vector<Setting> settings;
-    for (const auto i : order) settings.push_back(judged[i].setting);
+    for (const auto i : order) {
+        if (settings.size() == count) break;
+        if (distance_from(factors, judged[i].setting, settings) >= least_apart) settings.push_back(judged[i].setting);
+    }
+    return settings;
+}
 
+/// Returns the candidate with the largest gain among those that differ most from the ones chosen (see the header);
+/// empty: no candidate promises anything.
+std::optional<std::size_t> most_promising(std::span<const double> gain, std::span<const double> distance) {
+    const double best = gain.empty() ? 0 : std::ranges::max(gain);
+    if (!(best > 0)) return std::nullopt;
+    std::optional<std::size_t> found;
+    for (double wanted = widest_apart; wanted >= least_apart; wanted /= 2) {
+        found.reset();
+        for (std::size_t i = 0; i < gain.size(); ++i)
+            if (distance[i] >= wanted && gain[i] >= least_gain * best && (!found || gain[i] > gain[*found])) found = i;
+        if (found && gain[*found] >= enough_gain * best) return found;
+    }
+    return found;
+}
+
+/// Cases to run next: the largest gain, added to the models with its predicted responses, then the next.
+std::vector<Judgement> next_of(const WindowQuestion& question, const ModelCases& cases, const WindowRequest& request,
+                               std::vector<Judgement> judged) {
+    std::erase_if(judged, [](const auto& one) { return !one.believed; });
+    auto gain = gains(question, judged, request);
+    const auto settings = promising(cases.factors, judged, gain, std::max(candidates_of_next, 4 * request.next));
     auto models = question.models();
     std::vector<Judgement> chosen;
-    std::vector<bool> taken(settings.size(), false);
+    std::vector<Setting> taken;
     while (chosen.size() < request.next) {
+        question.report("next cases", static_cast<double>(chosen.size()) / static_cast<double>(request.next));
         const auto now = question.judge_by(models, settings);
         gain = gains(question, now, request);
-        for (std::size_t i = 0; i < now.size(); ++i)
-            if (taken[i]) gain[i] = 0;
-        const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
-        if (gain.empty() || !(gain[best] > 0)) break;
-        for (std::size_t i = 0; i < settings.size(); ++i)
-            if (same_setting(settings[i], settings[best])) taken[i] = true;
-        const auto asked = question.least_known(models, settings[best]);
-        const auto there = question.judge_by(models, std::span(&asked, 1)).front();
+        std::vector<double> distance;
+        for (const auto& setting : settings) distance.push_back(distance_from(cases.factors, setting, taken));
+        const auto best = most_promising(gain, distance);
+        if (!best) break;
+        taken.push_back(settings[*best]);
+        const auto asked = question.least_known(models, settings[*best]);
+        chosen.push_back(question.judge_by(models, std::span(&asked, 1)).front());
         for (std::size_t k = 0; k < models.size(); ++k)
-            models[k] = models[k].with_case(asked, there.predictions[k].mean);
-        chosen.push_back(question.judge(std::span(&asked, 1)).front());
+            models[k] = models[k].with_case(asked, chosen.back().predictions[k].mean);
     }
     return chosen;
 }
 
 /// Adds notes on failed cases for the window and the chosen setting.
 void say_what_failed(Window& window, const ModelCases& cases) {
+    if (cases.cases_left_out > 0)
+        window.notes.push_back(fmt::format("{} failed cases are left out as no property of the process: {}",
+                                           cases.cases_left_out, left_out_text(cases)));
     if (cases.failed.empty()) return;
     window.notes.push_back(
         fmt::format("{}; in {:.1f} % of {} a case has an answer with a probability below {:.6g}, where no setting is "
-                    "counted or recommended",
-                    failed_text(cases), 100 * window.share_failed, share_of(cases.factors), 1 - window.risk));
+                    "counted or recommended; at the ends of the 95 % interval of this probability the share where the "
+                    "condition holds is {:.1f} and {:.1f} %",
+                    failed_text(cases), 100 * window.share_failed, share_of(cases.factors), 1 - window.risk,
+                    100 * window.share_low, 100 * window.share_high));
+    for (const auto& test : window.answers->tests(cases)) window.notes.push_back(test.text());
     if (const auto& chosen = window.best ? window.best : window.surest)
         window.notes.push_back(fmt::format("{} a case has an answer with probability {:.3f}; {}",
                                            window.best ? "at the best setting" : "where the condition is likeliest",
@@ -172,7 +273,9 @@ void say_what_failed(Window& window, const ModelCases& cases) {
 /// No failed case among a sample of the box is no proof that none fails.
 void say_what_none_failed(Window& window, const ModelCases& cases) {
     const auto* design = designs::find_design(cases.campaign.design);
-    if (!cases.failed.empty() || design == nullptr || design->beginning != designs::Beginning::sample) return;
+    if (!cases.failed.empty() || cases.cases_left_out > 0 || design == nullptr ||
+        design->beginning != designs::Beginning::sample)
+        return;
     const auto count = std::ssize(cases.settings);
     window.notes.push_back(
         fmt::format("none of {} cases failed: up to {:.2g} % of the box may fail all the same (95 %)", count,
@@ -195,7 +298,8 @@ void say_what_was_found(Window& window, const WindowRequest& request) {
                             model.observable));
     if (request.next > window.next.size())
         window.notes.push_back(
-            fmt::format("{} of {} next cases: no further one promises anything", window.next.size(), request.next));
+            fmt::format("{} of {} next cases: no further one that differs from them promises anything",
+                        window.next.size(), request.next));
 }
 
 }  // namespace
@@ -216,7 +320,7 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     window.answers = question.answers();
     window.objective_is_factor = question.objective_is_factor();
     for (const auto& point : points) window.searched.push_back(point.setting);
-    auto judged = question.judge(window.searched, window.searched.size() / share_of_doubted);
+    auto judged = question.judge(window.searched, "settings of the box", window.searched.size() / share_of_doubted);
 
     if (std::ranges::none_of(judged, [](const auto& one) { return one.answers >= 0.5; }))
         throw campaign::wrong_question("window", "",
@@ -228,13 +332,22 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     };
     window.share_failed = share([&](const Judgement& one) { return one.answers < 1 - request.risk; });
     window.share_of_box = share([&](const Judgement& one) { return question.meets(one); });
-    window.share_error = share_error(question, judged, window.share_of_box);
+    const auto share_with = [&](auto answers) {
+        return share([&](const Judgement& one) {
+            return one.answers > 0 && one.probability * answers(one) / one.answers >= 1 - request.risk;
+        });
+    };
+    const double low = share_with([](const Judgement& one) { return one.answers_low; });
+    const double high = share_with([](const Judgement& one) { return one.answers_high; });
+    window.share_error = std::hypot(share_error(question, judged, window.share_of_box), (high - low) / 2);
+    window.share_low = std::max(0.0, window.share_of_box - window.share_error);
+    window.share_high = std::min(1.0, window.share_of_box + window.share_error);
     auto [best, seen] = improved(question, points, judged);
     (question.meets(best) ? window.best : window.surest) = best;
-    find_front(window, question, request, judged);
+    find_front(window, cases, question, request, judged);
     if (request.next > 0) {
         std::ranges::move(seen, std::back_inserter(judged));
-        window.next = next_of(question, request, std::move(judged));
+        window.next = next_of(question, cases, request, std::move(judged));
     }
     say_what_failed(window, cases);
     if (const auto noise = question.space().noise_names(); !noise.empty())

@@ -14,6 +14,15 @@
 // means the largest mean minus one standard error, the effective best of Huang et al. 2006 (stats/process_window.hpp).
 // Next cases are compared with it, too. Settings are rounded to a two-thousandth of the range or finer.
 //
+// The front of computed cases has the observed values, averaged over the runs of a setting. The front of predictions
+// has only settings at which both errors of the mean are at most a tenth of the range of the computed values.
+//
+// The cases of a batch differ: by at least a tenth of the range of a searched factor, or as much as is possible with
+// half the gain of the best case, at least a fortieth.
+//
+// The share of the box has an error of counting and one of the model of failures. The latter is half the difference of
+// the shares at the two ends of the 95 % interval of the probability of an answer, divided by 1.96.
+//
 // For factors with a distribution, the box is their range (stats::Distribution::range) and the points are quantiles, so
 // a share of points is a probability. No random numbers are used: the same cases give the same window.
 #pragma once
@@ -30,19 +39,28 @@
 
 namespace grainsweep::study {
 
+/// Computed setting of a front.
+struct ComputedSetting {
+    Setting setting;
+    std::int64_t runs = 0;
+    double objective = 0, against = 0;  ///< means over the runs
+};
+
 struct Window {
     std::vector<ObservableModel> models;  ///< the model of the objective first, if it is an observable
     std::shared_ptr<const Answers> answers;
     bool objective_is_factor = false;
-    double risk = 0.05;                  ///< of WindowRequest
-    std::vector<Setting> searched;       ///< settings searched in the box
-    double share_of_box = 0;             ///< share of the searched points with P >= 1 - risk
-    double share_error = 0;              ///< its 95 % half-width, with the errors of the models
-    double share_failed = 0;             ///< share of the searched points where P(answer) is below 1 - risk
-    std::optional<Judgement> best;       ///< best setting with P >= 1 - risk; empty: there is no such setting
-    std::optional<Judgement> surest;     ///< setting of largest P, if there is no best
-    std::vector<Judgement> front;        ///< trade-off between objective and `against`, by ascending objective
-    std::optional<std::size_t> against;  ///< index of a model
+    double risk = 0.05;                           ///< of WindowRequest
+    std::vector<Setting> searched;                ///< settings searched in the box
+    double share_of_box = 0;                      ///< share of the searched points with P >= 1 - risk
+    double share_error = 0;                       ///< its 95 % half-width, with the errors of the models
+    double share_low = 0, share_high = 0;         ///< the ends of its 95 % interval
+    double share_failed = 0;                      ///< share of the searched points where P(answer) is below 1 - risk
+    std::optional<Judgement> best;                ///< best setting with P >= 1 - risk; empty: there is no such setting
+    std::optional<Judgement> surest;              ///< setting of largest P, if there is no best
+    std::vector<ComputedSetting> computed_front;  ///< trade-off between objective and `against`, of the cases
+    std::vector<Judgement> front;                 ///< the same of predictions, by ascending objective
+    std::optional<std::size_t> against;           ///< index of a model
     bool against_maximised = false;
     std::vector<Judgement> next;
     std::vector<std::string> notes;

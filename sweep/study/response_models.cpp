@@ -214,7 +214,7 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
         learned.notes.push_back(fmt::format("'{}' is undefined in {} of {} answered cases, which the model leaves out",
                                             learned.observable, learned.undefined, observable.values.size()));
     if (!cases.failed.empty())
-        learned.notes.push_back(fmt::format("{} failed cases are left out", cases.failed.size()));
+        learned.notes.push_back(fmt::format("{} failed cases have no value", cases.failed.size()));
     if (!cases.further.empty())
         learned.notes.push_back(fmt::format("cases of {} are in the model, too", campaign::listed(cases.further)));
     return learned;

@@ -5,6 +5,7 @@
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/study/factor_reader.hpp"
@@ -148,9 +149,14 @@ const ResponseColumn* Responses::deciding_observable() const {
 
 const ResponseColumn* Responses::main_observable() const {
     if (const auto* deciding = deciding_observable()) return deciding;
-    const auto measured = std::ranges::find_if(observables, [](const ResponseColumn& response) {
+    const auto has_a_value = [](const ResponseColumn& response) {
         return std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); });
-    });
+    };
+    for (const auto& name : campaign::observables_as_written(campaign.text)) {
+        const auto written = std::ranges::find(observables, name, &ResponseColumn::name);
+        if (written != observables.end() && has_a_value(*written)) return &*written;
+    }
+    const auto measured = std::ranges::find_if(observables, has_a_value);
     if (measured != observables.end()) return &*measured;
     return observables.empty() ? nullptr : &observables.front();
 }

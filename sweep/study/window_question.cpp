@@ -10,7 +10,7 @@
 namespace grainsweep::study {
 namespace {
 
-constexpr std::size_t settings_at_once = 4096;
+constexpr std::size_t settings_at_once = 4096, settings_of_a_step = 256;
 
 bool is_finite(const Judgement& one) {
     return std::ranges::all_of(one.predictions,
@@ -97,12 +97,22 @@ void WindowQuestion::add_model(std::size_t name, std::span<const ObservableModel
     if (std::ranges::find(name_of_model_, name) != name_of_model_.end()) return;
     const auto& column = cases_->observables[name];
     const auto known = std::ranges::find(learned, column.name, &ObservableModel::observable);
+    if (known == learned.end()) report("model of " + column.name, 0);
     models_.push_back(known != learned.end() ? *known : learn_or_refuse(*cases_, column, Unexplained::scatter));
     name_of_model_.push_back(name);
 }
 
-std::vector<Judgement> WindowQuestion::judge(std::span<const Setting> settings, std::size_t doubted) const {
-    return judge_by(models_, settings, doubted);
+std::vector<Judgement> WindowQuestion::judge(std::span<const Setting> settings, std::string_view step,
+                                             std::size_t doubted) const {
+    if (step.empty()) return judge_by(models_, settings, doubted);
+    std::vector<Judgement> judged;
+    for (std::size_t from = 0; from < settings.size(); from += settings_of_a_step) {
+        report(step, static_cast<double>(from) / static_cast<double>(settings.size()));
+        const auto some = settings.subspan(from, std::min(settings_of_a_step, settings.size() - from));
+        std::ranges::move(judge_by(models_, some, doubted > from ? doubted - from : 0), std::back_inserter(judged));
+    }
+    report(step, 1);
+    return judged;
 }
 
 std::vector<Judgement> WindowQuestion::judge_by(std::span<const ObservableModel> by, std::span<const Setting> settings,
@@ -142,6 +152,7 @@ std::vector<Judgement> WindowQuestion::judge_each(std::span<const ObservableMode
         judged[i].setting = settings[i];
         judged[i].answers = answers[i].probability;
         judged[i].answers_low = answers[i].low;
+        judged[i].answers_high = answers[i].high;
     }
     for (const auto& model : by) {
         const auto predictions = model.predict(settings);
@@ -184,12 +195,13 @@ Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::
         const auto group = behind.subspan(from, size);
         from += size;
         if (size == 0) continue;
-        double probability = 0, answers = 0, low = 0;
+        double probability = 0, answers = 0, low = 0, high = 0;
         std::vector<double> ends(group.front().at_ends.size(), 0);
         for (const auto& each : group) {
             probability += each.probability / static_cast<double>(size);
             answers += each.answers / static_cast<double>(size);
             low += each.answers_low / static_cast<double>(size);
+            high += each.answers_high / static_cast<double>(size);
             for (std::size_t e = 0; e < ends.size(); ++e) ends[e] += each.at_ends[e] / static_cast<double>(size);
         }
         if (one.at_ends.empty()) one.at_ends = ends;
@@ -197,6 +209,7 @@ Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::
         one.probability = std::min(one.probability, probability);
         one.answers = std::min(one.answers, answers);
         one.answers_low = std::min(one.answers_low, low);
+        one.answers_high = std::min(one.answers_high, high);
     }
     for (std::size_t k = 0; k < models_.size(); ++k) {
         one.predictions.push_back(mean_prediction(behind, k));

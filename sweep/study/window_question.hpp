@@ -17,11 +17,13 @@
 #include "sweep/study/window_space.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::study {
@@ -35,6 +37,9 @@ struct WindowRequest {
     std::size_t next = 0;           ///< number of next cases to propose
     std::size_t candidates = 4096;  ///< Sobol points of the box; a quarter of them if factors are averaged
     Held held{};
+    std::vector<campaign::Outcome> left_out{};  ///< outcomes of failed cases that are not used
+    /// Called with the name of the step and the part of it that is done, from 0 to 1; may be empty.
+    std::function<void(std::string_view step, double done)> progress{};
 };
 
 /// Setting with the predictions of the models.
@@ -45,7 +50,7 @@ struct Judgement {
     stats::Prediction objective{};               ///< prediction of the objective, if there is one; for a factor its
                                                  ///< value, without error
     double answers = 1;                          ///< probability that a case has an answer
-    double answers_low = 1;                      ///< lower end of its 95 % interval
+    double answers_low = 1, answers_high = 1;    ///< ends of its 95 % interval
     bool believed = true;                        ///< an answer is more likely than a failure, and every feature is
                                                  ///< defined
     double probability = std::numeric_limits<double>::quiet_NaN();
@@ -60,11 +65,17 @@ public:
     WindowQuestion(const ModelCases& cases, const WindowRequest& request, Admits admits,
                    std::span<const ObservableModel> learned = {}, std::shared_ptr<const Answers> answers = nullptr);
 
-    /// Returns judgements, the first `doubted` of them with `at_ends`.
-    [[nodiscard]] std::vector<Judgement> judge(std::span<const Setting> settings, std::size_t doubted = 0) const;
+    /// Returns the judgement of settings by the campaign's models. Reports progress under the name
+    /// `step`. The first `doubted` have `at_ends`.
+    [[nodiscard]] std::vector<Judgement> judge(std::span<const Setting> settings, std::string_view step = {},
+                                               std::size_t doubted = 0) const;
     /// Returns the judgement of settings by the models in `by`, which are in the order of models().
     [[nodiscard]] std::vector<Judgement> judge_by(std::span<const ObservableModel> by,
                                                   std::span<const Setting> settings, std::size_t doubted = 0) const;
+    /// Reports progress, if somebody listens.
+    void report(std::string_view step, double done) const {
+        if (request_->progress) request_->progress(step, done);
+    }
     /// Returns the full setting of a window's setting (window_space.hpp) at which a case is most informative: the
     /// largest error of the first model, or the probability nearest to 1/2.
     [[nodiscard]] Setting least_known(std::span<const ObservableModel> by, const Setting& setting) const;

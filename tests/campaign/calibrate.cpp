@@ -7,7 +7,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 namespace grainsweep::tests::calibrate_test {
@@ -226,6 +228,73 @@ TEST(CalibrateCampaign, APlaceBeyondTheCurvesIsNamedWithWhatTheyCover) {
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_THAT(said.out, HasSubstr("its curves cover 0 to 1"));
     EXPECT_EQ(run_program({"converge", "a.db", "--check"}, folder.path()).code, 1);
+}
+
+/// y = a, or as `script` says; b acts on nothing.
+json failing_fit(const Folder& folder, const std::string& script) {
+    folder.write("f.py", "import json, sys\nfor line in sys.stdin:\n    i = json.loads(line)['inputs']\n" + script);
+    return json::parse(R"({"campaign": "fit", "scene": "program",
+      "program": {"command": ["python3", "f.py"], "files": ["f.py"], "protocol": "lines", "observables": {"y": {}}},
+      "factors": [{"name": "a", "between": [0, 1]}, {"name": "b", "between": [0, 1]}],
+      "calibration": {"targets": [{"observable": "y", "value": 0.5, "error": 0.02}], "discrepancy": {"y": 0.01},
+                      "waves": 2, "points_per_wave": 30, "checks": 8}})");
+}
+
+TEST(CalibrateCampaign, FailuresAreNoReasonToCallAFactorDetermined) {
+    const Folder folder;
+    folder.write("c.json", failing_fit(folder, R"(
+    if i["a"] > 0.5: print('{"outcome": "unstable", "message": "too stiff"}', flush=True)
+    else: print(json.dumps({"observables": {"y": i["a"]}}), flush=True)
+)")
+                               .dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "1", "--quiet"});
+    EXPECT_EQ(ended.code, 1) << "cases failed";
+    EXPECT_THAT(ended.out, HasSubstr("\nnot determined: b"));
+    EXPECT_THAT(ended.out, HasSubstr("this depends on a (p = 0.001)"));
+    EXPECT_THAT(ended.out, ::testing::Not(HasSubstr("calibrated;")));
+    const auto found = json::parse(run_program({"converge", "a.db", "--format", "json"}, folder.path()).out)[0];
+    EXPECT_EQ(found["posterior"][0]["verdict"], "determined");
+    EXPECT_EQ(found["posterior"][1]["verdict"], "not determined");
+}
+
+TEST(CalibrateCampaign, WithoutFreshRunsNothingIsCalibrated) {
+    const Folder folder;
+    auto asked = failing_fit(folder, R"(
+    print(json.dumps({"observables": {"y": i["a"]}}), flush=True)
+)");
+    asked["factors"].erase(1);
+    asked["calibration"]["checks"] = 2;
+    folder.write("c.json", asked.dump());
+    EXPECT_THAT(calibrate(folder, "a.db", {"-j", "1", "--quiet"}).out,
+                HasSubstr("\nnot checked: 2 of 2 fresh runs have an answer, and 4 are needed"));
+    asked["calibration"]["checks"] = 4;
+    folder.write("c.json", asked.dump());
+    EXPECT_THAT(calibrate(folder, "b.db", {"-j", "1", "--quiet"}).out, HasSubstr("\ncalibrated; all cases"));
+}
+
+TEST(CalibrateCampaign, ExcludedPointsAreNoFailuresAndNoDraws) {
+    const Folder folder;
+    auto asked = failing_fit(folder, R"(
+    print(json.dumps({"observables": {"y": (i["a"] + i["b"]) / 2}}), flush=True)
+)");
+    asked["where"] = "a < b";
+    folder.write("c.json", asked.dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "1", "--quiet"});
+    EXPECT_EQ(ended.code, 0) << ended.out;
+    EXPECT_THAT(ended.out, HasSubstr("settings are excluded by the campaign's `where`: no case was run there"));
+    EXPECT_THAT(ended.out, ::testing::Not(HasSubstr("no answer")));
+    std::ifstream draws(folder.path() / "fit_posterior.csv");
+    std::string line;
+    std::getline(draws, line);
+    ASSERT_EQ(line.substr(0, 3), "a,b");
+    std::size_t count = 0;
+    for (double a = 0, b = 0; std::getline(draws, line); ++count) {
+        char comma = 0;
+        std::istringstream(line) >> a >> comma >> b;
+        ASSERT_LT(a, b);
+    }
+    EXPECT_GT(count, 1000U);
+    EXPECT_EQ(calibrate(folder, "a.db", {"-j", "1", "--quiet"}).code, 0) << "again: nothing is left to run";
 }
 
 TEST(CalibrateCampaign, RefusesInOneSentence) {

@@ -237,6 +237,36 @@ TEST(Predict, RefusesACampaignWithoutAnAnswer) {
               std::string::npos);
 }
 
+TEST(Predict, AnswersTheFirstObservableOfTheFileBeforeItsFactors) {
+    const Folder folder;
+    folder.write("f.py", R"(import json, sys
+for line in sys.stdin:
+    x = json.loads(line)["inputs"]["x"]
+    print(json.dumps({"observables": {"yield": 2 + x, "ash": 1 - x}}), flush=True)
+)");
+    folder.write("c.json", R"({"campaign": "c", "scene": "program",
+      "program": {"command": ["python3", "f.py"], "files": ["f.py"], "protocol": "lines",
+                  "observables": {"yield": {"unit": "1"}, "ash": {"unit": "1"}}},
+      "factors": [{"name": "x", "between": [0, 1]}], "design": {"kind": "halton", "points": 16}})");
+    ASSERT_EQ(run_program({"run", "c.json", "-j", "1", "--quiet"}, folder.path()).code, 0);
+    const auto said = run_program({"predict", "c.db", "--at", "x=0.25"}, folder.path());
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(said.out.substr(0, 9), "c: yield\n") << said.out;
+    EXPECT_LT(said.out.find("mean"), said.out.find(" x\n"));
+}
+
+TEST(Window, LeavesOutOnlyOutcomesOfFailedCases) {
+    const Ran ran("spreading_a", 2, 40);
+    const auto said =
+        ran.ask({"window", "c.db", "--maximize", "y", "--leave-out", "unstable", "--leave-out", "crashed"});
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(ran.ask({"predict", "c.db", "--at", "x1=0.5", "--at", "x2=0.5", "--leave-out", "timed_out"}).code, 0);
+    for (const char* word : {"completed", "failed", "abandoned"})
+        EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--leave-out", word})
+                      .find("must be an outcome of failed cases: unstable, rejected, crashed, timed_out"),
+                  std::string::npos);
+}
+
 TEST(Window, RefusesInOneSentence) {
     const Ran ran("spreading_a", 4, 60);
     EXPECT_NE(ran.refusal({"window", "c.db"}).find("--where"), std::string::npos);

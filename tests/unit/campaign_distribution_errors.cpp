@@ -104,10 +104,11 @@ INSTANTIATE_TEST_SUITE_P(
               "$.factors[0].scale: got \"log\"; a distribution has no scale; it belongs to \"between\"."},
         Wrong{R"({"name": "x1", "normal": {"mean": 0.5, "sd": 0.1}, "between": [0, 1]})",
               "$.factors[0]: got between and normal; a factor has one of 'between', 'levels', 'uniform', 'normal', "
-              "'lognormal', 'triangular', 'beta' or 'sample'."},
+              "'lognormal', 'weibull', 'gumbel', 'triangular', 'beta' or 'sample'."},
         Wrong{R"({"name": "x1", "gaussian": {"mean": 0.5, "sd": 0.1}})",
               "$.factors[0].gaussian: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale', 'uniform', "
-              "'normal', 'lognormal', 'triangular', 'beta', 'sample', 'step', 'whole', 'group', 'when', "
+              "'normal', 'lognormal', 'weibull', 'gumbel', 'triangular', 'beta', 'sample', 'step', 'whole', 'group', "
+              "'when', "
               "'role' or 'notes'. Did you mean 'normal'?"},
         Wrong{R"({"name": "behave_attempts", "normal": {"mean": 5, "sd": 1}})",
               "$.factors[0].normal: got {\"mean\":5,\"sd\":1}; 'behave_attempts' is a whole number; vary it by "

@@ -1,6 +1,7 @@
 // Factors that follow a distribution or a sample: what is read, what is asked of the scene, what an archive keeps.
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/stored_request.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/process.hpp"
@@ -10,6 +11,8 @@
 
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace grainsweep::tests::campaign_distributions_test {
 
@@ -48,6 +51,15 @@ TEST(Distributions, AreReadWithTheirUnits) {
     EXPECT_EQ(factors[4].range, (decltype(Factor::range){Between{0.25, 0.75, Scale::linear}}));
     const auto ratio = read(R"({"name": "x1", "lognormal": {"median": 0.2, "ratio": 1.5}})").space.factors[0];
     EXPECT_EQ(ratio.range, (decltype(Factor::range){stats::Distribution(stats::Lognormal{0.2, std::log(1.5)}, 0, 1)}));
+    for (const auto& [text, form] : {std::pair<const char*, stats::Distribution::Form>(
+                                         R"({"weibull": {"scale": "20 %", "shape": 3}})", stats::Weibull{0.2, 3}),
+                                     {R"({"gumbel": {"location": 0.5, "scale": 0.05}})", stats::Gumbel{0.5, 0.05}}}) {
+        std::string factor = text;
+        const auto read_back = read(factor.insert(1, R"("name": "x1", )")).space.factors[0];
+        EXPECT_EQ(read_back.range, (decltype(Factor::range){stats::Distribution(form, 0, 1)})) << text;
+        const auto stated = stated_text(std::get<stats::Distribution>(read_back.range));
+        EXPECT_EQ(std::get<stats::Distribution>(distribution_in(stated)), stats::Distribution(form, 0, 1)) << stated;
+    }
 }
 
 TEST(Distributions, AStatedLengthWithAUnitIsInMetres) {

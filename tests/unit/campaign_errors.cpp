@@ -92,10 +92,10 @@ INSTANTIATE_TEST_SUITE_P(
               "$.factors[1].name: got \"x1\"; this factor is there twice."},
         Wrong{R"([{"op": "add", "path": "/factors/0/levels", "value": [1]}])",
               "$.factors[0]: got between and levels; a factor has one of 'between', 'levels', 'uniform', 'normal', "
-              "'lognormal', 'triangular', 'beta' or 'sample'."},
+              "'lognormal', 'weibull', 'gumbel', 'triangular', 'beta' or 'sample'."},
         Wrong{R"([{"op": "remove", "path": "/factors/0/between"}])",
               "$.factors[0]: got none; a factor has one of 'between', 'levels', 'uniform', 'normal', "
-              "'lognormal', 'triangular', 'beta' or 'sample'."},
+              "'lognormal', 'weibull', 'gumbel', 'triangular', 'beta' or 'sample'."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0.3, 0.1]}])",
               "$.factors[0].between: got [0.3,0.1]; low must be below high."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0.1, 0.1]}])",
@@ -133,7 +133,8 @@ INSTANTIATE_TEST_SUITE_P(
               "$.factors[1].levels[1]: got 1.5; 'behave_attempts' must be a whole number from 0 to 1000."},
         Wrong{R"([{"op": "add", "path": "/factors/0/level", "value": [1]}])",
               "$.factors[0].level: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale', 'uniform', "
-              "'normal', 'lognormal', 'triangular', 'beta', 'sample', 'step', 'whole', 'group', 'when', "
+              "'normal', 'lognormal', 'weibull', 'gumbel', 'triangular', 'beta', 'sample', 'step', 'whole', 'group', "
+              "'when', "
               "'role' or 'notes'. Did you mean 'levels'?"}));
 
 INSTANTIATE_TEST_SUITE_P(

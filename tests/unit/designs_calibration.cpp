@@ -161,6 +161,56 @@ TEST(CalibrationWaves, EveryTargetIsAskedUnderItsOwnCondition) {
         EXPECT_NE(std::floor(3 * found.points.point(p)[1]), 1) << "nothing is asked at the level of no target";
 }
 
+// y = a; cases fail where a > 0.5, the measured value. b acts on nothing: it stays uniform, whatever the pattern of the
+// failures.
+TEST(CalibrationWaves, FailuresThatOneFactorDecidesLeaveTheOtherAlone) {
+    const auto half = [](Point u) { return u[0] > 0.5 ? none : u[0]; };
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        auto asked = calibration_request(2, {{"a", 0.5, 0.02, 0.01, {}}},
+                                         {{"points_per_wave", std::int64_t{30}}, {"waves", std::int64_t{3}}}, seed);
+        const auto found = answered(asked, {{"a", half}});
+        ASSERT_TRUE(found.shape);
+        EXPECT_EQ(found.answering.factors(), std::vector<std::size_t>{0}) << seed;
+        EXPECT_NEAR(found.shape->mean[1], 0.5, 0.05) << seed;
+        EXPECT_NEAR(found.shape->sd[1], std::sqrt(1.0 / 12), 0.03) << seed;
+        EXPECT_LT(found.shape->mean[0], 0.5) << "above it no case answers";
+    }
+}
+
+// A fifth of the cases fails by chance. The posterior is as wide as without failures: 0.5 +- hypot(0.03, 0.01).
+TEST(CalibrationWaves, FailuresThatDependOnNothingCarryNoInformation) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        std::size_t count = 0;
+        const auto some = [&](Point u) { return noise(seed, count++) < -0.3 ? none : u[0]; };
+        auto asked = calibration_request(2, {{"a", 0.5, 0.03, 0.01, {}}},
+                                         {{"points_per_wave", std::int64_t{30}}, {"waves", std::int64_t{2}}}, seed);
+        const auto found = answered(asked, {{"a", some}});
+        ASSERT_TRUE(found.shape);
+        EXPECT_GT(found.waves.back().failed, 2U);
+        EXPECT_FALSE(found.answering.decides()) << seed;
+        EXPECT_NEAR(found.shape->mean[0], 0.5, 0.01);
+        EXPECT_NEAR(found.shape->sd[0], std::hypot(0.03, 0.01), 0.003);
+        EXPECT_NEAR(found.shape->sd[1], std::sqrt(1.0 / 12), 0.02);
+    }
+}
+
+TEST(CalibrationWaves, NoDrawBreaksTheConditionAndExcludedPointsAreNoFailures) {
+    auto asked = calibration_request(2, {{"y", 0.5, 0.05, 0.02, {}}},
+                                     {{"points_per_wave", std::int64_t{30}}, {"waves", std::int64_t{2}}});
+    asked.admits = [](Point u) { return u[0] < u[1]; };
+    const auto mean = [](Point u) { return u[0] < u[1] ? (u[0] + u[1]) / 2 : none; };
+    const auto found = answered(asked, {{"y", mean}});
+    ASSERT_TRUE(found.posterior);
+    EXPECT_EQ(found.waves[0].failed, 0U);
+    EXPECT_NEAR(static_cast<double>(found.waves[0].excluded), 15, 2);
+    EXPECT_EQ(found.waves[0].cases, 30 - found.waves[0].excluded);
+    const auto draws = found.posterior->rows();
+    for (std::size_t i = 0; i < draws.size(); ++i) ASSERT_LT(draws.row(i)[0], draws.row(i)[1]) << i;
+    for (std::size_t i = 60; i < found.settings.size(); i += 2)
+        EXPECT_LT(found.settings[i], found.settings[i + 1]) << "of the second wave on, no setting is wasted";
+    for (std::size_t i = 0; i < found.checked.size(); i += 2) EXPECT_LT(found.checked[i], found.checked[i + 1]);
+}
+
 TEST(CalibrationWaves, KeepsAwayFromWhereCasesFail) {
     // The target is met at 0.3 and at 0.8; above 0.6 no case answers.
     const auto half = [](Point u) { return u[0] > 0.6 ? none : std::abs(u[0] - 0.55); };

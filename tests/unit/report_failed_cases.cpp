@@ -1,4 +1,5 @@
 // Where cases failed nothing is recommended, counted, drawn or predicted: windows, predictions, pages.
+#include "stats/random.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/model_tables.hpp"
@@ -11,6 +12,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
 
 namespace grainsweep::tests::report_failed_cases_test {
 
@@ -169,6 +174,75 @@ TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
         EXPECT_TRUE(map["objective"][k].is_null()) << x1;
     }
     EXPECT_TRUE(drawn["curves"][0]["responses"][0][0]["mean"].is_null());
+}
+
+/// y = x1 everywhere; every tenth case fails, whatever its setting.
+std::optional<double> licence(const Inputs& inputs) {
+    const auto number = static_cast<std::uint64_t>(input(inputs, "x1") * 1e9 + input(inputs, "x2") * 1e7);
+    if (stats::to_unit(stats::splitmix64(number)) < 0.1) return std::nullopt;
+    return input(inputs, "x1");
+}
+
+TEST_F(FailedCases, WhetherTheyDependOnTheFactorsIsTested) {
+    const auto beside = cases(jams);
+    const auto found = Answers(beside).tests(beside);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_TRUE(found[0].depends());
+    EXPECT_EQ(found[0].features, std::vector<std::string>{"x1"});
+    EXPECT_THAT(found[0].text(),
+                testing::MatchesRegex("unstable .2[3-5] cases.: the outcome depends on x1 .p <= 0.001."));
+}
+
+TEST_F(FailedCases, ThatAreNoPropertyOfTheProcessMayBeLeftOut) {
+    const auto all = cases(licence, 160);
+    ASSERT_GT(all.failed.size(), 5U);
+    const WindowRequest request{.where = "y <= 0.5"};
+    const auto window = window_of(store, all, request);
+    EXPECT_THAT(window.notes, Contains(HasSubstr("no evidence that the outcome depends on the factors")));
+    EXPECT_THAT(window.notes, Contains(HasSubstr("--leave-out unstable")));
+    EXPECT_GE(window.share_high - window.share_low, 0.1) << "0.9 is not known to be below 0.95 everywhere";
+    EXPECT_GE(window.share_error, (window.share_high - window.share_low) / 4);
+
+    const std::vector left_out = {campaign::Outcome::unstable};
+    const auto without = read_model_cases(store, "c", left_out);
+    EXPECT_TRUE(without.failed.empty());
+    EXPECT_EQ(without.cases_left_out, all.failed.size());
+    const auto free = window_of(store, without, request);
+    EXPECT_NEAR(free.share_of_box, 0.5, 0.02);
+    EXPECT_EQ(free.share_low, free.share_high);
+    EXPECT_THAT(free.notes, Contains(HasSubstr("are left out as no property of the process: unstable")));
+    EXPECT_THAT(free.notes, Each(testing::Not(HasSubstr("none of"))));
+}
+
+TEST_F(FailedCases, ABatchHasNoTwinsAndAFrontBeginsWithComputedCases) {
+    // y scatters, so that a case hardly lowers the error at its setting.
+    int number = 0;
+    const auto known = cases(
+        [&](const Inputs& inputs) -> std::optional<double> {
+            const double u = stats::to_unit(stats::bits_at(4, 1, static_cast<std::uint64_t>(number++)));
+            return 1 - std::pow(input(inputs, "x1") - 0.6, 2) - std::pow(input(inputs, "x2") - 0.4, 2) +
+                   0.3 * (u - 0.5);
+        },
+        80);
+    const WindowRequest request{.where = "y >= 0.5", .objective = "y", .next = 6};
+    const auto window = window_of(store, known, request);
+    ASSERT_EQ(window.next.size(), 6U);
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_GE(std::max(std::abs(window.next[i].setting[0] - window.next[j].setting[0]),
+                               std::abs(window.next[i].setting[1] - window.next[j].setting[1])),
+                      0.025);
+
+    const WindowRequest trade{.where = "y >= 0.5", .objective = "x1"};
+    const auto front = window_of(store, known, trade);
+    ASSERT_FALSE(front.computed_front.empty());
+    const auto& column = known.observable("y").values;
+    for (const auto& one : front.computed_front)
+        for (std::size_t i = 0; i < known.settings.size(); ++i)
+            EXPECT_FALSE(known.settings[i][0] > one.setting[0] && column[i] > one.against);
+    const auto text = tests::text_of(window_document(known, trade, front));
+    EXPECT_LT(text.find("computed cases, means over the runs"), text.find("predictions with a small error"));
+    EXPECT_EQ(tests::parsed(window_json(known, trade, front))["computed_front"].size(), front.computed_front.size());
 }
 
 }  // namespace grainsweep::tests::report_failed_cases_test

@@ -22,6 +22,10 @@ std::vector<Distribution> all_forms() {
         Distribution(Normal{0.5, 0.3}, 0, 1),
         Distribution(Lognormal{2, 0.7}),
         Distribution(Lognormal{0.3, 0.5}, 0, 1),
+        Distribution(Weibull{60e-6, 3}),
+        Distribution(Weibull{0.4, 0.8}, 0, 1),
+        Distribution(Gumbel{1, 0.1}),
+        Distribution(Gumbel{0.5, 0.2}, 0, 1),
         Distribution(Triangular{1, 2, 5}),
         Distribution(Triangular{1, 1, 5}),
         Distribution(Triangular{1, 5, 5}),
@@ -54,6 +58,17 @@ TEST(Distribution, TheDistributionFunctionIsTheInverse) {
         EXPECT_EQ(distribution.cumulative(-1e9), 0);
         EXPECT_EQ(distribution.cumulative(1e9), 1);
     }
+}
+
+TEST(Distribution, WeibullAndGumbelHaveTheirClosedForms) {
+    const Distribution weibull(Weibull{2, 3}), largest(Gumbel{1, 0.5});
+    for (const double u : {0.01, 0.5, 0.99}) {
+        EXPECT_NEAR(weibull.quantile(u), 2 * std::cbrt(-std::log(1 - u)), 1e-12);
+        EXPECT_NEAR(largest.quantile(u), 1 - 0.5 * std::log(-std::log(u)), 1e-12);
+    }
+    const Distribution cut(Gumbel{0, 1}, 0);
+    EXPECT_NEAR(cut.cut(), std::exp(-1), 1e-12) << "the share below the location";
+    EXPECT_NEAR(cut.quantile(0.5), -std::log(-std::log((1 + std::exp(-1)) / 2)), 1e-12);
 }
 
 TEST(Distribution, QuantilesAreThoseOfClosedForms) {

@@ -1,3 +1,4 @@
+#include "stats/confidence.hpp"
 #include "stats/model_indices.hpp"
 #include "stats/random.hpp"
 #include "tests/support/ask_design.hpp"
@@ -7,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <variant>
 #include <vector>
@@ -130,6 +133,72 @@ TEST(ModelIndices, IntervalsHoldTheTruthOfIshigami) {
         EXPECT_LE(std::abs(indices.pairs[j].value - pairs[j]), indices.pairs[j].half_width) << j;
         EXPECT_LT(indices.total[j].half_width, 0.05);
     }
+}
+
+/// 400 rows of two normal columns with the correlation r, in the order (a, b) or (b, a).
+std::shared_ptr<const JointSample> normal_rows(double r, bool swapped) {
+    std::vector<double> a, b;
+    for (std::size_t i = 0; i < 400; ++i) {
+        a.push_back(normal_quantile(to_unit(bits_at(11, 1, i)) * 0.998 + 0.001));
+        b.push_back(r * a.back() + std::sqrt(1 - r * r) * normal_quantile(to_unit(bits_at(11, 2, i)) * 0.998 + 0.001));
+    }
+    return std::make_shared<const JointSample>(swapped ? std::vector{b, a} : std::vector{a, b});
+}
+
+/// Shapley effects of a, b and an independent c in [0, 1], whatever the order of the columns.
+template <class Response>
+std::vector<double> shared_variance(double r, bool swapped, const Response& response) {
+    const auto sample = normal_rows(r, swapped);
+    const auto features = [&](Rows points) {
+        std::vector<double> rows;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto u = points.row(i);
+            const auto row = sample->row_at(u.first(2));
+            rows.insert(rows.end(), {sample->column(0)[row], sample->column(1)[row], u[2]});
+        }
+        return rows;
+    };
+    const auto set = ask_design("halton", 3, {{"points", std::int64_t{160}}, {"sequences", std::int64_t{8}}});
+    const auto x = features({set.coordinates, 3});
+    std::vector<double> values;
+    std::vector<std::size_t> groups;
+    const std::size_t a = swapped ? 1 : 0;
+    for (std::size_t i = 0; i < 160; ++i) {
+        values.push_back(response(x[3 * i + a], x[3 * i + 1 - a], x[3 * i + 2]));
+        groups.push_back(i % 8);
+    }
+    const auto model = std::get<ResponseModel>(
+        fit_response({x, 3}, values, {.low = {-4, -4, 0}, .high = {4, 4, 1}, .map = LearnedMap::never}));
+    const FactorRoles roles{{}, {}, {SampleColumn{sample, 0}, SampleColumn{sample, 1}, std::nullopt}};
+    const auto found = model_indices(model, 3, groups, features, roles).shapley;
+    return {found.at(a).value, found.at(1 - a).value, found.at(2).value};
+}
+
+// Of y = a the normal b has r^2/2, of which it explains r^2 alone and nothing beside a (Owen & Prieur 2017, SIAM/ASA J.
+// Uncertain. Quantif. 5, 986); a + b + c/2 is symmetric in a and b.
+TEST(ModelIndices, ShapleyEffectsShareTheVarianceOfDependentFactors) {
+    const double r = 0.8;
+    for (const bool swapped : {false, true}) {
+        const auto alone = shared_variance(r, swapped, [](double a, double, double) { return a; });
+        EXPECT_NEAR(alone[1], r * r / 2, 0.04) << swapped;
+        EXPECT_NEAR(alone[0], 1 - r * r / 2, 0.04) << swapped;
+        EXPECT_NEAR(alone[2], 0, 0.01);
+        const auto both = shared_variance(r, swapped, [](double a, double b, double c) { return a + b + c / 2; });
+        EXPECT_NEAR(both[0], both[1], 0.04) << swapped;
+        EXPECT_NEAR(both[0] + both[1] + both[2], 1, 1e-9);
+        EXPECT_NEAR(both[2], 1.0 / 48 / (2 + 2 * r + 1.0 / 48), 0.01);
+    }
+}
+
+// y = x1 + 2 u with noise u: x1 acts on the mean alone, so no part of its range reduces the share of the noise.
+TEST(ModelIndices, NoPartOfAControlThatDoesNotInteractIsSignificant) {
+    const auto added = learn(2, 80, [](auto u) { return u[0] + 2 * u[1] + 0.2 * std::sin(40 * u[0] + 17 * u[1]); });
+    const auto multiplied = learn(2, 80, [](auto u) { return u[0] + 2 * u[0] * u[1]; });
+    const FactorRoles roles{{false, true}, {}, {}};
+    EXPECT_FALSE(model_indices(added.model, 2, added.groups, {}, roles).noise->controls.front().significant());
+    const auto found = model_indices(multiplied.model, 2, multiplied.groups, {}, roles).noise->controls.front();
+    EXPECT_TRUE(found.significant());
+    EXPECT_EQ(found.from, 0);
 }
 
 }  // namespace grainsweep::tests::stats_model_indices_test
