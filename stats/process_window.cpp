@@ -17,7 +17,7 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t integration_points = 1024, fewest_scores = 40;
-constexpr double narrowest_share = 0.1;
+constexpr double narrowest_share = 0.1, searched = 2;
 
 double normal_density(double u) {
     return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
@@ -34,7 +34,7 @@ double response_at(const Prediction& p, Judged judged, double error, double t) {
 double judged_error(const Prediction& p, Judged judged, double widest) {
     if (judged == Judged::mean) return p.mean_error;
     if (!std::isfinite(p.even_scatter)) return p.run_error();
-    return std::hypot(p.mean_error, std::min(widest * p.scatter, std::max(p.scatter, p.even_scatter)));
+    return std::hypot(searched * p.mean_error, std::min(widest * p.scatter, std::max(p.scatter, p.even_scatter)));
 }
 
 /// The quantile of a sample, linear between its values.

@@ -12,8 +12,9 @@
 //
 //   s^2 = min(f s_local^2/q, max(s_local^2, s_even^2)),   q: 10 % quantile of chi-squared, f degrees of freedom
 //
-// s_local from the f or so cases about x, s_even from all; and where a quantile of the residuals of left-out cases lies
-// farther out than that of Student's distribution, it is taken instead: errors of runs need not be normal.
+// and the error of the mean counts twice. s_local from the f or so cases about x, s_even from all; and where a quantile
+// of the residuals of left-out cases lies farther out than that of Student's distribution, it is taken instead: errors
+// of runs need not be normal.
 //
 // The integral uses 1,024 Sobol points, the same for all x, so that contours are smooth (error about 0.002).
 //

@@ -35,6 +35,31 @@ bool reaches_far_out(const Eigen::MatrixXd& x, const std::vector<std::vector<Eig
 
 }  // namespace
 
+/// What the model without the cases of each end misses of them.
+std::vector<BeyondCases::Edge> BeyondCases::edges_of(const Kriging& model,
+                                                     const std::vector<std::vector<Eigen::Index>>& ends, double v) {
+    const Eigen::MatrixXd means = leave_folds_out(model, ends).predict(model, model.points);
+    const auto n = static_cast<double>(model.size());
+    std::vector<Edge> edges;
+    for (std::size_t e = 0; e < ends.size(); ++e) {
+        Edge& edge = edges.emplace_back();
+        edge.noise = std::sqrt(v);
+        const auto count = static_cast<double>(ends[e].size());
+        double missed = 0, all = 0;
+        for (const Eigen::Index k : ends[e]) {
+            const double z = model.values(k), m = means(k, static_cast<Eigen::Index>(e));
+            const RawMoments seen = closure(z, 0), expected = closure(m, v);
+            for (std::size_t p = 0; p < seen.size(); ++p) edge.missed[p] += (seen[p] - expected[p]) / n;
+            edge.predicted.push_back(m);
+            missed += (z - m) * (z - m);
+            all += z * z;
+        }
+        const double beyond_noise = std::max(missed - 2 * count * v, 0.0) / std::max(all, count);
+        edge.unforeseen = std::min(std::sqrt(beyond_noise), 1.0);
+    }
+    return edges;
+}
+
 RawMoments closure(double m, double v) {
     const double m2 = m * m;
     return {m, m2 + v, m2 * m + 3 * m * v, m2 * m2 + 6 * m2 * v + 3 * v * v};
@@ -66,28 +91,16 @@ BeyondCases::BeyondCases(std::span<const double> z, std::size_t sequences) : cas
 void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v) {
     const auto orders = orders_of(x);
     far_out_ = far_out_ || reaches_far_out(x, orders, q);
-    std::vector<std::vector<Eigen::Index>> edges;
-    const auto count = std::min<std::size_t>(outermost, static_cast<std::size_t>(x.rows()));
-    for (const auto& order : orders) {
-        edges.emplace_back(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
-        edges.emplace_back(order.end() - static_cast<std::ptrdiff_t>(count), order.end());
-    }
-    const Eigen::MatrixXd means = leave_folds_out(model, edges).predict(model, model.points);
-    const auto n = static_cast<double>(x.rows()), of_edge = static_cast<double>(count);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        Edge& edge = edges_.emplace_back();
-        edge.noise = std::sqrt(v);
-        double missed = 0, all = 0;
-        for (const Eigen::Index k : edges[e]) {
-            const double z = model.values(k), m = means(k, static_cast<Eigen::Index>(e));
-            const RawMoments seen = closure(z, 0), expected = closure(m, v);
-            for (std::size_t p = 0; p < seen.size(); ++p) edge.missed[p] += (seen[p] - expected[p]) / n;
-            edge.predicted.push_back(m);
-            missed += (z - m) * (z - m);
-            all += z * z;
+    for (const std::size_t depth : {outermost, outermost / 2, 2 * outermost}) {
+        const auto count = std::min<std::size_t>(depth, static_cast<std::size_t>(x.rows()));
+        std::vector<std::vector<Eigen::Index>> ends;
+        for (const auto& order : orders) {
+            ends.emplace_back(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+            ends.emplace_back(order.end() - static_cast<std::ptrdiff_t>(count), order.end());
         }
-        const double beyond_noise = std::max(missed - 2 * of_edge * v, 0.0) / std::max(all, of_edge);
-        unforeseen_ = std::max(unforeseen_, std::min(std::sqrt(beyond_noise), 1.0));
+        const auto edges = edges_of(model, ends, v);
+        if (depth == outermost) edges_.insert(edges_.end(), edges.begin(), edges.end());
+        for (const Edge& edge : edges) unforeseen_ = std::max(unforeseen_, edge.unforeseen);
     }
 }
 

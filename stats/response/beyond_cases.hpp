@@ -48,8 +48,12 @@ private:
     struct Edge {
         RawMoments missed{};  ///< sum of (z^p - g_p)/n
         std::vector<double> predicted;
-        double noise = 0;  ///< standard deviation of a single run
+        double noise = 0;       ///< standard deviation of a single run
+        double unforeseen = 0;  ///< the missed part of these cases
     };
+
+    static std::vector<Edge> edges_of(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& ends,
+                                      double v);
 
     std::size_t cases_;
     std::vector<Tail> tails_;

@@ -17,9 +17,10 @@ bool is_finite(const Judgement& one) {
                                [](const auto& p) { return std::isfinite(p.mean) && std::isfinite(p.mean_error); });
 }
 
-/// The prediction if the mean is known to be `end`.
+/// The prediction if the mean is known to be `end`, without the caution of a promise.
 stats::Prediction known_mean(stats::Prediction p, double end) {
     p.mean_error = 0;
+    p.even_scatter = std::numeric_limits<double>::quiet_NaN();
     p.mean = end;
     if (p.latent) p.latent = {stats::normal_quantile(std::clamp(end, 1e-12, 1 - 1e-12)), 0};
     return p;

@@ -58,7 +58,7 @@ TEST(ProcessWindow, AConditionHoldsWithItsProbability) {
             const auto error = [&](const Prediction& p, std::size_t model) {
                 if (judged == Judged::mean) return p.mean_error;
                 const double widest = errors.widest(model) * p.scatter;
-                return std::hypot(p.mean_error, std::min(widest, std::max(p.scatter, p.even_scatter)));
+                return std::hypot(2 * p.mean_error, std::min(widest, std::max(p.scatter, p.even_scatter)));
             };
             const double of_a = error(a, 0), of_b = error(b, 1);
             EXPECT_NEAR(integrated[i],
@@ -91,9 +91,9 @@ TEST(ProcessWindow, APromiseOfRunsTrustsNoSmallLocalScatter) {
 
 TEST(ProcessWindow, ErrorsOfRunsNeedNotBeNormal) {
     // Scores of an exponential distribution, mean 0 and variance 1: below 2 in 1 - exp(-3).
-    std::vector<double> scores;
-    for (int i = 0; i < 2000; ++i) scores.push_back(-std::log(1 - (i + 0.5) / 2000) - 1);
-    const SampledErrors errors(std::vector{200.0}, std::vector{scores});
+    std::vector<std::vector<double>> scores(1);
+    for (int i = 0; i < 2000; ++i) scores[0].push_back(-std::log(1 - (i + 0.5) / 2000) - 1);
+    const SampledErrors errors(std::vector{200.0}, scores);
     const std::vector<std::vector<Prediction>> one{{{.mean = 0, .mean_error = 0, .scatter = 1, .freedom = 200}}};
     const auto below = [&](double limit) {
         return probability_of(
