@@ -305,12 +305,14 @@ std::string reason_for_the_plain(const AssistedMoments& result) {
 }
 
 void choose(AssistedMoments& result, const AssistedSettings& settings, const AssistedMoments* previous) {
-    const bool good = result.model_error < settings.refused_error && !result.unforeseen;
-    if (result.unforeseen)
+    const auto unforeseen = result.unforeseen || previous == nullptr ? result.unforeseen : previous->unforeseen;
+    const bool good = result.model_error < settings.refused_error && !unforeseen;
+    if (unforeseen)
         result.remark =
-            "the plain estimates stand: the response has no visible end, and predicted from all others its " +
-            std::to_string(response::outermost) + " outermost cases are missed by " + shown(100 * *result.unforeseen) +
-            " % of their distance from the mean (limit " + shown(100 * most_unforeseen) + ")";
+            "the plain estimates stand: the response has no visible end, and predicted from all others its outermost "
+            "cases are missed by " +
+            shown(100 * *unforeseen) + " % of their distance from the mean (limit " + shown(100 * most_unforeseen) +
+            ")";
     else if (!good)
         result.remark = "the plain estimates stand: left-out sequences are predicted with an error of " +
                         shown(result.model_error) + " standard deviations (limit " + shown(settings.refused_error) +

@@ -54,7 +54,8 @@ std::vector<BeyondCases::Edge> BeyondCases::edges_of(const Kriging& model,
             missed += (z - m) * (z - m);
             all += z * z;
         }
-        const double beyond_noise = std::max(missed - 2 * count * v, 0.0) / std::max(all, count);
+        const double by_noise = v * (count + 3 * std::sqrt(2 * count) + 4);  // chi-squared, its largest of many
+        const double beyond_noise = std::max(missed - by_noise, 0.0) / std::max(all, count);
         edge.unforeseen = std::min(std::sqrt(beyond_noise), 1.0);
     }
     return edges;

@@ -116,7 +116,8 @@ TEST_F(WindowPage, CurvesHoldBandsOfTheMeanAndOfARun) {
         EXPECT_GE(y["run_half_width"], y["mean_half_width"]);
     }
     EXPECT_EQ(data["curves"][2]["at"], nlohmann::ordered_json({0.0, 1.0})) << "a level each";
-    EXPECT_EQ(data["next"].size(), 2U);
+    EXPECT_EQ(data["next"].size(), window.next.size());
+    EXPECT_GE(window.next.size(), 1U) << "a second one need not be worth a run";
     EXPECT_THAT(data["models"][0].get<std::string>(), HasSubstr("leave-one-out error"));
 }
 

@@ -109,7 +109,7 @@ TEST(FirstOrder, WhatBinsLoseAndScatterAddsIsInTheBars) {
 
 TEST(FirstOrder, AnEffectThatTurnsWithinItsBinsIsInTheBars) {
     // Two periods in four bins: the means of the bins are equal, the index is 1.
-    const auto set = ask_design("random", 1, {{"points", 64}});
+    const auto set = ask_design("halton", 1, {{"points", 64}});
     std::vector<double> values;
     for (std::size_t i = 0; i < set.size(); ++i)
         values.push_back(std::pow(std::sin(std::numbers::pi * (2 * set.point(i)[0] - 1)), 2));
