@@ -94,7 +94,9 @@ store::Table predictions_table(const ModelCases& cases, const ObservableModel& m
     for (const char* name : {"mean", "mean_error", "scatter", "inside"}) table.columns.emplace_back(name);
     if (model.is_probability()) table.columns.insert(table.columns.end(), {"mean_low", "mean_high"});
     if (model.undefined > 0) table.columns.emplace_back("defined");
-    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"answers", "near_cases", "near_failed"});
+    if (!cases.failed.empty())
+        table.columns.insert(table.columns.end(),
+                             {"answers", "answers_low", "answers_high", "near_cases", "near_failed"});
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
         auto row = input_cells(cases.factors, predicted.settings[i]);
         const auto& p = predicted.predictions[i];
@@ -104,8 +106,9 @@ store::Table predictions_table(const ModelCases& cases, const ObservableModel& m
         if (model.undefined > 0) row.push_back(to_cell(predicted.defined[i]));
         const auto& near = predicted.near[i];
         if (!cases.failed.empty())
-            row.insert(row.end(),
-                       {to_cell(predicted.answers[i]), static_cast<std::int64_t>(near.cases), std::ssize(near.failed)});
+            row.insert(row.end(), {to_cell(predicted.answers[i]), to_cell(predicted.answers_low[i]),
+                                   to_cell(predicted.answers_high[i]), static_cast<std::int64_t>(near.cases),
+                                   std::ssize(near.failed)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -124,6 +127,8 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, con
                           {"inside", outside_text(cases.factors, predicted.settings[i]).empty()},
                           {"defined", predicted.defined[i]},
                           {"answers", predicted.answers[i]},
+                          {"answers_low", predicted.answers_low[i]},
+                          {"answers_high", predicted.answers_high[i]},
                           {"near_cases", predicted.near[i].cases},
                           {"near_failed", predicted.near[i].failed.size()}});
     }

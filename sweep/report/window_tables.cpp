@@ -58,6 +58,8 @@ Json window_table_json(const ModelCases& cases, const WindowRequest& request, co
     const auto near = window.answers->near(one.setting);
     return object.add({{"probability", one.probability},
                        {"answers", one.answers},
+                       {"answers_low", one.answers_low},
+                       {"answers_high", one.answers_high},
                        {"near_cases", near.cases},
                        {"near_failed", near.failed.size()},
                        {"observables", observables}});

@@ -13,8 +13,9 @@ namespace grainsweep::report {
                                        const study::Window& window);
 /// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "share_low", "share_high",
 /// "share_failed", "best":
-/// {"inputs", "mean", "mean_error", "scatter", "probability", "answers", "near_cases", "near_failed", "observables"},
-/// "surest", "computed_front": [{"inputs", "runs", "observables"}], "front", "next", "models", "notes"}
+/// {"inputs", "mean", "mean_error", "scatter", "probability", "answers", "answers_low", "answers_high", "near_cases",
+/// "near_failed", "observables"}, "surest", "computed_front": [{"inputs", "runs", "observables"}], "front", "next",
+/// "models", "notes"}
 [[nodiscard]] Json window_json(const study::ModelCases& cases, const study::WindowRequest& request,
                                const study::Window& window);
 

@@ -30,11 +30,15 @@ void refuse_undefined(const ModelCases& cases, const ObservableModel& model, std
 Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
                   bool extrapolate) {
     refuse_undefined(cases, model, settings);
-    Predicted predicted{std::move(settings), {}, {}, {}, {}};
+    Predicted predicted{std::move(settings), {}, {}, {}, {}, {}, {}};
     predicted.predictions = model.predict(predicted.settings);
     predicted.defined = model.defined(predicted.settings);
     const Answers answers(cases);
-    for (const auto& one : answers.at(predicted.settings)) predicted.answers.push_back(one.probability);
+    for (const auto& one : answers.at(predicted.settings)) {
+        predicted.answers.push_back(one.probability);
+        predicted.answers_low.push_back(one.low);
+        predicted.answers_high.push_back(one.high);
+    }
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
         predicted.near.push_back(answers.near(predicted.settings[i]));
         constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -16,6 +16,7 @@ struct Predicted {
     std::vector<stats::Prediction> predictions;  ///< NaN where an answer is less likely than none, unless extrapolated
     std::vector<double> defined;                 ///< probability that the observable is defined
     std::vector<double> answers;                 ///< probability that a case has an answer
+    std::vector<double> answers_low, answers_high;  ///< ends of its 95 % interval
     std::vector<Near> near;
 };
 /// Returns the predictions. Throws WrongQuestion if a feature is undefined at a setting.

@@ -21,7 +21,7 @@ constexpr double first_reach = 0.15;
 constexpr std::size_t share_of_doubted = 4;                // of the settings searched, one in so many
 constexpr double widest_apart = 0.1, least_apart = 0.025;  // of the range of a factor
 constexpr double enough_gain = 0.5;                        // of the best gain
-constexpr double least_gain = 0.01;                        // of the best gain, below which a case is not worth it
+constexpr double least_gain = 1e-4;                        // of the best gain, below which a case is not worth it
 constexpr double small_error = 0.1;                        // of the range of the computed values
 
 /// The best of the judged points, improved by points about it.
@@ -265,9 +265,10 @@ void say_what_failed(Window& window, const ModelCases& cases) {
                     100 * window.share_low, 100 * window.share_high));
     for (const auto& test : window.answers->tests(cases)) window.notes.push_back(test.text());
     if (const auto& chosen = window.best ? window.best : window.surest)
-        window.notes.push_back(fmt::format("{} a case has an answer with probability {:.3f}; {}",
-                                           window.best ? "at the best setting" : "where the condition is likeliest",
-                                           chosen->answers, near_text(cases, window.answers->near(chosen->setting))));
+        window.notes.push_back(fmt::format(
+            "{} a case has an answer with probability {:.3f} (95 %: {:.3f} to {:.3f}); {}",
+            window.best ? "at the best setting" : "where the condition is likeliest", chosen->answers,
+            chosen->answers_low, chosen->answers_high, near_text(cases, window.answers->near(chosen->setting))));
 }
 
 /// No failed case among a sample of the box is no proof that none fails.

@@ -131,13 +131,15 @@ TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
     const auto json = tests::parsed(predictions_json(known, model, predicted));
     EXPECT_TRUE(json["points"][0]["mean"].is_null());
     EXPECT_LT(json["points"][0]["answers"], 0.02);
+    EXPECT_LE(json["points"][0]["answers_low"], json["points"][0]["answers"]);
+    EXPECT_GE(json["points"][0]["answers_high"], json["points"][0]["answers"]);
     EXPECT_EQ(json["points"][0]["near_cases"], 5);
     EXPECT_EQ(json["points"][0]["near_failed"], 5);
     EXPECT_GT(json["points"][1]["answers"], 0.99);
     EXPECT_EQ(json["points"][1]["near_failed"], 0);
     const auto table = predictions_table(known, model, predicted);
     EXPECT_THAT(table.columns, testing::ElementsAre("x1", "x2", "mean", "mean_error", "scatter", "inside", "answers",
-                                                    "near_cases", "near_failed"));
+                                                    "answers_low", "answers_high", "near_cases", "near_failed"));
     EXPECT_EQ(table.rows[0][2], store::Table::Cell{});
     const auto extrapolated = study::predict(known, model, settings, true);
     EXPECT_NEAR(extrapolated.predictions[0].mean, 0.95, 0.1) << "what the model says, where it is asked to say it";
