@@ -6,7 +6,7 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t fewest_seen = 64, fewest_farthest = 32, share_of_farthest = 16;
+constexpr std::size_t fewest_seen = 120, fewest_farthest = 32, share_of_farthest = 16;
 constexpr double largest_shape = 0.5, allowance = 3.5;
 
 }  // namespace

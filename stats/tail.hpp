@@ -28,7 +28,7 @@ inline constexpr double tail_95 = 2.8;
 class Tail {
 public:
     /// Returns the upper or lower tail of ascending values of which `together` (R) share a stratum; none of fewer than
-    /// 64 values, if the farthest are all equal, or if they seem to end (xi <= 0).
+    /// 120 values, if the farthest are all equal, or if they seem to end (xi <= 0).
     [[nodiscard]] static std::optional<Tail> of(std::span<const double> sorted, bool upper, std::size_t together);
 
     /// Returns the variance above. `f` is called at places of the tail, whole strata at a time.
