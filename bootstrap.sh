@@ -5,6 +5,7 @@
 #   ./bootstrap.sh sanitize               ... build with the sanitizers, run what reads bytes, steps particles or has threads
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
 #   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
+#   ./bootstrap.sh soak served [MINUTES]  ... attack the live page for ten minutes, or so many, and print what held
 #   ./bootstrap.sh package                ... build, then write a Debian package and a relocatable archive to build
 #   ./bootstrap.sh docs                   write the documents as a static site to build/site
 set -euo pipefail
@@ -12,7 +13,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 jobs=$(nproc)
 
 usage() {
-    sed -n '2,9p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
+    sed -n '2,10p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
     exit 2
 }
 
@@ -177,6 +178,13 @@ bench)
             exit 2
         fi
     done
+    ;;
+soak)
+    [ "${2:-}" = served ] || usage
+    install_missing "${program_packages[@]}" "${test_packages[@]}"
+    (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
+    quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep slow_served
+    GRAINSWEEP_SOAK_MINUTES=${3:-10} "$here/build/tests/slow_served"
     ;;
 docs)
     install_missing "${docs_packages[@]}"

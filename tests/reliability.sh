@@ -20,8 +20,9 @@ echo "| misfortune | tried | held |"
 echo "|---|---|---|"
 for kind in unit campaign stability; do run "$build/tests/test_$kind" "--gtest_filter=$filter"; done
 if [ "${1:-}" = long ]; then
-    cmake --build "$build" --target slow_faults slow_soak >/dev/null || exit 1
+    cmake --build "$build" --target slow_faults slow_soak slow_served >/dev/null || exit 1
     run "$build/tests/slow_faults"
+    run "$build/tests/slow_served"
     GRAINSWEEP_SOAK_MINUTES=${GRAINSWEEP_SOAK_MINUTES:-60} run "$build/tests/slow_soak"
 fi
 exit $failed

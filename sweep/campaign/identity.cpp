@@ -1,5 +1,6 @@
 #include "sweep/campaign/identity.hpp"
 
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -368,6 +369,23 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
     };
     const auto& design = designs::design_named(asked.design);
     same("$.campaign", "the name", stored.name, asked.name);
+    // The name of a machine is a hash, which tells the reader nothing.
+    if (const auto shown = shown_scene(asked.scene); stored.scene != asked.scene && shown != asked.scene) {
+        const bool part = shown == stored.scene;  // of an older program
+        const bool changed = shown == shown_scene(stored.scene);
+        throw wrong_question(
+            "$.scene", shown,
+            fmt::format("campaign '{}' stands in '{}' with {}: give the campaign another name in the same database, or "
+                        "continue it with {}",
+                        stored.name, archive,
+                        part      ? fmt::format("scene {} of an older program. Since then {} is a machine, whose cases "
+                                                     "have other ids",
+                                                shown, shown)
+                        : changed ? fmt::format("another version of machine {}, whose file has changed", shown)
+                                  : fmt::format("scene {}", shown_scene(stored.scene)),
+                        part ? "the program that wrote it (`grainsweep explain` names it)"
+                             : "the scene that it was begun with"));
+    }
     same("$.scene", "scene", stored.scene, asked.scene);
     if (stored.revision != asked.revision) {
         refuse("$.scene", fmt::format("revision {} of {}", asked.revision, asked.scene),

@@ -280,6 +280,17 @@ void end_curve(Curve& curve, const ExportChoices& choices, std::vector<std::stri
     for (std::size_t k = 1; k < curve.below.size(); ++k) curve.below[k] = std::max(curve.below[k], curve.below[k - 1]);
 }
 
+/// Sizes of grains, from a nanometre to a metre: others are of another unit or another column.
+void require_sizes_of_grains(const Curve& curve, const std::string& unit) {
+    constexpr double smallest = 1e-9, largest = 1;  // m
+    for (const double size : {curve.sizes.front(), curve.sizes.back()})
+        if (!(size >= smallest && size <= largest))
+            refuse_export(
+                fmt::format("a size of {:.3g} m is none of a powder, from 1 nm to 1 m; the sizes were read in "
+                            "{}: state another unit by --unit, or the column by --sizes",
+                            size, unit));
+}
+
 /// Removes the empty classes at both ends.
 void trim(Curve& curve) {
     std::size_t first = 0, last = curve.sizes.size() - 1;
@@ -335,6 +346,7 @@ ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices)
         result.notes.push_back(fmt::format("the shares add up to {} and are divided by it", shortest(whole)));
     end_curve(curve, choices, result.notes);
     trim(curve);
+    require_sizes_of_grains(curve, columns.unit);
 
     result.csv = fmt::format("diameter,{}_below\n", *by);
     for (std::size_t k = 0; k < curve.sizes.size(); ++k)

@@ -17,6 +17,7 @@ namespace {
 using Lines = std::vector<std::string>;
 using Cells = std::vector<std::string>;
 
+constexpr std::size_t longest_line = 16U << 10U;
 constexpr std::size_t most_headers = 3;  // lines above a block that may name its columns
 
 void append_utf8(std::string& text, std::uint32_t point) {
@@ -89,11 +90,19 @@ Lines text_lines(const std::string& text) {
     return lines;
 }
 
-/// Cells of a line; a blank as separator stands for any number of blanks.
-Cells cells_of_line(std::string_view line, char separator) {
+Cells plain_cells(std::string_view line, char separator) {
+    Cells cells;
+    for (auto end = line.find(separator); end != std::string_view::npos; end = line.find(separator)) {
+        if (separator != ' ' || end > 0) cells.emplace_back(line.substr(0, end));
+        line.remove_prefix(end + 1);
+    }
+    cells.emplace_back(line);
+    return cells;
+}
+
+Cells quoted_cells(std::string_view line, char separator) {
     Cells cells(1);
     bool quoted = false;
-    if (separator == ' ') line = trimmed(line);
     for (std::size_t k = 0; k < line.size(); ++k) {
         if (line[k] == '"')
             quoted = !quoted;
@@ -103,6 +112,16 @@ Cells cells_of_line(std::string_view line, char separator) {
             cells.back() += line[k];
         }
     }
+    return cells;
+}
+
+/// Cells of a line; a blank as separator stands for any number of blanks. A line that is longer than any of an export
+/// has none.
+Cells cells_of_line(std::string_view line, char separator) {
+    if (line.size() > longest_line) return {};
+    if (separator == ' ') line = trimmed(line);
+    Cells cells =
+        line.find('"') == std::string_view::npos ? plain_cells(line, separator) : quoted_cells(line, separator);
     for (auto& cell : cells) cell = std::string(trimmed(cell));
     while (cells.size() > 1 && cells.back().empty()) cells.pop_back();
     return cells;

@@ -8,6 +8,7 @@
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/written_campaign.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/workers/memory_room.hpp"
@@ -166,10 +167,9 @@ AccuracyEnd run_accuracy(const AccuracyRun& run) {
         request.workers = run.workers;
         request.quiet = run.quiet;
         request.goes_on = !campaigns.empty();
-        const auto report = run_campaign(request);
+        const auto report = run_part(request);
         campaigns.push_back({one.name, one.says, one.moved});
-        constexpr int interrupted = 130;
-        if (report.exit_code == interrupted) {
+        if (is_end_of_all(report.exit_code)) {
             end.exit_code = report.exit_code;
             return end;
         }

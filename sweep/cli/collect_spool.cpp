@@ -20,7 +20,7 @@ struct Ended {
 };
 
 void write_ended(store::Store& store, const std::vector<Ended>& cases) {
-    store.group([&] {
+    const auto write = [&] {
         for (const auto& one : cases) {
             const auto logged = store.attempts(one.id);
             std::int64_t number = logged.empty() ? 0 : logged.back().number;
@@ -31,7 +31,8 @@ void write_ended(store::Store& store, const std::vector<Ended>& cases) {
                 (void)store.finish(result);
             }
         }
-    });
+    };
+    store.group(write, store::Store::Origin::imported);
 }
 
 /// As enrolling once more would find it.

@@ -5,6 +5,7 @@
 #include "sweep/cli/figure_file.hpp"
 #include "sweep/report/accuracy_figure.hpp"
 #include "sweep/report/accuracy_tables.hpp"
+#include "sweep/workers/end_requests.hpp"
 
 #include <fmt/format.h>
 
@@ -31,6 +32,7 @@ int accuracy(const AccuracyRequest& request, report::Format format) {
                                        "must be a number above 0 and below 1");
     const auto database = request.database.string();
     if (!request.file.output.empty()) (void)width_in_mm(request.file), (void)figure_type(request.file, database);
+    workers::answer_end_requests();
     const auto end = run_accuracy(request);
     if (end.costs.empty()) {
         std::cerr << "interrupted; run it again to resume\n";

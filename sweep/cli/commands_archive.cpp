@@ -2,7 +2,9 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/folder_beside.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
 #include "sweep/cli/query.hpp"
@@ -10,8 +12,10 @@
 #include "sweep/cli/status_text.hpp"
 #include "sweep/cli/stored_case.hpp"
 #include "sweep/cli/threads_option.hpp"
+#include "sweep/files/artefacts.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/study/history.hpp"
+#include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
 
@@ -123,8 +127,9 @@ std::string why_failed(const std::vector<store::LoggedAttempt>& attempts, const 
         failures, limit, to_string(*attempts.back().outcome));
 }
 
+/// `impossible`: why this program cannot compute the case; empty: it can.
 std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::vector<store::CasePlace>& places,
-                const std::optional<campaign::CaseResult>& stands) {
+                const std::optional<campaign::CaseResult>& stands, const std::string& impossible) {
     if (stands && campaign::settles(stands->outcome) && attempts.back().number != stands->attempt.number)
         return fmt::format(
             "settled: the result of attempt {} is kept, because later attempts gave none; `run "
@@ -132,10 +137,11 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
             stands->attempt.number, to_string(stands->outcome));
     const std::string passed_by = out_of_reach(places);
     const auto next_run = [&](const std::string& does) {
+        if (!impossible.empty()) return fmt::format("this program does not run it: it {}", impossible);
         return passed_by.empty() ? does : fmt::format("it will not run: {}", passed_by);
     };
     if (attempts.empty())
-        return passed_by.empty() ? "it has not started: the next run of its campaign starts it"
+        return passed_by.empty() ? next_run("it has not started: the next run of its campaign starts it")
                                  : fmt::format("it has not started and will not: {}", passed_by);
     const auto& last = attempts.back();
     if (!last.outcome)
@@ -156,6 +162,20 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
             break;
     }
     return next_run(why_failed(attempts, places));
+}
+
+/// Returns the fate of the checkpoint beside the database; empty: there is none, or the next run continues from it.
+std::string checkpoint_note(const std::string& database, const campaign::CaseId& id) {
+    bool usable = false;
+    std::string origin;
+    files::ArtefactFolder(folder_beside(database, of_artefacts)).visit([&](std::string_view key) {
+        if (workers::checkpointed_case(key) != id) return;
+        usable = usable || key == workers::checkpoint_key(id, this_computer());
+        origin = workers::checkpoint_origin(key);
+    });
+    if (usable || origin.empty()) return {};
+    return fmt::format(
+        "; its checkpoint is of another program ({}), so that with this one it starts from the beginning", origin);
 }
 
 std::string described_build(const campaign::Computer& by) {
@@ -201,7 +221,9 @@ int explain(const Arguments& asked, Format format) {
     const campaign::Case question = require_case(archive, asked.text);
     const auto attempts = archive.attempts(question.id);
     const Table table = attempts_table(attempts);
-    const std::string reason = why(attempts, archive.places(question.id), archive.result(question.id));
+    std::string reason =
+        why(attempts, archive.places(question.id), archive.result(question.id), why_not_again(question));
+    if (!archive.is_settled(question.id)) reason += checkpoint_note(asked.database, question.id);
     if (format == Format::csv) {
         report::write(std::cout, table, format);
         return 0;

@@ -10,6 +10,7 @@
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/study/response_models.hpp"
+#include "sweep/workers/end_requests.hpp"
 
 #include <fmt/format.h>
 
@@ -204,6 +205,7 @@ void check_run(const WindowArguments& arguments, const study::WindowRequest& req
 std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const study::WindowRequest& request) {
     if (!arguments.run) return std::nullopt;
     std::signal(SIGPIPE, SIG_IGN);  // as run does: a campaign outlives the reader of its output
+    workers::answer_end_requests();
     constexpr std::int64_t usual_batch = 8, usual_most = 100;
     return run_towards_window({.database = arguments.database,
                                .campaign = arguments.campaign,

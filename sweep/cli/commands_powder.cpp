@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using report::Format;
 using report::Json;
 
-constexpr std::size_t largest_export = 64ULL << 20U;
+constexpr std::size_t largest_export = 16ULL << 20U;
 
 struct PowderRequest {
     std::string action, file, output;

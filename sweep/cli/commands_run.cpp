@@ -5,6 +5,7 @@
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/run_experiments.hpp"
 #include "sweep/cli/run_summary.hpp"
+#include "sweep/workers/end_requests.hpp"
 #include "sweep/workers/host.hpp"
 #include "sweep/workers/worker.hpp"
 
@@ -91,6 +92,7 @@ int run(RunArguments& request, Format format) {
     // A campaign outlives the terminal it was started from, and the reader of its output.
     std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+    workers::answer_end_requests();
     if (!request.outcome.empty()) request.again = outcome_asked_again(request.outcome);
     for (auto* limit : {&request.stop_after_failures, &request.max_cases})
         if (*limit == 0) limit->reset();

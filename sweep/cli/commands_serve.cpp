@@ -2,20 +2,25 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/files/aside_file.hpp"
 #include "sweep/files/broken_world.hpp"
+#include "sweep/live/jobs.hpp"
 #include "sweep/live/served.hpp"
 #include "sweep/workers/process_start.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -27,39 +32,67 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 struct ServeRequest {
-    std::string place, control;
+    std::string place, control, base_path;
+    std::vector<std::string> host_names;
     std::int64_t port = 8377;
     bool open = false;
 };
 
 volatile std::sig_atomic_t asked_to_end = 0;
 
-bool is_database(const fs::path& file) {
-    try {
-        const store::Store store(file, store::Store::Mode::read);
-        return true;
-    } catch (const campaign::WrongQuestion&) {
-        return false;
-    } catch (const BrokenWorld&) {
-        return false;
+/// Databases at a place: the file, or every database of the folder, by name. One that is damaged is a database, too.
+class Databases {
+public:
+    explicit Databases(fs::path place) : place_(std::move(place)) {}
+
+    [[nodiscard]] std::vector<fs::path> list() {
+        std::error_code error;
+        if (!fs::is_directory(place_, error)) return {place_};
+        std::vector<fs::path> found;
+        fs::directory_iterator entry(place_, error);
+        for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+            if (entry->path().extension() == ".db" && is_database(*entry)) found.push_back(entry->path());
+        std::ranges::sort(found);
+        return found;
     }
-}
 
-/// The file, or every database of the folder, by name. Those that are `known` are not opened.
-std::vector<fs::path> databases_at(const fs::path& place, const std::vector<fs::path>& known = {}) {
-    std::error_code error;
-    if (!fs::is_directory(place, error)) return {place};
-    std::vector<fs::path> found;
-    for (const auto& entry : fs::directory_iterator(place, error))
-        if (entry.is_regular_file(error) && entry.path().extension() == ".db") found.push_back(entry.path());
-    std::ranges::sort(found);
-    std::erase_if(found,
-                  [&](const fs::path& file) { return !std::ranges::binary_search(known, file) && !is_database(file); });
-    return found;
-}
+private:
+    struct Look {
+        std::uintmax_t bytes = 0;
+        fs::file_time_type written{};
+        bool is_database = false;
+    };
 
-std::vector<fs::path> require_databases(const fs::path& place) {
-    auto found = databases_at(place);
+    /// Opens the file only if it has changed since it was no database.
+    [[nodiscard]] bool is_database(const fs::directory_entry& entry) {
+        std::error_code error;
+        if (!entry.is_regular_file(error)) return false;
+        const auto bytes = entry.file_size(error);
+        const auto written = entry.last_write_time(error);
+        auto [seen, fresh] = looks_.try_emplace(entry.path());
+        auto& look = seen->second;
+        if (!fresh && (look.is_database || (look.bytes == bytes && look.written == written))) return look.is_database;
+        look = {bytes, written, opens(entry.path())};
+        return look.is_database;
+    }
+    static bool opens(const fs::path& file) {
+        try {
+            const store::Store store(file, store::Store::Mode::read);
+            return true;
+        } catch (const campaign::WrongQuestion&) {
+            return false;
+        } catch (const BrokenWorld&) {
+            return true;
+        }
+    }
+
+    fs::path place_;
+    std::map<fs::path, Look> looks_;
+};
+
+std::vector<fs::path> require_databases(Databases& databases, const fs::path& place) {
+    if (std::error_code error; !fs::is_directory(place, error)) (void)store::Store(place, store::Store::Mode::read);
+    auto found = databases.list();
     if (found.empty())
         throw campaign::wrong_question("DB", place.string(), "the folder holds no database of grainsweep (*.db)");
     return found;
@@ -93,48 +126,86 @@ std::vector<fs::path> campaign_files_at(const fs::path& place) {
     return found;
 }
 
-void open_browser(const std::string& address) {
+live::Proxy proxy_of(const ServeRequest& request) {
+    live::Proxy proxy;
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
+    for (const auto& name : request.host_names) {
+        if (name.empty() || name.find_first_not_of(letters) != std::string::npos)
+            throw campaign::wrong_question("--host-name", fmt::format("'{}'", name),
+                                           "a name as in an address, without http:// and port");
+        proxy.hosts.push_back(name);
+    }
+    if (request.base_path.empty()) return proxy;
+    const auto& path = request.base_path;
+    if (!path.starts_with('/') || path.find_first_not_of(std::string(letters) + "/%") != std::string::npos)
+        throw campaign::wrong_question("--base-path", fmt::format("'{}'", path),
+                                       "a path that begins with /, as in an address");
+    proxy.base_path = path.ends_with('/') ? path : path + "/";
+    return proxy;
+}
+
+/// Opens a browser by a file that only the user may read: other users see the arguments of a program.
+void open_browser(const live::PrivateFolder& folder, const std::string& address) {
+    const auto page = folder.path() / "open.html";
+    files::AsideFile file(page);
+    file.write(
+        fmt::format("<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">"
+                    "<meta http-equiv=\"refresh\" content=\"0; url={}\">\n",
+                    address));
+    file.take_place_unsynced();
     const auto opener = workers::find_program("xdg-open");
     std::error_code error;
-    if (opener.empty() || workers::start_process({.argv = {opener, address}}, error) < 0)
+    if (opener.empty() || workers::start_process({.argv = {opener, page.string()}}, error) < 0)
         std::cerr << "grainsweep: no browser could be opened (xdg-open)\n";
+}
+
+/// Hundreds of databases and readers need more descriptors than shells give.
+void raise_descriptors() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 65536);
+    ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 int serve(const ServeRequest& request, report::Format) {
     const fs::path place = request.place;
-    auto databases = require_databases(place);
+    const auto proxy = proxy_of(request);
+    std::signal(SIGINT, [](int) { asked_to_end = 1; });
+    std::signal(SIGTERM, [](int) { asked_to_end = 1; });
+    raise_descriptors();
+    Databases listed(place);
+    auto databases = require_databases(listed, place);
     std::optional<live::Control> control;
     if (!request.control.empty()) control = live::Control{campaign_files_at(request.control)};
     const auto token = live::new_token();
-    std::unique_ptr<live::Served> served;
-    const auto server =
-        live::open_http_server(static_cast<std::uint16_t>(request.port),
-                               [&](const live::HttpQuestion& question) { return served->answer(question); });
-    served = std::make_unique<live::Served>(databases, control, token);
-    const auto address = fmt::format("http://127.0.0.1:{}/?token={}", server->port(), token);
+    std::optional<live::Served> served;
+    auto server = live::open_http_server(static_cast<std::uint16_t>(request.port),
+                                         [&](const live::HttpQuestion& question) { return served->answer(question); });
+    served.emplace(databases, control, token, proxy, [] { return asked_to_end != 0; });
+    const auto address = fmt::format("http://127.0.0.1:{}{}?token={}", server->port(), proxy.base_path, token);
     std::cout << address << '\n' << std::flush;
     std::cerr << fmt::format("{} database{}; Ctrl-C ends the page, not the run\n", databases.size(),
                              databases.size() == 1 ? "" : "s");
-    if (request.open) open_browser(address);
-    std::signal(SIGINT, [](int) { asked_to_end = 1; });
-    std::signal(SIGTERM, [](int) { asked_to_end = 1; });
-    auto listed = std::chrono::steady_clock::now();
-    while (asked_to_end == 0) {
+    for (const auto& host : proxy.hosts)
+        std::cerr << fmt::format("behind the proxy: https://{}{}?token={}\n", host, proxy.base_path, token);
+    std::optional<live::PrivateFolder> opened;
+    if (request.open) open_browser(opened.emplace(), address);
+    for (auto last = std::chrono::steady_clock::now(); asked_to_end == 0;) {
         server->run(200ms);
         server->publish(served->look());
-        if (std::chrono::steady_clock::now() - listed < 2s) continue;
-        listed = std::chrono::steady_clock::now();
-        auto found = databases_at(place, databases);
+        if (std::chrono::steady_clock::now() - last < 2s) continue;
+        last = std::chrono::steady_clock::now();
+        auto found = listed.list();
         if (found == databases || found.empty()) continue;
         databases = std::move(found);
-        try {
-            served = std::make_unique<live::Served>(databases, control, token, served->work());
-            server->publish(served->changed());
-        } catch (const BrokenWorld& error) {  // of one of them; the others stay on the page as they are
-            std::cerr << "grainsweep: " << error.what() << '\n';
-        }
+        served->follow(databases);
     }
-    return 0;
+    server.reset();
+    if (!served->busy()) return 0;
+    // A figure may take minutes, and nothing is written: the end does not wait for it.
+    served->end_work();
+    opened.reset();
+    std::_Exit(0);
 }
 
 void declare_serve(Parser& parser, ServeRequest& request) {
@@ -145,6 +216,12 @@ void declare_serve(Parser& parser, ServeRequest& request) {
     parser.add_flag("--open", request.open, "opens the page in a browser");
     parser.add_option("--control FILE", request.control,
                       "lets the page stop a run and start this campaign file, or any of this folder");
+    parser.add_option("--base-path PATH", request.base_path,
+                      "path under which a proxy shows the page, for example /node/n7/8377/; the proxy may remove it");
+    parser
+        .add_option("--host-name NAME", request.host_names,
+                    "further host name under which a proxy shows the page, may be repeated")
+        ->allow_extra_args(false);
 }
 
 }  // namespace

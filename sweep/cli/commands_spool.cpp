@@ -6,6 +6,7 @@
 #include "sweep/cli/run_summary.hpp"
 #include "sweep/cli/work_task.hpp"
 #include "sweep/report/document.hpp"
+#include "sweep/workers/end_requests.hpp"
 
 #include <fmt/format.h>
 
@@ -51,6 +52,7 @@ int work_on_share(const WorkRequest& request, Format format) {
     use_path(request.path);
     std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+    workers::answer_end_requests();
     const auto report = work_on(request);
     if (!request.quiet || format != Format::text) report::write(std::cout, document_of(report), format);
     return report.exit_code;
@@ -67,6 +69,7 @@ void declare_collect(Parser& parser, RunRequest& request) {
 
 int collect(const RunRequest& request, Format format) {
     std::signal(SIGPIPE, SIG_IGN);
+    workers::answer_end_requests();
     const RunReport report = run_campaign(request);
     if (!request.quiet || format != Format::text) show_run(report, format, request.all);
     return report.exit_code;

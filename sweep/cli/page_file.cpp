@@ -3,6 +3,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/aside_file.hpp"
 #include "sweep/files/broken_world.hpp"
+#include "sweep/files/locked_files.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -35,6 +36,8 @@ void check_page_file(std::string_view option, const std::string& output, const s
     for (const auto* suffix : {"", "-wal", "-shm", "-journal", ".lock"})
         if (!database.empty() && fs::weakly_canonical(output, error) == fs::weakly_canonical(database + suffix, error))
             refuse("this belongs to the database");
+    if (files::is_locked_file(output) || (!database.empty() && fs::equivalent(output, database, error)))
+        refuse("this is the database, under another name");
     if (!fs::exists(there)) return;
     std::ifstream stream(output, std::ios::binary);
     if (!stream || access(output.c_str(), W_OK) != 0) refuse(std::strerror(errno));

@@ -182,7 +182,7 @@ private:
         one.text = std::move(text);
         one.goes_on = ended_.has_value();
         if (request_.max_cases) one.max_cases = *request_.max_cases - settled_;
-        auto report = run_campaign(one);
+        auto report = run_part(one);
         settled_ += report.settled;
         if (report.finished && request_.max_cases && settled_ >= *request_.max_cases) {
             report.finished = false;

@@ -24,6 +24,7 @@
 #include "sweep/store/store.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/study/history.hpp"
+#include "sweep/workers/end_requests.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
 #include "sweep/workers/staged_campaign.hpp"
@@ -35,6 +36,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 
 namespace grainsweep::cli {
@@ -164,6 +166,29 @@ void sweep(const files::ArtefactFolder& folder, const store::Store& store) {
     });
 }
 
+/// Returns a sentence on unfinished cases whose only checkpoints another build or instruction path has saved; empty:
+/// there is none. `hosts` may have other instruction paths than this one.
+std::string passed_over(const files::ArtefactFolder& folder, const store::Store& store, bool hosts) {
+    const auto build = fmt::format("\nbuild={}\n", build_id());
+    std::set<campaign::CaseId> usable, others;
+    std::string origin;
+    folder.visit([&](std::string_view key) {
+        const auto id = workers::checkpointed_case(key);
+        if (!id) return;
+        const bool fits =
+            hosts ? key.find(build) != std::string_view::npos : key == workers::checkpoint_key(*id, this_computer());
+        (fits ? usable : others).insert(*id);
+        if (!fits) origin = workers::checkpoint_origin(key);
+    });
+    std::erase_if(others,
+                  [&](const auto& id) { return usable.contains(id) || store.is_settled(id) || !store.find_case(id); });
+    if (others.empty()) return {};
+    return fmt::format(
+        "note: {} unfinished case{} with a checkpoint of another program ({}) start{} from the beginning: a state is "
+        "continued by the build and instruction path that saved it",
+        others.size(), others.size() == 1 ? "" : "s", origin, others.size() == 1 ? "s" : "");
+}
+
 /// Shows the information that the user needs before the first answer.
 void say_first(ProgressLine& line, const campaign::Campaign& campaign, const campaign::Forecast& forecast,
                const store::CampaignRecord& record) {
@@ -242,6 +267,10 @@ public:
             enrol(std::exchange(first, false));
             compute();
             if (ending_ != Ending::finished || !grow()) break;
+            if (const auto code = workers::requested_end()) {
+                ending_ = code == interrupted_code ? Ending::interrupted : Ending::asked_to_end;
+                break;
+            }
             unfold();
         } while (true);
         store_->remember_file();
@@ -337,6 +366,8 @@ private:
         workers::Pool pool(pool_options(campaign_, {artefacts_, cases}, workers_, request_.path));
         files::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
+        const bool hosts = !campaign_.execution.launcher.empty();
+        if (const auto note = passed_over(folder, *store_, hosts); !note.empty()) line_->note(note);
         workers::stage_campaign(campaign_, folder);
         schedule::Watchers watchers;
         NowWriter now(database_, campaign_.name, workers_ * threads_of_a_case(campaign_));
@@ -375,6 +406,17 @@ private:
 
 RunReport run_campaign(const RunRequest& request) {
     return Run(request)();
+}
+
+RunReport run_part(const RunRequest& request) {
+    auto report = run_campaign(request);
+    if (const auto code = workers::requested_end(); code && report.finished) {
+        report.exit_code = *code;
+        report.finished = false;
+        report.ending =
+            fmt::format("{}; run again to resume", code == interrupted_code ? "interrupted" : "ended by a signal");
+    }
+    return report;
 }
 
 }  // namespace grainsweep::cli

@@ -44,11 +44,14 @@ struct RunReport {
     std::string ending;             ///< one sentence; with a convergence rule it says whether the campaign has
                                     ///< converged
     std::optional<bool> converged;  ///< by the campaign's rule; empty: no rule
-    bool finished = false;          ///< no case is left
+    bool finished = false;          ///< no case is left, and no signal asked for the end
     std::int64_t settled = 0;       ///< cases settled in this run
     std::int64_t points = 0;        ///< points of the design, as far as answers determine them
 };
 
 [[nodiscard]] RunReport run_campaign(const RunRequest& request);
+/// Does the same for one of several campaigns: a signal that came after its last case is an end, too, because others
+/// would follow.
+[[nodiscard]] RunReport run_part(const RunRequest& request);
 
 }  // namespace grainsweep::cli

@@ -42,8 +42,8 @@ std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const 
 }
 
 int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
-    if (ending == Ending::interrupted) return 130;
-    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
+    if (ending == Ending::interrupted) return interrupted_code;
+    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return ended_code;
     if (ending == Ending::converged) return 0;
     return tally.failed == 0 && tally.decided == tally.questions ? 0 : 1;
 }

@@ -9,6 +9,14 @@
 
 namespace grainsweep::cli {
 
+// Exit codes.
+inline constexpr int interrupted_code = 130;  ///< after Ctrl-C
+inline constexpr int ended_code = 75;  ///< out of time, or after another signal
+/// Returns whether a command of several runs ends with this one.
+[[nodiscard]] constexpr bool is_end_of_all(int exit_code) {
+    return exit_code == interrupted_code || exit_code == ended_code;
+}
+
 /// Returns the part of the last line on convergence; empty without a rule.
 [[nodiscard]] std::string standing(const schedule::Judge* judge);
 /// Returns the last sentence of a run.

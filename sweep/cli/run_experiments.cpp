@@ -30,7 +30,7 @@ RunReport run_in_turn(const RunRequest& request, const std::vector<std::string>&
         for (const auto& name : names) {
             one.experiment = name;
             if (request.max_cases) one.max_cases = *request.max_cases - settled;
-            auto report = run_campaign(one);
+            auto report = run_part(one);
             settled += report.settled;
             code = std::max(code, report.exit_code);
             const bool spent = request.max_cases && settled >= *request.max_cases;

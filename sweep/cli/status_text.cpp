@@ -84,14 +84,21 @@ store::Table running_cases(const store::Store& archive, const live::Now& now, st
     table.columns = {"case", "point"};
     table.columns.insert(table.columns.end(), factors.begin(), factors.end());
     for (const char* name : {"done", "seconds", "attempt", "host"}) table.columns.emplace_back(name);
-    const auto quoted = [](const std::string& name) { return '"' + name + '"'; };
+    const auto quoted = [](const std::string& name) {
+        std::string text = "\"";
+        for (const char c : name) text.append(c == '"' ? 2 : 1, c);
+        return text += '"';
+    };
     std::string columns = "point";
     for (const auto& factor : factors) columns += ", " + quoted(factor);
+    const auto held = archive.campaigns();
+    if (!std::ranges::count(held, now.campaign, &store::CampaignRecord::name)) return table;
+    const auto rows = archive.rows_of(now.campaign);
     for (const auto& one : now.running) {
         if (table.rows.size() == most) break;
         auto& row = table.rows.emplace_back(std::vector<Cell>{one.case_id});
-        const auto found = archive.query(fmt::format("SELECT {} FROM {} WHERE case_id = '{}' ORDER BY point LIMIT 1",
-                                                     columns, quoted(now.campaign), one.case_id));
+        const auto found = archive.query(
+            fmt::format("SELECT {} FROM ({}) WHERE case_id = '{}' ORDER BY point LIMIT 1", columns, rows, one.case_id));
         for (std::size_t k = 0; k <= factors.size(); ++k)
             row.push_back(found.rows.empty() ? Cell{} : found.rows.front()[k]);
         row.push_back(one.share ? Cell{*one.share} : Cell{});

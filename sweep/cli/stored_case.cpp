@@ -1,6 +1,7 @@
 #include "sweep/cli/stored_case.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
@@ -23,6 +24,12 @@ std::string heading_of(const store::Store& archive, const campaign::CaseId& id) 
 
 std::string why_not_again(const campaign::Case& question) {
     const auto scene = find_scene(question.scene);
+    if (scene == nullptr && campaign::installed_machine(question.scene) != nullptr)
+        return fmt::format(
+            "is of scene '{0}' of an older program. Since then {0} is a machine, whose cases have other ids: run the "
+            "campaign under another name in the same database, or replay it with the program that made it (grainsweep "
+            "explain names it)",
+            question.scene);
     if (scene == nullptr) return "needs a scene that this build does not have: " + question.scene;
     if (scene->revision == question.revision) return {};
     return fmt::format(

@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/written_campaign.hpp"
 #include "sweep/store/campaign_name.hpp"
 
@@ -16,8 +17,6 @@ namespace grainsweep::cli {
 namespace {
 
 using store::Store;
-
-constexpr int interrupted = 130;
 
 struct Batch {
     std::string name, text;
@@ -114,12 +113,13 @@ WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest
         batch.workers = run.workers;
         batch.max_cases = left;
         batch.quiet = true;
-        const auto report = run_campaign(batch);
+        const auto report = run_part(batch);
         end.cases += std::min(standing.next->cases, left);
         ++end.batches;
-        if (report.exit_code == interrupted) {
-            end.exit_code = interrupted;
-            end.says = "interrupted; run it again to resume";
+        if (is_end_of_all(report.exit_code)) {
+            end.exit_code = report.exit_code;
+            end.says = report.exit_code == interrupted_code ? "interrupted; run it again to resume"
+                                                       : "ended by a signal or a time limit; run it again to resume";
             return end;
         }
     }

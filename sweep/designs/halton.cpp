@@ -19,13 +19,22 @@ void require_table(BraatenWellerTable table, std::size_t dimensions) {
                                     std::to_string(dimensions) + "; use \"random\"");
 }
 
+/// Random permutations of 10,000 factors would take a minute for each sequence.
+void require_few_factors(std::size_t dimensions) {
+    constexpr std::size_t most = 1000;
+    if (dimensions > most)
+        throw std::invalid_argument("random scrambling serves " + std::to_string(most) + " factors, not " +
+                                    std::to_string(dimensions) + R"(; use "sobol", "latin_hypercube" or "random")");
+}
+
 /// Of factor j in one sequence. One at a time: the permutations of the j-th prime take some 40 j ln j bytes.
 class Inverses {
 public:
-    explicit Inverses(const DesignRequest& request)
-        : scramble_(request.word("scramble")), seed_(request.seed), bases_(primes(request.dimensions())) {
+    explicit Inverses(const DesignRequest& request) : scramble_(request.word("scramble")), seed_(request.seed) {
         if (scramble_ == "braaten_weller") require_table(BraatenWellerTable::original, request.dimensions());
+        if (scramble_ == "random") require_few_factors(request.dimensions());
         if (scramble_ == "braaten_weller_vc2006") require_table(BraatenWellerTable::vc2006, request.dimensions());
+        bases_ = primes(request.dimensions());
     }
     [[nodiscard]] RadicalInverse of(std::size_t j, std::uint64_t sequence) const {
         if (scramble_ == "braaten_weller")
@@ -71,27 +80,29 @@ DesignInfo halton_design() {
             "'braaten_weller' 0.144 (sobol 0.064, random points 0.17). With 8 random sequences every statistic has "
             "an honest error bar, and mean, sd and kurtosis of a smooth response are known to 1 % at about 2400 "
             "points.",
-        .options = {points_option("number of points, all sequences together"),
-                    {.name = "scramble",
-                     .meaning = "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "
-                                "braaten_weller_vc2006: the table of Vandewoestyne & Cools 2006 (16 factors); "
-                                "random: an independent permutation per digit, from the campaign's seed",
-                     .kind = OptionSpec::Kind::word,
-                     .default_value = std::string("random"),
-                     .maximum = 1,
-                     .words = {"none", "braaten_weller", "braaten_weller_vc2006", "random"}},
-                    {.name = "sequences",
-                     .meaning = "independently scrambled sequences that advance together ('random' only); the "
-                                "convergence rule 'replicates' needs at least 4, 8 are recommended",
-                     .default_value = std::int64_t{1},
-                     .maximum = 10'000},
-                    {.name = "first",
-                     .meaning = "index of the first point (unscrambled, index 0 is the corner where every factor is "
-                                "at its low end)",
-                     .default_value = std::int64_t{1},
-                     .minimum = 0,
-                     .maximum = 9'007'199'254'740'991,  // 2^53 - 1, the largest whole number of every JSON
-                     .words = {}}},
+        .options =
+            {points_option("number of points, all sequences together"),
+             {.name = "scramble",
+              .meaning =
+                  "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "
+                  "braaten_weller_vc2006: the table of Vandewoestyne & Cools 2006 (16 factors); "
+                  "random: an independent permutation per digit, from the campaign's seed (1000 factors at most)",
+              .kind = OptionSpec::Kind::word,
+              .default_value = std::string("random"),
+              .maximum = 1,
+              .words = {"none", "braaten_weller", "braaten_weller_vc2006", "random"}},
+             {.name = "sequences",
+              .meaning = "independently scrambled sequences that advance together ('random' only); the "
+                         "convergence rule 'replicates' needs at least 4, 8 are recommended",
+              .default_value = std::int64_t{1},
+              .maximum = 10'000},
+             {.name = "first",
+              .meaning = "index of the first point (unscrambled, index 0 is the corner where every factor is "
+                         "at its low end)",
+              .default_value = std::int64_t{1},
+              .minimum = 0,
+              .maximum = 9'007'199'254'740'991,  // 2^53 - 1, the largest whole number of every JSON
+              .words = {}}},
         .extends = true,
         .independent_sequences = true,
         .size = points_asked,

@@ -4,6 +4,7 @@
 #include "sweep/files/aside_file.hpp"
 #include "sweep/files/broken_world.hpp"
 #include "sweep/files/descriptor.hpp"
+#include "sweep/files/locked_files.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -56,7 +57,7 @@ std::string_view bytes_of(std::span<const std::byte> bytes) {
 /// Returns the key that is written in a file.
 std::optional<std::string> key_in(const std::filesystem::path& file) {
     constexpr std::uint64_t longest_key = 1U << 20U;
-    if (file.extension() != ".artefact") return std::nullopt;
+    if (file.extension() != ".artefact" || is_locked_file(file)) return std::nullopt;
     std::ifstream stream(file, std::ios::binary);
     Header header;
     if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
@@ -86,6 +87,10 @@ std::optional<Bytes> ArtefactFolder::read(const std::filesystem::path& file, std
     if (const auto status = std::filesystem::status(file, error);
         std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
         damage = "it is no regular file";  // to open a named pipe waits for a writer
+        return std::nullopt;
+    }
+    if (is_locked_file(file)) {
+        damage = "it is the database";
         return std::nullopt;
     }
     std::ifstream stream(file, std::ios::binary | std::ios::ate);
@@ -130,6 +135,14 @@ std::optional<Bytes> ArtefactFolder::get(std::string_view key) {
         on_damage_(fmt::format("'{}' is damaged: {}; it is not used, and what it held is computed anew", file.string(),
                                damage));
     return contents;
+}
+
+void ArtefactFolder::visit(const std::function<void(std::string_view key)>& each) const {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+        const auto key = entry.is_regular_file(ignored) ? key_in(entry.path()) : std::nullopt;
+        if (key) each(*key);
+    }
 }
 
 void ArtefactFolder::sweep(const std::function<bool(std::string_view key)>& over) const {

@@ -24,6 +24,8 @@ public:
     [[nodiscard]] std::optional<Bytes> get(std::string_view key) override;
     void put(std::string_view key, std::span<const std::byte> contents) override;
     void remove(std::string_view key);
+    /// Calls `each` with the key of every file.
+    void visit(const std::function<void(std::string_view key)>& each) const;
     /// Removes incomplete files of dead writers, at once for processes of this host, after ten minutes for other hosts.
     /// Also removes files for whose key `over` is true. The caller must have the writer's lock of the database.
     void sweep(const std::function<bool(std::string_view key)>& over) const;

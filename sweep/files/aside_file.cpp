@@ -1,17 +1,15 @@
 #include "sweep/files/aside_file.hpp"
 
 #include "sweep/files/broken_world.hpp"
-#include "sweep/files/whole_file.hpp"
+#include "sweep/files/processes.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -23,22 +21,6 @@ namespace {
 
 [[noreturn]] void failed(const std::filesystem::path& file, std::string_view what) {
     throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
-}
-
-std::string own_host() {
-    std::array<char, 65> host{};
-    gethostname(host.data(), host.size() - 1);
-    return host.data();
-}
-
-/// Also one whose end its parent has not taken note of, as first processes of containers do late or never, has ended.
-bool runs(pid_t process) {
-    if (kill(process, 0) != 0) return errno != ESRCH;
-    std::error_code error;
-    const std::string line = whole_file(fmt::format("/proc/{}/stat", process), error);
-    if (error == std::errc::no_such_process) return false;  // it ended between opening and reading
-    const auto name_end = line.rfind(") ");                 // the name before it may hold anything
-    return name_end == std::string::npos || line.compare(name_end + 2, 1, "Z") != 0;
 }
 
 /// In the target's folder; the name does not grow with the target's.
@@ -67,7 +49,7 @@ std::optional<bool> AsideFile::writer_runs(const std::filesystem::path& file) {
     pid_t process = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
     if (error != std::errc() || process <= 0 || end == name.data() + name.size() || *end != '.') return std::nullopt;
-    return runs(process);
+    return process_runs(process);
 }
 
 void AsideFile::write(std::string_view bytes) {

@@ -1,8 +1,10 @@
 #include "sweep/files/whole_file.hpp"
 
 #include "sweep/files/descriptor.hpp"
+#include "sweep/files/locked_files.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,12 +12,23 @@
 
 namespace grainsweep::files {
 
-std::string whole_file(const std::filesystem::path& file, std::error_code& error, std::size_t most) {
+namespace {
+
+std::string read_all(const std::filesystem::path& file, int flags, std::error_code& error, std::size_t most) {
     std::string bytes;
     error.clear();
-    const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!opened.is_open()) {
+    if (is_locked_file(file)) {
+        error = std::make_error_code(std::errc::device_or_resource_busy);
+        return bytes;
+    }
+    const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | flags));
+    struct stat about {};
+    if (!opened.is_open() || ((flags & O_NOFOLLOW) != 0 && ::fstat(opened.number(), &about) != 0)) {
         error.assign(errno, std::system_category());
+        return bytes;
+    }
+    if ((flags & O_NOFOLLOW) != 0 && !S_ISREG(about.st_mode)) {
+        error = std::make_error_code(std::errc::operation_not_supported);
         return bytes;
     }
     std::array<char, 65536> part;
@@ -29,6 +42,16 @@ std::string whole_file(const std::filesystem::path& file, std::error_code& error
         if (bytes.size() > most) error = std::make_error_code(std::errc::file_too_large);
     }
     return bytes;
+}
+
+}  // namespace
+
+std::string whole_file(const std::filesystem::path& file, std::error_code& error, std::size_t most) {
+    return read_all(file, 0, error, most);
+}
+
+std::string regular_file(const std::filesystem::path& file, std::error_code& error, std::size_t most) {
+    return read_all(file, O_NOFOLLOW | O_NONBLOCK, error, most);
 }
 
 }  // namespace grainsweep::files

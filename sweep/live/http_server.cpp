@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,6 +18,8 @@
 
 namespace grainsweep::live {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr unsigned silent_seconds = 10;
 constexpr std::size_t piece = 32U << 10U;
@@ -39,6 +42,7 @@ void add_common_fields(MHD_Response* response, const std::string& type, const st
     add("Referrer-Policy", "no-referrer");
     add("Cross-Origin-Resource-Policy", "same-origin");
     add("X-Frame-Options", "DENY");
+    add("X-Accel-Buffering", "no");  // a proxy passes events on as they come
     if (!policy.empty()) add("Content-Security-Policy", policy.c_str());
 }
 
@@ -116,7 +120,51 @@ private:
         return queued;
     }
 
+    /// Connection from its begin to its end.
+    struct Client {
+        int socket = -1;
+        Clock::time_point waits_since = Clock::now();  ///< for the end of a request
+        bool answered = false;                         ///< a request was not refused
+        bool asks = true;                              ///< no whole request is there
+    };
+
+    static Client* client_of(MHD_Connection* connection) {
+        const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+        return info == nullptr ? nullptr : static_cast<Client*>(info->socket_context);
+    }
+
+    static void connection_changed(void* self, MHD_Connection* connection, void** context,
+                                   MHD_ConnectionNotificationCode code) {
+        auto& clients = static_cast<MicroServer*>(self)->clients_;
+        if (code == MHD_CONNECTION_NOTIFY_CLOSED) {
+            clients.remove_if([&](const Client& one) { return &one == *context; });
+            return;
+        }
+        const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+        auto& client = clients.emplace_back();
+        client.socket = info == nullptr ? -1 : info->connect_fd;
+        *context = &client;
+        const auto strangers = std::ranges::count(clients, false, &Client::answered);
+        if (static_cast<unsigned>(strangers) > most_strangers)
+            hang_up(*std::ranges::find(clients, false, &Client::answered));
+    }
+
+    /// The server closes a connection whose other side seems to have ended.
+    static void hang_up(Client& client) {
+        ::shutdown(client.socket, SHUT_RDWR);
+        client.asks = false;
+        client.answered = true;  // it is not counted again
+    }
+
+    void end_slow_requests() {
+        const auto now = Clock::now();
+        for (auto& client : clients_)
+            if (client.asks && now - client.waits_since > longest_request) hang_up(client);
+    }
+
     MHD_Result answer(MHD_Connection* connection, const HttpQuestion& question) {
+        auto* const client = client_of(connection);
+        if (client != nullptr) client->asks = false;
         HttpReply reply;
         try {
             reply = respond_(question);
@@ -124,6 +172,8 @@ private:
             reply = HttpAnswer{.status = MHD_HTTP_INTERNAL_SERVER_ERROR,
                                .body = std::make_shared<const std::string>(error.what())};
         }
+        const auto* refusal = std::get_if<HttpAnswer>(&reply);
+        if (client != nullptr && (refusal == nullptr || refusal->status != MHD_HTTP_FORBIDDEN)) client->answered = true;
         return std::visit(campaign::Overloaded{[&](const HttpAnswer& one) { return send(connection, one); },
                                                [&](HttpStream& stream) { return open(connection, std::move(stream)); }},
                           reply);
@@ -152,13 +202,18 @@ private:
         return static_cast<MicroServer*>(self)->answer(connection, question);
     }
 
-    static void completed(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
+    static void completed(void*, MHD_Connection* connection, void** state, MHD_RequestTerminationCode) {
+        if (auto* const client = client_of(connection)) {
+            client->waits_since = Clock::now();
+            client->asks = true;
+        }
         delete static_cast<HttpQuestion*>(*state);
         *state = nullptr;
     }
 
     Respond respond_;
     std::list<EventReader> readers_;
+    std::list<Client> clients_;
     MHD_Daemon* daemon_ = nullptr;
 };
 
@@ -168,10 +223,11 @@ MicroServer::MicroServer(std::uint16_t port, Respond respond) : respond_(std::mo
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     errno = 0;
-    daemon_ = MHD_start_daemon(MHD_ALLOW_SUSPEND_RESUME, port, nullptr, nullptr, &MicroServer::handle, this,
-                               MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, most_connections,
+    daemon_ = MHD_start_daemon(MHD_ALLOW_SUSPEND_RESUME | MHD_USE_EPOLL, port, nullptr, nullptr, &MicroServer::handle,
+                               this, MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, most_connections,
                                MHD_OPTION_CONNECTION_TIMEOUT, silent_seconds, MHD_OPTION_NOTIFY_COMPLETED,
-                               &MicroServer::completed, nullptr, MHD_OPTION_END);
+                               &MicroServer::completed, nullptr, MHD_OPTION_NOTIFY_CONNECTION,
+                               &MicroServer::connection_changed, this, MHD_OPTION_END);
     if (daemon_ == nullptr)
         throw BrokenWorld(fmt::format("port {} of this machine cannot be opened: {}; --port names another", port,
                                       errno == 0 ? "it is taken" : std::strerror(errno)));
@@ -192,6 +248,7 @@ std::uint16_t MicroServer::port() const {
 void MicroServer::run(std::chrono::milliseconds at_most) {
     if (MHD_run_wait(daemon_, static_cast<std::int32_t>(at_most.count())) != MHD_YES)
         throw BrokenWorld("the server cannot go on: its connections cannot be waited for");
+    end_slow_requests();
 }
 
 void MicroServer::publish(std::string_view events) {

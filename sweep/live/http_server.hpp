@@ -1,8 +1,9 @@
 // Small HTTP server for this machine only (GNU libmicrohttpd). The thread that calls run() answers requests one after
 // the other. Streams send events (Server-sent events, WHATWG HTML section 9.2).
 //
-// It listens on 127.0.0.1 only. Limits for clients: connections, bytes of a request, seconds of silence, and pending
-// bytes of a slow stream.
+// It listens on 127.0.0.1 only. Limits for clients: connections, bytes of a request, seconds of a request and of
+// silence, and pending bytes of a slow stream. Connections whose requests were all refused keep nobody out: only a few
+// of them stay, the latest.
 #pragma once
 
 #include <chrono>
@@ -46,8 +47,10 @@ public:
     virtual ~HttpServer() = default;
 
     static constexpr std::size_t most_body = 64U << 10U;
-    static constexpr unsigned most_connections = 200;
-    static constexpr std::size_t most_waiting = 8U << 20U;  ///< most pending bytes of a stream
+    static constexpr unsigned most_connections = 256;
+    static constexpr unsigned most_strangers = 64;              ///< most connections of which no request was answered
+    static constexpr std::chrono::seconds longest_request{10};  ///< until its last byte is there
+    static constexpr std::size_t most_waiting = 8U << 20U;      ///< most pending bytes of a stream
 
     [[nodiscard]] virtual std::uint16_t port() const = 0;
     /// Answers pending requests; waits at most this time for the first one.

@@ -1,15 +1,20 @@
 #include "sweep/live/jobs.hpp"
 
+#include "sweep/files/broken_world.hpp"
 #include "sweep/workers/process_start.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -32,12 +37,13 @@ std::string all_of(const files::Descriptor& file) {
 
 }  // namespace
 
-Jobs::~Jobs() {
+void Jobs::end() {
     for (const auto& [number, job] : jobs_) {
         if (job.code) continue;
         ::kill(-job.process, SIGKILL);
         ::waitpid(job.process, nullptr, 0);
     }
+    jobs_.clear();
 }
 
 bool Jobs::Job::goes_on() {
@@ -71,6 +77,11 @@ std::optional<std::int64_t> Jobs::start(const std::vector<std::string>& argument
     return last_;
 }
 
+bool Jobs::is_running(std::int64_t number) {
+    const auto found = jobs_.find(number);
+    return found != jobs_.end() && found->second.goes_on();
+}
+
 Jobs::State Jobs::look_at(std::int64_t number) {
     const auto found = jobs_.find(number);
     if (found == jobs_.end()) return {};
@@ -81,10 +92,25 @@ Jobs::State Jobs::look_at(std::int64_t number) {
     return state;
 }
 
+PrivateFolder::PrivateFolder() {
+    std::error_code error;
+    auto name = (std::filesystem::temp_directory_path(error) / "grainsweep-XXXXXX").string();
+    if (error || ::mkdtemp(name.data()) == nullptr)
+        throw BrokenWorld(
+            fmt::format("'{}': no folder can be made there: {}", name, error ? error.message() : std::strerror(errno)));
+    path_ = name;
+}
+
+void PrivateFolder::remove() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
 bool Runner::start(const std::vector<std::string>& arguments, const std::filesystem::path& database) {
     auto log_file = database;
     log_file.replace_extension(".run.log");
-    const files::Descriptor log(::open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    ::unlink(log_file.c_str());
+    const files::Descriptor log(::open(log_file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
     const files::Descriptor inside(::open(database.parent_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (!log.is_open() || !inside.is_open()) return false;
     workers::ProcessStart start;

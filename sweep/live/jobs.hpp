@@ -20,7 +20,9 @@ public:
     Jobs() = default;
     Jobs(const Jobs&) = delete;
     Jobs& operator=(const Jobs&) = delete;
-    ~Jobs();
+    ~Jobs() { end(); }
+    /// Kills every job.
+    void end();
 
     /// Limits of a job.
     struct Bounds {
@@ -41,6 +43,7 @@ public:
     };
     /// Returns the state of a job; removes the job if it has ended.
     [[nodiscard]] State look_at(std::int64_t number);
+    [[nodiscard]] bool is_running(std::int64_t number);
 
 private:
     struct Job {
@@ -55,11 +58,26 @@ private:
     std::int64_t last_ = 0;
 };
 
+/// Folder of this process that nobody else may enter. It ends with this object.
+class PrivateFolder {
+public:
+    /// Throws BrokenWorld if it cannot be made.
+    PrivateFolder();
+    PrivateFolder(const PrivateFolder&) = delete;
+    PrivateFolder& operator=(const PrivateFolder&) = delete;
+    ~PrivateFolder() { remove(); }
+    void remove();
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
 /// Run that a page started. It continues after this object ends, like a run started from a shell.
 class Runner {
 public:
-    /// Starts a run; standard output and error are written to x.run.log beside the database x.db. Returns false if it
-    /// cannot be started.
+    /// Starts a run; standard output and error are written to x.run.log beside the database x.db, a new file that
+    /// takes the place of an old one or of a link. Returns false if it cannot be started.
     [[nodiscard]] bool start(const std::vector<std::string>& arguments, const std::filesystem::path& database);
     [[nodiscard]] bool running();
 

@@ -3,6 +3,7 @@
 #include "solver/plain_text.hpp"
 #include "sweep/files/aside_file.hpp"
 #include "sweep/files/broken_world.hpp"
+#include "sweep/files/processes.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 namespace grainsweep::live {
@@ -20,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view first_line = "grainsweep now 1";
 constexpr auto lately = std::chrono::seconds(10);
-constexpr std::size_t most_bytes = 8U << 20U;
+constexpr std::size_t most_bytes = 1U << 20U;  // of 4096 workers: half of it
 
 /// Up to the next separator, which is taken off too.
 std::string_view take(std::string_view& text, char separator) {
@@ -46,6 +48,7 @@ std::string on_one_line(std::string text) {
 std::optional<RunningCase> running_of(std::string_view words) {
     RunningCase one;
     one.case_id = take(words, ' ');
+    if (one.case_id.find_first_not_of("0123456789abcdef") != std::string::npos) return std::nullopt;
     const auto attempt = count_in(take(words, ' '));
     const auto share = take(words, ' ');
     const auto seconds = number_in(take(words, ' '));
@@ -55,6 +58,12 @@ std::optional<RunningCase> running_of(std::string_view words) {
     one.share = number_in(share);
     one.host = words;
     return one;
+}
+
+/// Whether a process of this host, whose number anybody may have written, can be that of a run.
+bool runs_here(std::int64_t process) {
+    return process > 1 && process <= std::numeric_limits<pid_t>::max() &&
+           files::process_runs(static_cast<pid_t>(process));
 }
 
 }  // namespace
@@ -113,10 +122,12 @@ void write_now(const fs::path& file, const Now& now) {
 std::optional<Now> read_now(const fs::path& database) {
     const auto file = now_file(database);
     std::error_code error;
-    const auto written = fs::last_write_time(file, error);
-    if (error || fs::file_time_type::clock::now() - written > lately) return std::nullopt;
-    const auto text = files::whole_file(file, error, most_bytes);
-    return error ? std::nullopt : now_of(text);
+    const auto written = fs::last_write_time(file, error), present = fs::file_time_type::clock::now();
+    if (error || present - written > lately || written - present > lately) return std::nullopt;
+    const auto text = files::regular_file(file, error, most_bytes);
+    auto now = error ? std::nullopt : now_of(text);
+    if (now && now->host == files::own_host() && !runs_here(now->process)) return std::nullopt;
+    return now;
 }
 
 }  // namespace grainsweep::live

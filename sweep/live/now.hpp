@@ -36,7 +36,8 @@ struct Now {
 [[nodiscard]] std::filesystem::path now_file(const std::filesystem::path& database);
 
 void write_now(const std::filesystem::path& file, const Now& now);
-/// Returns the contents of the file; empty if there is no file, it is older than ten seconds, or invalid.
+/// Returns the contents of the file. Empty if there is no regular file, it is invalid or larger than 1 MiB, its time is
+/// not within ten seconds of the present, or its process has ended on this host.
 [[nodiscard]] std::optional<Now> read_now(const std::filesystem::path& database);
 
 [[nodiscard]] std::string text_of(const Now& now);

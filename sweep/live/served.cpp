@@ -3,8 +3,10 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/json_writer.hpp"
 #include "sweep/files/broken_world.hpp"
+#include "sweep/files/processes.hpp"
 #include "sweep/files/whole_file.hpp"
 #include "sweep/report/page.hpp"
+#include "sweep/report/page_template.hpp"
 
 #include <fmt/format.h>
 #include <sys/random.h>
@@ -15,6 +17,7 @@
 #include <charconv>
 #include <csignal>
 #include <iterator>
+#include <span>
 #include <sstream>
 #include <system_error>
 
@@ -31,6 +34,14 @@ constexpr std::size_t most_recent = 32U << 20U;  // bytes of events kept for rea
 constexpr Jobs::Bounds of_query{.most_at_once = 4, .most_bytes = 16 << 20},
     of_film{.most_at_once = 2, .most_bytes = 256 << 20};
 constexpr std::string_view json_type = "application/json";
+constexpr std::size_t most_open = 64;                  // databases; of more, each is closed after it was read
+constexpr std::size_t most_running = 64;               // running cases that the page lists
+constexpr auto first_page = std::chrono::seconds(10);  // to wait for its figures
+constexpr std::array<std::string_view, 5> commands_that_run = {"run", "calibrate", "window", "accuracy", "collect"};
+// Also where the page of a film was somebody else's, it would have no origin, no token and no network.
+constexpr std::string_view film_policy =
+    "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 std::string drawn_word(std::size_t bytes) {
     std::string raw(bytes, '\0'), word;
@@ -50,9 +61,8 @@ bool same_word(std::string_view given, std::string_view right) {
     return difference == 0;
 }
 
-bool of_this_machine(std::string_view host) {
-    const auto name = host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':'));
-    return name == "127.0.0.1" || name == "localhost" || name == "[::1]";
+std::string_view without_port(std::string_view host) {
+    return host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':'));
 }
 
 std::string_view argument(const HttpQuestion& question, std::string_view name) {
@@ -69,19 +79,30 @@ HttpReply json(const JsonText& value, unsigned status = 200) {
         .status = status, .type = std::string(json_type), .body = std::make_shared<const std::string>(value.text())};
 }
 
+constexpr std::string_view no_token = "the token is wrong: open the address that `grainsweep serve` printed";
+
+HttpReply wrong_token() {
+    return refused(403, std::string(no_token));
+}
+
+/// Refuses a page without token. A tab that was reloaded has kept the token, and opens the page with it.
+HttpReply way_back() {
+    constexpr std::string_view script =
+        "const kept = sessionStorage.getItem(\"grainsweep \" + location.pathname);\n"
+        "if (kept && !location.search) location.replace(\"?token=\" + kept);\n";
+    return HttpAnswer{.status = 403,
+                      .type = "text/html; charset=utf-8",
+                      .body = std::make_shared<const std::string>(fmt::format(
+                          "<!doctype html><meta charset=\"utf-8\"><p>{}</p><script>{}</script>\n", no_token, script)),
+                      .policy = "default-src 'none'; script-src " + report::script_sources({script})};
+}
+
 bool is_case_id(std::string_view word) {
     return word.size() == 32 && word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-bool is_own_host(std::string_view name) {
-    std::array<char, 65> host{};
-    ::gethostname(host.data(), host.size() - 1);
-    return name == host.data();
-}
-
 /// Whether this process has the file open: the number comes from a file that anybody may have written.
 bool has_open(std::int64_t process, const fs::path& file) {
-    if (process <= 1) return false;
     std::error_code error;
     const fs::directory_iterator open_files(fmt::format("/proc/{}/fd", process), error);
     return !error && std::ranges::any_of(open_files, [&](const auto& one) {
@@ -90,21 +111,28 @@ bool has_open(std::int64_t process, const fs::path& file) {
     });
 }
 
-std::vector<Follower> follow(const std::vector<fs::path>& databases) {
-    std::vector<Follower> followers;
-    followers.reserve(databases.size());
-    for (const auto& file : databases) followers.emplace_back(file);
-    return followers;
+/// Whether this process is a run of this program into the file.
+bool is_run_into(std::int64_t process, const fs::path& file) {
+    if (process <= 1 || process == ::getpid()) return false;
+    std::error_code error;
+    const auto program = fs::read_symlink(fmt::format("/proc/{}/exe", process), error).filename().string();
+    if (error || !program.starts_with("grainsweep")) return false;
+    const auto words = files::whole_file(fmt::format("/proc/{}/cmdline", process), error);
+    const auto command = std::string(words.c_str() + std::min(words.size(), words.find('\0') + 1));
+    return std::ranges::count(commands_that_run, command) > 0 && has_open(process, file);
 }
 
-fs::path film_file(const fs::path& database, std::string_view id) {
-    fs::path folder = fs::absolute(database);
-    return folder.replace_extension(".films") / fmt::format("{}.html", id);
+std::vector<Follower> follow_all(const std::vector<fs::path>& databases, const std::function<bool()>& ended) {
+    std::vector<Follower> followers;
+    followers.reserve(databases.size());
+    for (const auto& file : databases) followers.emplace_back(file, ended);
+    return followers;
 }
 
 JsonText now_json(const Follower& follower) {
     JsonText running;
     if (const auto now = read_now(follower.file())) {
+        const auto shown = std::min(now->running.size(), most_running);
         const auto running_json = [](const RunningCase& one) {
             return JsonText{{"case", one.case_id},
                             {"attempt", one.attempt},
@@ -122,9 +150,13 @@ JsonText now_json(const Follower& follower) {
                    {"seconds_left", now->seconds_left},
                    {"at_most", now->at_most},
                    {"judgement", now->judgement},
-                   {"running", JsonText::list(now->running, running_json)}};
+                   {"running", JsonText::list(std::span(now->running).first(shown), running_json)},
+                   {"running_more", now->running.size() - shown}};
     }
-    return {{"database", follower.file().filename().string()}, {"in_place", follower.in_place()}, {"run", running}};
+    return {{"database", follower.file().filename().string()},
+            {"in_place", follower.in_place()},
+            {"error", follower.error()},
+            {"run", running}};
 }
 
 }  // namespace
@@ -133,15 +165,33 @@ std::string new_token() {
     return drawn_word(16);
 }
 
-Served::Served(const std::vector<fs::path>& databases, std::optional<Control> control, std::string token,
-               std::shared_ptr<Work> work)
+Served::Served(const std::vector<fs::path>& databases, std::optional<Control> control, std::string token, Proxy proxy,
+               std::function<bool()> ended)
     : token_(std::move(token)),
       run_(drawn_word(4)),
-      followers_(follow(databases)),
+      ended_(std::move(ended)),
+      followers_(follow_all(databases, ended_)),
       control_(std::move(control)),
-      page_(databases, told_),
-      work_(std::move(work)) {
+      proxy_(std::move(proxy)),
+      page_(databases, ended_) {
+    (void)page_.await_first(first_page);
     version_ = page_.latest()->version;
+}
+
+void Served::end_work() {
+    jobs_.end();
+    films_folder_.remove();
+}
+
+void Served::follow(const std::vector<fs::path>& databases) {
+    std::vector<Follower> followers;
+    followers.reserve(databases.size());
+    for (const auto& file : databases) {
+        const auto known = std::ranges::find(followers_, file, &Follower::file);
+        followers.push_back(known == followers_.end() ? Follower(file, ended_) : std::move(*known));
+    }
+    followers_ = std::move(followers);
+    page_.follow(databases, told_);
 }
 
 std::string Served::event(std::string_view kind, std::string_view data, std::int64_t number) const {
@@ -151,11 +201,7 @@ std::string Served::event(std::string_view kind, std::string_view data, std::int
 std::string Served::now_event() const {
     return event("now",
                  JsonText{{"databases", JsonText::list(followers_, now_json)}, {"error", page_.latest()->error}}.text(),
-                 told_.load());
-}
-
-std::string Served::changed() const {
-    return event("page", JsonText{{"version", version_}}.text(), told_.load());
+                 told_);
 }
 
 std::string Served::look() {
@@ -163,20 +209,24 @@ std::string Served::look() {
     const auto since = [&](Clock::time_point then) { return std::chrono::duration<double>(now - then).count(); };
     std::string events;
     if (since(polled_) >= std::max(least_pause, rest_after_poll * poll_seconds_)) {
-        std::size_t count = 0;
         for (auto& follower : followers_) {
             auto results = follower.poll();
-            if (results.empty()) continue;
-            count += results.size();
+            if (followers_.size() > most_open) follower.rest();
+            const bool anew = follower.take_anew();
+            if (results.empty()) {
+                if (anew) page_.grown(follower.file(), told_, computing_);
+                continue;
+            }
             JsonText list = JsonText::array();
             for (const auto& one : results) list.push_back(one);
             told_ += static_cast<std::int64_t>(results.size());
             auto text =
                 event("results", JsonText{{"database", follower.file().filename().string()}, {"results", list}}.text(),
-                      told_.load());
+                      told_);
             events += text;
             recent_bytes_ += text.size();
-            recent_.emplace_back(told_.load(), std::move(text));
+            recent_.emplace_back(told_, std::move(text));
+            page_.grown(follower.file(), told_, computing_);
         }
         while (recent_bytes_ > most_recent && recent_.size() > 1) {
             recent_bytes_ -= recent_.front().second.size();
@@ -184,40 +234,57 @@ std::string Served::look() {
         }
         polled_ = now;
         poll_seconds_ = std::chrono::duration<double>(Clock::now() - now).count();
-        if (count > 0) page_.grown(computing_);
     }
     if (const auto latest = page_.latest(); latest->version != version_) {
         version_ = latest->version;
-        events += event("page", JsonText{{"version", version_}}.text(), told_.load());
+        events += event("page", JsonText{{"version", version_}}.text(), told_);
     }
     if (now - said_now_ >= now_pause) {
         said_now_ = now;
         const bool before = computing_;
         computing_ = std::ranges::any_of(followers_, [](const auto& one) { return read_now(one.file()).has_value(); });
-        if (before && !computing_) page_.grown(false);  // the last figures of the run
+        if (before && !computing_)  // the last figures of the run
+            for (const auto& follower : followers_) page_.grown(follower.file(), told_, false);
         events += now_event();
     }
     return events;
 }
 
+bool Served::is_own_name(std::string_view host) const {
+    const auto name = without_port(host);
+    return name == "127.0.0.1" || name == "localhost" || name == "[::1]" || std::ranges::count(proxy_.hosts, name) > 0;
+}
+
+bool Served::is_own_origin(const HttpQuestion& question) const {
+    const std::string_view origin = question.origin;
+    if (origin == "http://" + question.host) return true;
+    const auto scheme = origin.find("://");  // a proxy may speak https, and send another Host field
+    return scheme != std::string_view::npos &&
+           std::ranges::count(proxy_.hosts, without_port(origin.substr(scheme + 3))) > 0;
+}
+
 HttpReply Served::answer(const HttpQuestion& question) {
     if (question.too_large)
         return refused(413, fmt::format("the question has more than {} bytes", HttpServer::most_body));
-    if (!of_this_machine(question.host)) return refused(403, "this server answers to names of its own machine only");
-    if (!same_word(argument(question, "token"), token_))
-        return refused(403, "the token is wrong: open the address that `grainsweep serve` printed");
+    if (!is_own_name(question.host))
+        return refused(403, "this server answers to names of its own machine, and to --host-name, only");
     const bool asks = question.method == "GET", acts = question.method == "POST";
-    const auto& path = question.path;
+    std::string_view path = question.path;
+    if (path.starts_with(proxy_.base_path)) path.remove_prefix(proxy_.base_path.size() - 1);
+    if (asks && path == "/film" && question.query.contains("ticket"))
+        return film_of(std::string(argument(question, "ticket")));
+    if (!same_word(argument(question, "token"), token_)) return asks && path == "/" ? way_back() : wrong_token();
     if (asks && path == "/") return page();
     if (asks && path == "/data") return data();
     if (asks && path == "/events") return events(question);
     if (asks && path == "/job") return job(question);
     if (asks && path == "/film") return film(question);
-    if (acts && !question.origin.empty() && question.origin != "http://" + question.host)
+    if (acts && !question.origin.empty() && !is_own_origin(question))
         return refused(403, "a page of another origin may not ask this");
     if (acts && path == "/query") return start_query(question);
     if (acts && path == "/film") return start_film(question);
-    if (acts && (path == "/stop" || path == "/run" || path == "/again" || path == "/more")) return steer(question);
+    if (acts && (path == "/stop" || path == "/run" || path == "/again" || path == "/more"))
+        return steer(question, path);
     return asks || acts ? refused(404, "there is no such page") : refused(405, "only GET and POST");
 }
 
@@ -251,10 +318,12 @@ HttpReply Served::events(const HttpQuestion& question) const {
     std::string first = "retry: 1000\n\n";
     const bool missed =
         number < 0 || number > told_ || (!recent_.empty() && number < told_ && number + 1 < recent_.front().first);
-    if (missed) first += event("page", JsonText{{"version", version_}}.text(), told_.load());
+    if (missed) first += event("page", JsonText{{"version", version_}}.text(), told_);
     for (const auto& [last, text] : recent_)
         if (last > number) first += text;
-    return HttpStream{first + now_event()};
+    first += now_event();
+    if (argument(question, "once").empty()) return HttpStream{std::move(first)};
+    return HttpAnswer{.type = "text/event-stream", .body = std::make_shared<const std::string>(std::move(first))};
 }
 
 const Follower* Served::asked(const HttpQuestion& question) const {
@@ -262,6 +331,10 @@ const Follower* Served::asked(const HttpQuestion& question) const {
     for (const auto& follower : followers_)
         if (follower.file().filename().string() == name) return &follower;
     return name.empty() && followers_.size() == 1 ? &followers_.front() : nullptr;
+}
+
+Follower* Served::asked(const HttpQuestion& question) {
+    return const_cast<Follower*>(std::as_const(*this).asked(question));
 }
 
 const fs::path* Served::config_of(const HttpQuestion& question) const {
@@ -277,68 +350,88 @@ HttpReply Served::start_query(const HttpQuestion& question) {
     if (question.body.empty()) return refused(400, "the question is empty");
     const auto file = fs::absolute(follower->file());
     const auto number =
-        work_->jobs.start({"query", "--format", "json", "--limit-seconds", "10", "--", file.string(), question.body},
-                          file.parent_path(), of_query);
+        jobs_.start({"query", "--format", "json", "--limit-seconds", "10", "--", file.string(), question.body},
+                    file.parent_path(), of_query);
     return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
+}
+
+fs::path Served::film_file(const std::string& ticket) const {
+    return films_folder_.path() / (ticket + ".html");
 }
 
 HttpReply Served::start_film(const HttpQuestion& question) {
     const auto* follower = asked(question);
-    const auto id = argument(question, "case");
+    const std::string id(argument(question, "case"));
     if (follower == nullptr || !is_case_id(id)) return refused(404, "there is no such case");
-    const auto file = fs::absolute(follower->file()), film = film_file(file, id);
+    const auto file = fs::absolute(follower->file());
+    const std::pair key(file.string(), id);
+    const auto film_json = [](const Film& film) { return JsonText{{"film", "film?ticket=" + film.ticket}}; };
     std::error_code error;
-    if (fs::exists(film, error)) return json({{"film", true}});
-    fs::create_directories(film.parent_path(), error);
-    if (error) return refused(500, fmt::format("'{}': {}", film.parent_path().string(), error.message()));
-    const auto number = work_->jobs.start({"replay", file.string(), std::string(id), "--watch", film.string()},
-                                          file.parent_path(), of_film);
-    return number ? json({{"job", *number}}) : refused(503, "too much is asked at once; ask again");
+    if (const auto made = films_.find(key); made != films_.end()) {
+        if (fs::exists(film_file(made->second.ticket), error)) return json(film_json(made->second));
+        if (jobs_.is_running(made->second.job)) return json(film_json(made->second).add("job", made->second.job));
+    }
+    Film film{drawn_word(16)};
+    const auto number = jobs_.start({"replay", file.string(), id, "--watch", film_file(film.ticket).string()},
+                                    file.parent_path(), of_film);
+    if (!number) return refused(503, "too much is asked at once; ask again");
+    film.job = *number;
+    return json(film_json(films_.insert_or_assign(key, film).first->second).add("job", *number));
 }
 
 HttpReply Served::film(const HttpQuestion& question) const {
     const auto* follower = asked(question);
-    const auto id = argument(question, "case");
+    const std::string id(argument(question, "case"));
     if (follower == nullptr || !is_case_id(id)) return refused(404, "there is no such case");
+    const auto made = films_.find({fs::absolute(follower->file()).string(), id});
+    return film_of(made == films_.end() ? "" : made->second.ticket);
+}
+
+HttpReply Served::film_of(const std::string& ticket) const {
+    const bool known =
+        std::ranges::any_of(films_, [&](const auto& one) { return same_word(one.second.ticket, ticket); });
     std::error_code error;
-    auto text = files::whole_file(film_file(follower->file(), id), error);
-    if (error) return refused(404, "there is no film of this case yet");
-    return HttpAnswer{.type = "text/html; charset=utf-8", .body = std::make_shared<const std::string>(std::move(text))};
+    auto text = known ? files::regular_file(film_file(ticket), error, of_film.most_bytes) : std::string();
+    if (!known || error) return refused(404, "this server has made no such film yet");
+    return HttpAnswer{.type = "text/html; charset=utf-8",
+                      .body = std::make_shared<const std::string>(std::move(text)),
+                      .policy = std::string(film_policy)};
 }
 
 HttpReply Served::job(const HttpQuestion& question) {
     const auto word = argument(question, "number");
     std::int64_t number = 0;
     std::from_chars(word.data(), word.data() + word.size(), number);
-    const auto state = work_->jobs.look_at(number);
+    const auto state = jobs_.look_at(number);
     if (!state.known) return refused(404, "there is no such job");
     if (!state.ended) return json({{"running", true}});
     return json({{"code", state.ended->code}, {"out", state.ended->out}, {"err", state.ended->err}});
 }
 
-HttpReply Served::steer(const HttpQuestion& question) {
+HttpReply Served::steer(const HttpQuestion& question, std::string_view path) {
     if (!control_) return refused(403, "`grainsweep serve --control FILE` allows this");
-    const auto* follower = asked(question);
+    auto* follower = asked(question);
     if (follower == nullptr) return refused(404, "there is no such database");
     const auto file = fs::absolute(follower->file());
-    const auto now = read_now(file);
-    if (question.path == "/stop") {
-        if (!now) return refused(409, "nothing runs");
-        if (!is_own_host(now->host)) return refused(409, fmt::format("the run is on host {}", now->host));
-        if (!has_open(now->process, file) || ::kill(static_cast<pid_t>(now->process), SIGINT) != 0)
+    const bool runs = follower->is_being_written();  // the file that says so may be anybody's
+    if (path == "/stop") {
+        const auto now = read_now(file);
+        if (!now || !runs) return refused(409, "nothing runs");
+        if (now->host != files::own_host()) return refused(409, fmt::format("the run is on host {}", now->host));
+        if (!is_run_into(now->process, file) || ::kill(static_cast<pid_t>(now->process), SIGINT) != 0)
             return refused(409, "the run has ended");
         return json({{"stopping", true}});
     }
-    if (now || work_->runner.running()) return refused(409, "a run is under way; stop it first");
+    if (runs || runner_.running()) return refused(409, "a run is under way; stop it first");
     const auto* config = config_of(question);
     if (config == nullptr) return refused(404, "there is no such campaign file");
     std::vector<std::string> arguments = {"run", fs::absolute(*config).string(), "--db", file.string()};
-    if (question.path == "/again") {
+    if (path == "/again") {
         const auto outcome = argument(question, "outcome");
         if (!campaign::outcome_named(outcome)) return refused(400, "there is no such outcome");
         arguments.insert(arguments.end(), {"--again", std::string(outcome)});
     }
-    if (question.path == "/more") {
+    if (path == "/more") {
         const auto points = argument(question, "points");
         std::int64_t count = 0;
         const auto [end, error] = std::from_chars(points.data(), points.data() + points.size(), count);
@@ -346,7 +439,7 @@ HttpReply Served::steer(const HttpQuestion& question) {
             return refused(400, "the number of points must be a whole number, at least 1");
         arguments.insert(arguments.end(), {"--points", std::string(points)});
     }
-    if (!work_->runner.start(arguments, file)) return refused(503, "the run cannot be started");
+    if (!runner_.start(arguments, file)) return refused(503, "the run cannot be started");
     return json({{"started", true}});
 }
 

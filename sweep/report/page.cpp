@@ -307,15 +307,27 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
               {"runs", runs_of(store, record.name)}});
 }
 
+void add_campaigns(Json& campaigns, const PageSource& source, const PageModels& models,
+                   std::vector<std::string>& measured) {
+    for (const auto& record : find_campaigns(*source.store, ""))
+        campaigns.push_back(campaign_of(*source.store, record, source.name, models, measured));
+}
+
 }  // namespace
+
+Json campaigns_data(const PageSource& source, const PageModels& models) {
+    Json campaigns = Json::array();
+    std::vector<std::string> measured;
+    add_campaigns(campaigns, source, models, measured);
+    return campaigns;
+}
 
 Json page_data(std::span<const PageSource> sources, const PageModels& models) {
     Json databases = Json::array(), campaigns = Json::array();
     std::vector<std::string> measured;
-    for (const auto& [store, database] : sources) {
-        databases.push_back(database);
-        for (const auto& record : find_campaigns(*store, ""))
-            campaigns.push_back(campaign_of(*store, record, database, models, measured));
+    for (const auto& source : sources) {
+        databases.push_back(source.name);
+        add_campaigns(campaigns, source, models, measured);
     }
     refuse_unknown_models(measured, models);
     return {{"databases", databases}, {"campaigns", campaigns}};

@@ -40,6 +40,9 @@ struct PageFilm {
 /// packed (packed_column.hpp).
 [[nodiscard]] Json page_data(std::span<const PageSource> sources, const PageModels& models = {});
 
+/// Returns the list "campaigns" of page_data of one database.
+[[nodiscard]] Json campaigns_data(const PageSource& source, const PageModels& models = {});
+
 /// Returns JSON that is safe inside a script element: without "</", "<!--" and the line separators of JavaScript.
 [[nodiscard]] std::string safe_in_script(const Json& value);
 

@@ -29,6 +29,13 @@ std::string beginning(const std::string& text, std::int64_t most) {
     return text;
 }
 
+/// Replaces the two characters that are UTF-8 and no text of XML (XML 1.0, section 2.2): U+FFFE and U+FFFF.
+std::string allowed_in_xml(std::string text) {
+    for (std::size_t at = 0; (at = text.find("\xEF\xBF", at)) != std::string::npos; at += 2)
+        if (at + 2 < text.size() && static_cast<unsigned char>(text[at + 2]) >= 0xBEU) text[at + 2] = '\xBD';
+    return text;
+}
+
 }  // namespace
 
 // Not in the namespace without a name: Parts, which has linkage, holds them.
@@ -71,17 +78,16 @@ private:
         if (std::isinf(real)) return write_text(column, real > 0 ? "inf" : "-inf");
         write_number(column, real, std::min(campaign::shortest(real).size(), digits_in_view));
     }
-    void write(std::size_t column, const std::string& text) {
-        write_text(column, campaign::valid_utf8(campaign::visible(text)));
-    }
+    void write(std::size_t column, const std::string& text) { write_text(column, text); }
 
     void write_number(std::size_t column, double number, std::size_t width) {
         widen(column, width);
         file_->write_number({sheet_, row_, column}, number);
     }
     void write_text(std::size_t column, const std::string& text, SheetFile::Weight weight = SheetFile::Weight::plain) {
-        const std::string held = beginning(text, longest_text);
-        if (held.size() < text.size()) ++cut_;
+        const std::string shown = allowed_in_xml(campaign::valid_utf8(campaign::visible(text)));
+        const std::string held = beginning(shown, longest_text);
+        if (held.size() < shown.size()) ++cut_;
         widen(column, held.find('\n') == std::string::npos ? held.size() : widest_column);
         file_->write_text({sheet_, row_, column}, held, weight);
     }

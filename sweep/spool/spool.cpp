@@ -5,6 +5,7 @@
 #include "sweep/files/aside_file.hpp"
 #include "sweep/files/broken_world.hpp"
 #include "sweep/files/descriptor.hpp"
+#include "sweep/files/locked_files.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -33,6 +34,10 @@ constexpr off_t largest_file = off_t{32} << 20U;  // an answer is two lines of m
 }
 
 files::Descriptor opened(const fs::path& file, int flags) {
+    if (files::is_locked_file(file)) {
+        errno = EBUSY;
+        return {};
+    }
     return files::Descriptor(::open(file.c_str(), flags | O_CLOEXEC, 0666));
 }
 

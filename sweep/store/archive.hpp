@@ -3,12 +3,14 @@
 
 #include "sweep/campaign/identity.hpp"
 #include "sweep/store/database.hpp"
+#include "sweep/store/file_checksum.hpp"
 #include "sweep/store/moment.hpp"
 #include "sweep/store/placing.hpp"
 #include "sweep/store/soundness.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/store/writer_lock.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -32,11 +34,11 @@ struct Store::Impl {
     using Keys = std::map<std::string, std::int64_t, std::less<>>;  ///< name -> key
 
     Impl(std::filesystem::path path, std::optional<WriterLock> held, Connection connection)
-        : file(std::move(path)), lock(std::move(held)), db(std::move(connection)) {}
+        : file(std::move(path)), db(std::move(connection)), lock(std::move(held)) {}
 
     std::filesystem::path file;
-    std::optional<WriterLock> lock;  ///< empty: opened for reading
     Connection db;
+    std::optional<WriterLock> lock;  ///< empty: opened for reading; it ends before the connection
 
     std::optional<std::int64_t> provenance;  ///< of this run, once a campaign is enrolled
     std::int64_t provenance_campaign = 0;
@@ -46,6 +48,7 @@ struct Store::Impl {
     bool in_group = false;
     bool sound = false;              ///< checked since the last write: stored data is undamaged
     bool as_remembered = false;      ///< the whole file was undamaged when opened for writing, by its checksum
+    PageHashes pages_then;           ///< its pages at that time; empty otherwise
     std::int64_t version = 0;        ///< data_version() at that time, to detect later writes of other programs
     bool whole = false;              ///< the whole file was undamaged at the last enrol
     std::vector<std::string> notes;  ///< damage found by the last enrol, and its treatment
@@ -55,6 +58,11 @@ struct Store::Impl {
     /// Some attempts begun by this store; others are looked up.
     std::unordered_map<campaign::CaseId, OpenAttempt> open;
 
+    /// Returns whether the file has the schema of an older program.
+    [[nodiscard]] bool is_older() const;
+    /// Brings an older file to the newest schema. Inside a transaction of something that is written: a question that
+    /// is refused leaves the file to the older program.
+    void bring_up_to_date();
     [[nodiscard]] std::int64_t data_version() const;
     void require_writer() const;
     void require_group() const;
@@ -69,6 +77,8 @@ struct Store::Impl {
     /// Does the same with a second connection, which sees only what is committed.
     [[nodiscard]] bool check_rows_on_two_cores() const;
     [[nodiscard]] bool check_contents() const;
+    /// Checks the tables of described_tables alone.
+    [[nodiscard]] bool check_descriptions() const;
     /// Checks one case.
     void require_sound(std::int64_t key);
     void refuse_damage(const std::vector<DamagedTable>& tables, const std::vector<DamagedCase>& cases) const;
@@ -81,6 +91,11 @@ struct Store::Impl {
     /// for an unknown case.
     [[nodiscard]] std::optional<OpenAttempt> take_open(const campaign::Attempt& attempt);
 };
+
+/// Tables that every run writes, and that are small.
+inline constexpr std::array<std::string_view, 8> described_tables = {
+    "campaign",         "provenance",  "parameter",      "observable",
+    "attempt_computer", "convergence", "table_checksum", "file_checksum"};
 
 /// Columns of `campaign` with the identity, and the identity read from them, beginning at column `first`.
 inline constexpr std::string_view identity_columns =

@@ -48,7 +48,7 @@ struct Shown {
     std::vector<std::string> factors, scalars;
 };
 
-std::string view_text(const Connection& db, const Shown& shown) {
+std::string select_text(const Connection& db, const Shown& shown) {
     Columns columns;
     for (const char* name : {"point", "sequence", "replicate"}) columns.add(name, "_", fmt::format("p.{}", name));
     for (const char* name : {"case_id", "seed", "outcome", "attempts", "wall_seconds"}) {
@@ -58,7 +58,9 @@ std::string view_text(const Connection& db, const Shown& shown) {
         auto rows =
             db.ask("SELECT parameter_id, default_value FROM parameter WHERE scene = ? AND revision = ? AND name = ?",
                    shown.scene, shown.revision, factor);
-        if (!rows.next()) throw std::logic_error(fmt::format("factor {} is no parameter of the scene", factor));
+        if (!rows.next())
+            throw BrokenWorld(
+                fmt::format("campaign '{}': its factor {} is no parameter of the scene", shown.name, factor));
         columns.add(factor, "_input",
                     fmt::format("coalesce((SELECT i.value FROM case_input AS i WHERE i.case_key = p.case_key AND "
                                 "i.parameter_id = {}), {})",
@@ -74,9 +76,12 @@ std::string view_text(const Connection& db, const Shown& shown) {
                                 key.value_or(0)));
     }
     return fmt::format(
-        "CREATE VIEW {} AS\nSELECT {}\nFROM campaign_case AS p\nJOIN sim_case AS c ON c.case_key = p.case_key\n"
-        "WHERE p.campaign_id = {}",
-        quoted_name(shown.name), columns.text(), shown.key);
+        "SELECT {}\nFROM campaign_case AS p\nJOIN sim_case AS c ON c.case_key = p.case_key\nWHERE p.campaign_id = {}",
+        columns.text(), shown.key);
+}
+
+std::string view_text(const Connection& db, const Shown& shown) {
+    return fmt::format("CREATE VIEW {} AS\n{}", quoted_name(shown.name), select_text(db, shown));
 }
 
 void make_view(Connection& db, const Shown& shown) {
@@ -110,6 +115,13 @@ std::vector<Shown> stored_campaigns(const Connection& db) {
 }
 
 }  // namespace
+
+std::string Store::rows_of(std::string_view campaign) const {
+    const auto all = stored_campaigns(impl_->db);
+    const auto found = std::ranges::find(all, campaign, &Shown::name);
+    if (found == all.end()) (void)impl_->campaign_key(campaign);  // refuses the name
+    return select_text(impl_->db, *found);
+}
 
 void make_views(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key) {
     auto& db = archive.db;

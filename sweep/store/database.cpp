@@ -4,12 +4,21 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <stdexcept>
+#include <system_error>
+#include <vector>
 
 namespace grainsweep::store {
 
@@ -25,8 +34,30 @@ sqlite3* open_handle(const char* name, int flags) {
     if (code == SQLITE_OK) return handle;
     const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closing(handle, sqlite3_close_v2);
     const int number = handle == nullptr ? 0 : sqlite3_system_errno(handle);
-    throw BrokenWorld(fmt::format("database '{}': cannot be opened: {}", name,
+    throw BrokenWorld(fmt::format("database '{}': cannot be opened{}: {}", name,
+                                  (flags & SQLITE_OPEN_CREATE) != 0 ? " to write" : "",
                                   number == 0 ? sqlite3_errstr(code) : std::strerror(number)));
+}
+
+/// Held while a file is opened, so that a new descriptor is that of this opening.
+std::mutex& opening() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+/// Returns the descriptors of this process that are open on the file.
+std::set<int> descriptors_of(const std::filesystem::path& file) {
+    std::set<int> found;
+    struct stat wanted {};
+    if (::stat(file.c_str(), &wanted) != 0) return found;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error)) {
+        const int number = std::atoi(entry.path().filename().c_str());
+        struct stat one {};
+        if (::fstat(number, &one) == 0 && one.st_dev == wanted.st_dev && one.st_ino == wanted.st_ino)
+            found.insert(number);
+    }
+    return found;
 }
 
 /// A file name as a URI, whatever characters it has.
@@ -170,16 +201,36 @@ Connection::Connection(sqlite3* handle) : handle_(handle) {
     configure();
 }
 
+// SQLite keeps the descriptor of a closed connection while another one of this process has locks on the file, and gives
+// it to the next connection. Then no descriptor is new, and a further one is opened.
+void Connection::open(const std::filesystem::path& file, const std::string& name, int flags) {
+    const std::lock_guard alone(opening());
+    std::vector<std::unique_ptr<sqlite3, Close>> with_a_kept_one;
+    for (descriptor_ = -1; descriptor_ < 0;) {
+        const auto before = descriptors_of(file);
+        if (with_a_kept_one.size() > before.size())
+            throw BrokenWorld(
+                fmt::format("database '{}': its descriptor is not found in /proc/self/fd", file.string()));
+        handle_.reset(open_handle(name.c_str(), flags));
+        for (const int number : descriptors_of(file))
+            if (!before.contains(number)) descriptor_ = number;
+        if (descriptor_ < 0) with_a_kept_one.push_back(std::move(handle_));
+    }
+    entry_ = files::LockedFile(file);
+}
+
 Connection::Connection(const std::filesystem::path& file, Access access) {
     if (access == Access::write) {
-        handle_.reset(open_handle(file.c_str(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+        open(file, file.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+        if (sqlite3_db_readonly(handle_.get(), "main") != 0)
+            throw BrokenWorld(fmt::format("database '{}': cannot be opened to write: {}", file.string(),
+                                          ::access(file.c_str(), W_OK) == 0 ? "read-only" : std::strerror(errno)));
         configure();
-        execute("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
         return;
     }
     // SQLite opens to read only what the system lets it only read. Where it may write, the last reader to close removes
     // the write-ahead log and its shared memory, also those of a writer that died.
-    handle_.reset(open_handle(file.c_str(), SQLITE_OPEN_READWRITE));
+    open(file, file.string(), SQLITE_OPEN_READWRITE);
     configure();
     execute("PRAGMA query_only = ON");
     const auto waits = [&](const char* ending) {
@@ -196,7 +247,8 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
         // is waiting, there is no writer either.
         const bool closed_folder = (code & 0xff) == SQLITE_CANTOPEN || (code & 0xff) == SQLITE_READONLY;
         if (!closed_folder || waits("-wal") || waits("-journal")) throw;
-        handle_.reset(open_handle(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
+        handle_.reset();
+        open(file, uri(file, "immutable=1"), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
         configure();
     }
 }
@@ -224,6 +276,7 @@ void Connection::configure() {
 }
 
 void Connection::use(Journal journal) {
+    execute("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
     const bool ahead = journal == Journal::write_ahead;
     auto statement = prepare(ahead ? "PRAGMA journal_mode = WAL" : "PRAGMA journal_mode = DELETE");
     const std::string got = statement.step() ? statement.get<std::string>(0) : "";
@@ -286,6 +339,20 @@ void Connection::read_file(std::int64_t offset, std::span<std::byte> into) const
     sqlite3_file* file = file_behind(handle_.get());
     const int code = file->pMethods->xRead(file, into.data(), static_cast<int>(into.size()), offset);
     if (code != SQLITE_OK) fail_reading(handle_.get(), code);
+}
+
+std::string beginning_of(const std::filesystem::path& file, std::size_t most) {
+    const std::lock_guard alone(opening());
+    const std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle(open_handle(file.c_str(), SQLITE_OPEN_READONLY),
+                                                             sqlite3_close_v2);
+    sqlite3_file* opened = file_behind(handle.get());
+    sqlite3_int64 bytes = 0;
+    int code = opened->pMethods->xFileSize(opened, &bytes);
+    std::string text(static_cast<std::size_t>(std::min(bytes, static_cast<sqlite3_int64>(most))), '\0');
+    if (code == SQLITE_OK && !text.empty())
+        code = opened->pMethods->xRead(opened, text.data(), static_cast<int>(text.size()), 0);
+    if (code != SQLITE_OK) fail_reading(handle.get(), code);
+    return text;
 }
 
 bool Connection::in_transaction() const {

@@ -9,6 +9,7 @@
 
 #include "solver/scenes/values.hpp"
 #include "sweep/files/broken_world.hpp"
+#include "sweep/files/locked_files.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -146,13 +147,18 @@ public:
     enum class Access { write, read };
     enum class Journal { write_ahead, rollback };
 
-    /// write: makes the file if absent, synchronous FULL. read: no statement changes the file. If the file is writable,
-    /// opening and closing recover the journal of a dead writer. A file in a read-only folder is read without recovery.
+    /// write: makes the file if absent, and runs no statement before use(). read: no statement changes the file. If the
+    /// file is writable, opening and closing recover the journal of a dead writer. A file in a read-only folder is read
+    /// without recovery.
     Connection(const std::filesystem::path& file, Access access);
     [[nodiscard]] static Connection in_memory();
 
-    /// Chooses the journal. A write-ahead log lets readers and the writer work at the same time, but needs shared
-    /// memory, which network file systems lack; these need the rollback journal. Both are synced at every commit.
+    /// Returns SQLite's own descriptor of the file. It ends with this object, and nobody else closes it.
+    [[nodiscard]] int descriptor() const { return descriptor_; }
+
+    /// Chooses the journal, and synchronous FULL. A write-ahead log lets readers and the writer work at the same time,
+    /// but needs shared memory, which network file systems lack; these need the rollback journal. Both are synced at
+    /// every commit.
     void use(Journal journal);
 
     /// Runs every statement of a script.
@@ -197,8 +203,7 @@ public:
     [[nodiscard]] bool in_transaction() const;
     /// Returns whether the opened file was moved, deleted or replaced.
     [[nodiscard]] bool has_moved() const;
-    /// Returns the size of the file, without a write-ahead log. Uses SQLite's own descriptor, because opening and
-    /// closing the file again would end this process's locks on it.
+    /// Returns the size of the file, without a write-ahead log. Uses SQLite's own descriptor (locked_files.hpp).
     [[nodiscard]] std::int64_t file_bytes() const;
     void read_file(std::int64_t offset, std::span<std::byte> into) const;
 
@@ -206,6 +211,9 @@ public:
     void authorize(Authorizer authorizer) const;
     /// Limits the total processor time of the statements from now on; more throws StatementLimit; 0: no limit.
     void stop_after(double seconds) const;
+    /// Limits the processor time of this thread in all statements from now on, s, beside stop_after(); `ended` is asked
+    /// often and stops them too. More throws StatementLimit. Zero and empty: no limit.
+    void limit_all(double seconds, std::function<bool()> ended) const;
     /// Limits the length of texts, bytes; statements that make longer texts are refused.
     void limit_lengths(int value) const;
     /// Adds an aggregate of the rows of a group, each with `arguments` numbers, row after row. Rows with a NULL are
@@ -219,6 +227,8 @@ private:
         void operator()(sqlite3* database) const;
     };
     explicit Connection(sqlite3* handle);
+    /// Opens the file, and finds the descriptor.
+    void open(const std::filesystem::path& file, const std::string& name, int flags);
     [[nodiscard]] Statement& kept(std::string_view sql) const;
     void configure();
     void probe() const;  ///< reads the first page, and recovers the log of a dead writer
@@ -226,15 +236,28 @@ private:
     struct TextHash : std::hash<std::string_view> {
         using is_transparent = void;
     };
+    files::LockedFile entry_;
     std::unique_ptr<sqlite3, Close> handle_;
+    int descriptor_ = -1;
     mutable std::unordered_map<std::string, Statement, TextHash, std::equal_to<>> kept_;
     mutable std::unique_ptr<Authorizer> authorizer_;
     struct Allowance {
         double seconds = 0;
         double since = -1;  ///< processor time of the thread at the start; negative: not started
+        /// Returns whether the time is over; 0 seconds: never.
+        bool over(double now) {
+            if (since < 0) since = now;
+            return seconds > 0 && now - since > seconds;
+        }
     };
-    mutable std::unique_ptr<Allowance> allowance_;
-    static int look_at_time(void* allowance);
+    struct Allowances {
+        Allowance one, all;
+        std::function<bool()> ended;
+    };
+    mutable std::unique_ptr<Allowances> allowances_;
+    /// Sets the handler if there is a limit.
+    Allowances& allowances() const;
+    static int look_at_time(void* allowances);
 };
 
 /// Transaction: BEGIN ... COMMIT; it rolls back unless committed. A transaction that only reads sees one state of the
@@ -251,6 +274,10 @@ public:
 private:
     Connection* connection_;
 };
+
+/// Returns the first bytes of a file, at most `most`, read by SQLite without a lock, a journal or a change. Throws
+/// BrokenWorld if it cannot be opened.
+[[nodiscard]] std::string beginning_of(const std::filesystem::path& file, std::size_t most);
 
 /// Returns whether a word, in any case, is a keyword of SQLite.
 [[nodiscard]] bool is_sql_word(std::string_view word);

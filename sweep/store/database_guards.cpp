@@ -98,27 +98,29 @@ void Connection::limit_lengths(int value) const {
 }
 
 /// Called every so many of SQLite's own instructions: a statement that is over before costs no look at a clock.
-int Connection::look_at_time(void* allowance) {
-    auto& allowed = *static_cast<Allowance*>(allowance);
+int Connection::look_at_time(void* allowances) {
+    auto& allowed = *static_cast<Allowances*>(allowances);
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     const double seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-    if (allowed.since < 0) allowed.since = seconds;
-    return seconds - allowed.since > allowed.seconds ? 1 : 0;
+    return allowed.one.over(seconds) || allowed.all.over(seconds) || (allowed.ended && allowed.ended()) ? 1 : 0;
+}
+
+Connection::Allowances& Connection::allowances() const {
+    constexpr int instructions = 1000;
+    if (!allowances_) {
+        allowances_ = std::make_unique<Allowances>();
+        sqlite3_progress_handler(handle_.get(), instructions, look_at_time, allowances_.get());
+    }
+    return *allowances_;
 }
 
 void Connection::stop_after(double seconds) const {
-    constexpr int instructions = 1000;
-    if (!(seconds > 0)) {
-        sqlite3_progress_handler(handle_.get(), 0, nullptr, nullptr);
-        allowance_.reset();
-        return;
-    }
-    if (!allowance_) {
-        allowance_ = std::make_unique<Allowance>();
-        sqlite3_progress_handler(handle_.get(), instructions, look_at_time, allowance_.get());
-    }
-    *allowance_ = {seconds, -1};
+    if (allowances_ || seconds > 0) allowances().one = {seconds, -1};
+}
+
+void Connection::limit_all(double seconds, std::function<bool()> ended) const {
+    allowances() = {allowances().one, {seconds, -1}, std::move(ended)};
 }
 
 void Connection::add_aggregate(const char* name, int arguments, Statistic statistic) {

@@ -223,6 +223,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
     Remembered remembered(*impl_);
     auto& db = impl_->db;
     Transaction transaction(db);
+    impl_->bring_up_to_date();
     impl_->notes.clear();
     if (impl_->data_version() != impl_->version) impl_->as_remembered = false;
     impl_->refuse_damage(damaged_descriptions(db), {});

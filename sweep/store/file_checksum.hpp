@@ -9,18 +9,36 @@
 
 #include "sweep/store/database.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
 
 namespace grainsweep::store {
 
-/// Returns whether the file has the same bytes as after remember_file(). False if this is unknown: there is no
-/// checksum, or a write-ahead log is pending. Call it inside a transaction, at least for reading.
+/// Hash of every page of a file; empty: unknown.
+using PageHashes = std::vector<std::uint64_t>;
+
+/// Returns the hashes if the file has the same bytes as after remember_file(). Empty if it has not, or if this is
+/// unknown: there is no checksum, or a write-ahead log is pending. Call it inside a transaction, at least for reading.
+[[nodiscard]] PageHashes pages_as_remembered(const Connection& db, const std::filesystem::path& file);
+/// Returns whether there are such hashes.
 [[nodiscard]] bool is_as_remembered(const Connection& db, const std::filesystem::path& file);
 
+/// Checks of the contents, which must read from the disk.
+struct FileChecks {
+    std::function<bool()> all_is_sound;
+    std::span<const std::string_view> tables;  ///< small tables, which every run writes
+    std::function<bool()> tables_are_sound;    ///< of these tables alone
+};
+
 /// Sums the file, checks its contents, then stores the sum. A byte that changes after the summing changes the sum. A
-/// byte that changed before is found by `is_sound`, which therefore must read from the disk. Stores nothing if the
-/// check fails, or if a reader prevents the checkpoint of the write-ahead log. Not inside a transaction.
-void remember_file(Connection& db, const std::function<bool()>& is_sound);
+/// byte that changed before is found by the checks. `then`: pages of the file when it was opened as remembered. If all
+/// pages that are not the same belong to the small tables, all others are as they were checked, and only these tables
+/// are checked. Stores nothing if a check fails, or if a reader prevents the checkpoint of the write-ahead log. Not
+/// inside a transaction.
+void remember_file(Connection& db, const PageHashes& then, const FileChecks& checks);
 
 }  // namespace grainsweep::store

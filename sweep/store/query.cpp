@@ -176,6 +176,10 @@ campaign::WrongQuestion refused_query(const Connection& db, std::string_view sql
 
 }  // namespace
 
+void Store::limit(double seconds, std::function<bool()> ended) const {
+    impl_->db.limit_all(seconds, std::move(ended));
+}
+
 Table Store::query(std::string_view sql) const {
     Table table;
     query(

@@ -17,7 +17,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <fstream>
 #include <stdexcept>
 
 namespace grainsweep::store {
@@ -53,15 +52,12 @@ std::uint32_t big_endian(const char* bytes) {
 /// A file that never was SQLite's, or is another program's, is a wrong question; one whose header is gone is damage.
 /// Decided by the header alone, before a lock or a journal is made beside a foreign file.
 void check_header(const std::filesystem::path& file) {
-    std::array<char, 100> header{};
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw BrokenWorld(fmt::format("database '{}': cannot be read", file.string()));
-    stream.read(header.data(), header.size());
-    const std::string_view seen(header.data(), static_cast<std::size_t>(stream.gcount()));
+    constexpr std::size_t header_bytes = 100;
+    const std::string seen = beginning_of(file, header_bytes);
     if (seen.empty()) return;
     if (seen.starts_with(std::string_view("SQLite format 3\0", 16))) {
         // https://www.sqlite.org/fileformat.html, 1.3: schema cookie at 40 (0: no table yet), application id at 68
-        if (seen.size() == header.size() && big_endian(&header[40]) != 0 && big_endian(&header[68]) != application)
+        if (seen.size() == header_bytes && big_endian(&seen[40]) != 0 && big_endian(&seen[68]) != application)
             refuse_stranger(file);
         return;
     }
@@ -131,11 +127,9 @@ void refuse_impossible(const Connection& db, const std::filesystem::path& file) 
         throw BrokenWorld(fmt::format("database '{}': damaged: table {}: {}", file.string(), one.name, one.what));
 }
 
-/// Brings the file to the newest schema, in one transaction.
+/// Brings the file to the newest schema. Inside a transaction.
 void migrate(Connection& db, const std::filesystem::path& file) {
     const auto migrations = schema_migrations();
-    if (schema_version(db, file) == static_cast<std::int64_t>(migrations.size())) return;
-    Transaction transaction(db);
     const auto seen = static_cast<std::size_t>(schema_version(db, file));
     const bool unprotected = !has_checksums(db);
     const bool views_as_written = damaged_views(db).empty();
@@ -148,7 +142,6 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     else if (views_as_written)
         renew_sum(db, "sqlite_schema");
     db.execute(fmt::format("PRAGMA user_version = {}; PRAGMA application_id = {}", migrations.size(), application));
-    transaction.commit();
 }
 
 /// Returns a text such as "process 4711 on node3 since 2026-01-01T12:00:00Z": the last run that the archive has
@@ -209,9 +202,9 @@ void check_structure(const Connection& db, const std::filesystem::path& file) {
     }
 }
 
-bool is_as_remembered_now(Connection& db, const std::filesystem::path& file) {
+PageHashes pages_as_remembered_now(Connection& db, const std::filesystem::path& file) {
     const Transaction one_state(db, Transaction::Kind::read);
-    return is_as_remembered(db, file);
+    return pages_as_remembered(db, file);
 }
 
 std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
@@ -219,21 +212,27 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     if (disk == Store::Disk::found_out) refuse_network(file, file_system_of(file));
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) check_readable(file);
-    auto lock = WriterLock::take(file);
+    Connection db(file, Connection::Access::write);
+    auto lock = WriterLock::take(db.descriptor(), file);
     if (!lock) refuse_second_writer(file);
     refuse_several_names(file);
-    Connection db(file, Connection::Access::write);
     const bool empty = schema_version(db, file) == 0;  // before anything is changed in a foreign file
     db.use(disk == Store::Disk::network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
     const auto version = pragma(db, "data_version");
-    const bool as_remembered = !empty && is_as_remembered_now(db, file);
+    auto pages_then = empty ? PageHashes() : pages_as_remembered_now(db, file);
+    const bool as_remembered = !pages_then.empty();
     if (!empty) check_tables(db, file);
     if (!empty && !as_remembered) check_structure(db, file);
-    migrate(db, file);
+    if (empty) {
+        Transaction transaction(db);
+        migrate(db, file);
+        transaction.commit();
+    }
     enter_programs(db);
     enter_machines(db);
     auto archive = std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
     archive->as_remembered = as_remembered || empty;
+    archive->pages_then = std::move(pages_then);
     archive->version = version;
     return archive;
 }
@@ -263,6 +262,12 @@ Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
+bool Store::Impl::is_older() const {
+    return pragma(db, "user_version") < static_cast<std::int64_t>(schema_migrations().size());
+}
+void Store::Impl::bring_up_to_date() {
+    if (is_older()) migrate(db, file);
+}
 std::int64_t Store::Impl::data_version() const {
     return pragma(db, "data_version");
 }
@@ -278,6 +283,9 @@ void Store::Impl::require_in_place() const {
 }
 void Store::require_in_place() const {
     impl_->require_in_place();
+}
+bool Store::is_being_written() const {
+    return WriterLock::is_taken(impl_->db.descriptor());
 }
 const std::vector<std::string>& Store::notes() const {
     return impl_->notes;
@@ -320,25 +328,31 @@ std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
 void Store::remember_file() {
     impl_->require_writer();
     if (impl_->in_group) throw std::logic_error("the file is remembered inside a group");
-    if (!impl_->whole || enrols() || impl_->db.file_bytes() > most_remembered_bytes) return;
+    if (!impl_->whole || impl_->is_older() || enrols() || impl_->db.file_bytes() > most_remembered_bytes) return;
     impl_->require_in_place();
     std::optional<BrokenWorld> damage;
-    try {
-        store::remember_file(impl_->db, [&] {
+    const auto checked = [&](auto check) {
+        return [this, &damage, check] {
             const Transaction one_state(impl_->db, Transaction::Kind::read);
             try {
-                return impl_->check_rows_on_two_cores();
+                return check();
             } catch (const BrokenWorld& found) {
                 damage = found;
                 return false;
             }
-        });
+        };
+    };
+    try {
+        store::remember_file(impl_->db, impl_->pages_then,
+                             {checked([this] { return impl_->check_rows_on_two_cores(); }), described_tables,
+                              checked([this] { return impl_->check_descriptions(); })});
+        impl_->pages_then.clear();  // a later call sums what was written since, too
     } catch (const BrokenWorld&) {  // all results are on disk; the next to open the file checks its rows
     }
     if (damage) throw *damage;
 }
 
-void Store::group(const std::function<void()>& writes) {
+void Store::group(const std::function<void()>& writes, Origin origin) {
     impl_->require_writer();
     if (impl_->in_group) throw std::logic_error("a group inside a group");
     struct Membership {  // whatever happens, the group ends here
@@ -359,10 +373,13 @@ void Store::group(const std::function<void()>& writes) {
     } membership(*impl_);
     impl_->require_in_place();
     Transaction transaction(impl_->db);
+    impl_->bring_up_to_date();
     writes();
     if (impl_->settled_in_group > 0) {
-        impl_->db.run("UPDATE provenance SET settled = settled + ?, last_result = ? WHERE provenance_id = ?",
-                      impl_->settled_in_group, impl_->run_clock.now(), impl_->provenance);
+        impl_->db.run(
+            "UPDATE provenance SET settled = settled + ?1, last_result = iif(?2, ?3, last_result) "
+            "WHERE provenance_id = ?4",
+            impl_->settled_in_group, origin == Origin::computed, impl_->run_clock.now(), impl_->provenance);
     }
     transaction.commit();
     impl_->sound = false;

@@ -139,7 +139,8 @@ public:
     /// Kind of disk. A network disk gets a rollback journal instead of a write-ahead log. With `found_out`, a network
     /// disk (by statfs(2)) is refused.
     enum class Disk { found_out, local, network };
-    /// create: makes the file and its schema if absent, takes the writer's lock and updates an older schema. A second
+    /// create: makes the file and its schema if absent, and takes the writer's lock. The first transaction that writes
+    /// updates an older schema. A second
     /// writer is refused with a sentence that names the first. read: changes neither content nor schema. Throws
     /// BrokenWorld, or WrongQuestion if the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
@@ -173,13 +174,17 @@ public:
 
     /// Throws BrokenWorld if the file was moved, deleted or replaced since it was opened; group() does, too.
     void require_in_place() const;
+    /// Returns whether another Store, of any process, has the lock of the writer.
+    [[nodiscard]] bool is_being_written() const;
 
     /// Checks every row, then stores a checksum of the file, so that an unchanged file needs no further check. Throws
     /// BrokenWorld with damage that occurred during the run. Does nothing if there was damage before.
     void remember_file();
 
+    /// Origin of results. The rate of a run counts those that it computed.
+    enum class Origin { computed, imported };
     /// Runs `writes` in one durable transaction: on disk when it returns, absent when it throws.
-    void group(const std::function<void()>& writes);
+    void group(const std::function<void()>& writes, Origin origin = Origin::computed);
     // Inside group():
     /// Stores the begin of an attempt. Throws std::logic_error for an unknown case, or one with a later attempt. If the
     /// case is left to enrol_more(), all remaining places are entered first. `computer`: program and machine; all empty
@@ -246,6 +251,9 @@ public:
     ///   finished    cases with an outcome other than abandoned
     ///   asked_points, asked_replicates   requested by the last run (points: candidates)
     [[nodiscard]] Table status() const;
+    /// Returns the statement behind the campaign's view, as this program writes it. The stored view may be anybody's,
+    /// and endless.
+    [[nodiscard]] std::string rows_of(std::string_view campaign) const;
     /// Runs one statement of read-only SQL, with SQLite's functions and the aggregates of aggregates.hpp. Anything else
     /// throws WrongQuestion with SQLite's message, the existing names and the nearest one.
     [[nodiscard]] Table query(std::string_view sql) const;
@@ -257,6 +265,8 @@ public:
     void query(std::string_view sql, const QueryLimits& limits,
                const std::function<void(const std::vector<std::string>& columns)>& begin,
                const std::function<void(const std::vector<Table::Cell>& row)>& each) const;
+    /// Limits the processor time of all statements from now on, s; `ended` is asked often and stops them, too.
+    void limit(double seconds, std::function<bool()> ended) const;
     /// Writes the canonical text of all results, line by line without line breaks. It has no times, attempts or hosts,
     /// so equal results give equal texts. dump.cpp describes its form.
     void dump(const std::function<void(std::string_view line)>& sink) const;

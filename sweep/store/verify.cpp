@@ -180,6 +180,20 @@ bool Store::Impl::check_contents() const {
     return strays == 0;
 }
 
+bool Store::Impl::check_descriptions() const {
+    for (const auto table : described_tables) {
+        auto rows = db.prepare(fmt::format("PRAGMA quick_check({})", table));
+        while (rows.step())
+            if (rows.get<std::string_view>(0) != "ok")
+                refuse_damage({{std::string(table), 0, rows.get<std::string>(0)}}, {});
+    }
+    auto tables = damaged_descriptions(db);
+    std::ranges::move(damaged_parts(db), std::back_inserter(tables));
+    std::ranges::move(damaged_texts(db, false), std::back_inserter(tables));
+    refuse_damage(tables, {});
+    return true;
+}
+
 void Store::Impl::require_sound(std::int64_t key) {
     if (sound) return;
     std::optional<Transaction> one_state;

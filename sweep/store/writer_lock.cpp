@@ -26,23 +26,36 @@ constexpr off_t locked_byte = off_t{1} << 61U;
     throw BrokenWorld(fmt::format("database '{}': {}: {}", database.string(), what, std::strerror(number)));
 }
 
-}  // namespace
-
-// The lock belongs to an open file description (F_OFD_SETLK), SQLite's locks belong to the process. So neither kind
-// releases the other. The descriptor outlives the connection to the database, because closing it would release what
-// SQLite holds.
-std::optional<WriterLock> WriterLock::take(const std::filesystem::path& database) {
-    files::Descriptor descriptor(open(database.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-    if (!descriptor.is_open()) fail_to(database, "cannot be opened to write", errno);
+struct flock locked_range(short kind) {
     struct flock range {};
-    range.l_type = F_WRLCK;
+    range.l_type = kind;
     range.l_whence = SEEK_SET;
     range.l_start = locked_byte;
     range.l_len = 1;
-    if (fcntl(descriptor.number(), F_OFD_SETLK, &range) == 0) return WriterLock(std::move(descriptor));
+    return range;
+}
+
+}  // namespace
+
+// The lock belongs to an open file description (F_OFD_SETLK), SQLite's locks belong to the process. So neither kind
+// releases the other. The descriptor is SQLite's, because closing another one would release what SQLite holds. SQLite
+// may keep it for another connection, so the lock is given back before.
+std::optional<WriterLock> WriterLock::take(int descriptor, const std::filesystem::path& database) {
+    auto range = locked_range(F_WRLCK);
+    if (fcntl(descriptor, F_OFD_SETLK, &range) == 0) return WriterLock(descriptor);
     const int number = errno;
     if (number == EAGAIN || number == EACCES) return std::nullopt;
     fail_to(database, "this file system gives no locks; keep the database on one that does", number);
+}
+
+WriterLock::~WriterLock() {
+    auto range = locked_range(F_UNLCK);
+    if (descriptor_ >= 0) fcntl(descriptor_, F_OFD_SETLK, &range);
+}
+
+bool WriterLock::is_taken(int descriptor) {
+    auto range = locked_range(F_WRLCK);
+    return fcntl(descriptor, F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
 }
 
 std::string_view network_file_system(long magic) {

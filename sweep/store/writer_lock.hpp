@@ -2,23 +2,31 @@
 // process in all cases and leaves no file behind. All names of a file (links, other paths) share it.
 #pragma once
 
-#include "sweep/files/descriptor.hpp"
-
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace grainsweep::store {
 
 class WriterLock {
 public:
-    /// Takes the lock, making an empty file if there is none. Returns nothing if another process has the lock. Throws
-    /// BrokenWorld if the file cannot be opened for writing or its file system has no locks.
-    [[nodiscard]] static std::optional<WriterLock> take(const std::filesystem::path& database);
+    /// Takes the lock with the descriptor of a connection (Connection::descriptor), which must outlive this object.
+    /// Returns nothing if another connection has the lock. Throws BrokenWorld if the file system has no locks.
+    [[nodiscard]] static std::optional<WriterLock> take(int descriptor, const std::filesystem::path& database);
+    WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    WriterLock& operator=(WriterLock&& other) noexcept {
+        std::swap(descriptor_, other.descriptor_);
+        return *this;
+    }
+    ~WriterLock();
+
+    /// Returns whether another connection, of any process, has the lock of the file of this descriptor.
+    [[nodiscard]] static bool is_taken(int descriptor);
 
 private:
-    explicit WriterLock(files::Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
-    files::Descriptor descriptor_;
+    explicit WriterLock(int descriptor) : descriptor_(descriptor) {}
+    int descriptor_ = -1;
 };
 
 /// Returns the magic number of statfs(2) of the file's file system, also for a file that does not exist yet; 0:

@@ -251,8 +251,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         for (std::size_t k = first_observable; k < row.size(); ++k)
             responses.observables[k - first_observable].values.push_back(number_of(row[k]));
     };
-    // The campaign's view is the archive's public face; its columns are promised to users, too.
-    store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name), {}, declare, add);
+    store.query(store.rows_of(record.name) + " ORDER BY point, replicate", {}, declare, add);
     for (auto& factor : factors) responses.factors.push_back(factor.take());
     const auto asked = campaign::factors_asked(record);
     responses.groups = campaign::groups_of(asked);

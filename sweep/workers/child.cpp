@@ -10,7 +10,6 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/write.hpp>
 
 #include <algorithm>
@@ -29,18 +28,21 @@ using namespace std::chrono_literals;
 // ---- the loop --------------------------------------------------------------------------------------------------
 
 struct EventLoop::Impl {
-    void await_signal() {
-        signals.async_wait([this](const boost::system::error_code& error, int number) {
+    void await_readable() {
+        watched.async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& error) {
             if (error) return;
-            on_signal(number);
-            await_signal();
+            on_readable();
+            await_readable();
         });
+    }
+    ~Impl() {
+        if (watched.is_open()) watched.release();  // it belongs to the caller
     }
 
     asio::io_context io;
     asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(io);
-    asio::signal_set signals{io};
-    std::function<void(int number)> on_signal;
+    asio::posix::stream_descriptor watched{io};
+    std::function<void()> on_readable;
 };
 
 EventLoop::EventLoop() : impl_(std::make_unique<Impl>()) {}
@@ -58,10 +60,10 @@ void EventLoop::post(std::function<void()> call) {
     asio::post(impl_->io, std::move(call));
 }
 
-void EventLoop::on_signals(const std::vector<int>& numbers, std::function<void(int number)> call) {
-    for (const int number : numbers) impl_->signals.add(number);
-    impl_->on_signal = std::move(call);
-    impl_->await_signal();
+void EventLoop::on_readable(int descriptor, std::function<void()> call) {
+    impl_->watched.assign(descriptor);
+    impl_->on_readable = std::move(call);
+    impl_->await_readable();
 }
 
 // ---- a process -------------------------------------------------------------------------------------------------

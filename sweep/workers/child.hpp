@@ -27,8 +27,8 @@ public:
     bool poll_one();
     /// Appends a call to the loop. Any thread may do so.
     void post(std::function<void()> call);
-    /// Replaces the effect of these signals by this call.
-    void on_signals(const std::vector<int>& numbers, std::function<void(int number)> call);
+    /// Calls this whenever the descriptor is readable. The descriptor must outlive the loop.
+    void on_readable(int descriptor, std::function<void()> call);
 
     struct Impl;
     [[nodiscard]] Impl& impl() { return *impl_; }

@@ -4,6 +4,7 @@
 #include "sweep/workers/child.hpp"
 #include "sweep/workers/core_sharing.hpp"
 #include "sweep/workers/departures.hpp"
+#include "sweep/workers/end_requests.hpp"
 #include "sweep/workers/fruitless_launches.hpp"
 #include "sweep/workers/hosts.hpp"
 #include "sweep/workers/job_cores.hpp"
@@ -64,7 +65,9 @@ struct Pool::Impl {
           argv(command_of(options)),
           sharing(options.threads, cores_of_a_node(options)),
           fruitless(argv) {
-        loop.on_signals({SIGINT, SIGTERM, SIGUSR1}, [this](int number) { interrupt(number); });
+        loop.on_readable(requests.descriptor(), [this] {
+            while (const auto signal = requests.next()) interrupt(*signal);
+        });
         if (!options.hosts) return;
         HostPlan plan{options.launcher, static_cast<std::size_t>(*options.hosts), cores_of_a_node(options),
                       options.limits};
@@ -279,6 +282,7 @@ struct Pool::Impl {
 
     PoolOptions options;
     std::vector<std::string> argv;  // of a worker, with its launcher
+    EndRequests requests;
     EventLoop loop;
     std::vector<std::shared_ptr<Worker>> workers;
     Departures leaving;

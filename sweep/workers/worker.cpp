@@ -210,6 +210,16 @@ std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer&
     return fmt::format("{}{}\n{}", checkpoint_of_case, id, binding(program));
 }
 
+std::string checkpoint_origin(std::string_view key) {
+    const auto line = [&](std::string_view name) {
+        const auto at = key.find(fmt::format("\n{}=", name));
+        if (at == std::string_view::npos) return std::string_view("?");
+        const auto rest = key.substr(at + name.size() + 2);
+        return rest.substr(0, rest.find('\n'));
+    };
+    return fmt::format("version {}, build {}, {}", line("version"), line("build").substr(0, 12), line("path"));
+}
+
 std::optional<campaign::CaseId> checkpointed_case(std::string_view key) {
     if (!key.starts_with(checkpoint_of_case)) return std::nullopt;
     key.remove_prefix(checkpoint_of_case.size());

@@ -30,6 +30,8 @@ struct WorkerOptions {
 
 /// Returns the key of an unfinished case's checkpoint, which is stored beside the database.
 [[nodiscard]] std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program);
+/// Returns the version, commit and instruction path of a checkpoint's key, in words.
+[[nodiscard]] std::string checkpoint_origin(std::string_view key);
 /// Returns the case of a checkpoint of any build and instruction path; empty if the key is of something else.
 [[nodiscard]] std::optional<campaign::CaseId> checkpointed_case(std::string_view key);
 

@@ -1,13 +1,17 @@
 // `grainsweep serve` beside a run: what a reader of its events gets, and what the reader may do.
 #include "tests/support/live_server.hpp"
 #include "tests/support/progress.hpp"
+#include "tests/support/served_rounds.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <list>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,6 +32,14 @@ std::string config_of(const std::string& name, int points, double seconds) {
         R"({{"campaign": "{}", "scene": "rehearsal", "fixed": {{"wait_seconds": {}}}, "design": {{"kind": "halton",
              "points": {}}}, "factors": [{{"name": "x1", "between": [0, 1]}}, {{"name": "x2", "between": [0, 1]}}]}})",
         name, seconds, points);
+}
+
+/// Another program alters the database.
+void change(const fs::path& file, const std::string& sql) {
+    sqlite3* db = nullptr;
+    EXPECT_EQ(sqlite3_open(file.c_str(), &db), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(db);
+    sqlite3_close(db);
 }
 
 /// Reads a stream of events as it comes.
@@ -227,7 +239,7 @@ TEST_F(ServedCampaign, OfAFolderEveryCampaignFileCanBeStarted) {
     EXPECT_EQ(settled("a"), 1);
 }
 
-TEST_F(ServedCampaign, AFilmIsComputedOnceAndKeptBesideTheDatabase) {
+TEST_F(ServedCampaign, AFilmIsComputedOnceAndShownWithoutOriginAndToken) {
     folder.write("a.json", R"({"campaign": "a", "scene": "powder_spreading", "fixed": {"diameter": 0.003},
         "factors": [{"name": "gap", "levels": [0.004]}], "design": {"kind": "lattice"}})");
     ASSERT_EQ(run_program({"run", "a.json", "--quiet", "-j", "1"}, folder.path()).code, 0);
@@ -237,14 +249,132 @@ TEST_F(ServedCampaign, AFilmIsComputedOnceAndKeptBesideTheDatabase) {
     EXPECT_EQ(server.get("/film", "case=" + id).status, 404) << "not yet";
     const auto seen = Json::parse(server.work("/film", "case=" + id).body);
     EXPECT_EQ(seen["code"], 0) << seen;
-    EXPECT_TRUE(fs::exists(folder / ("a.films/" + id + ".html")));
+    EXPECT_FALSE(fs::exists(folder / "a.films")) << "nothing is written beside a database";
     const auto film = server.get("/film", "case=" + id);
     EXPECT_EQ(film.status, 200);
     EXPECT_NE(film.body.find("watch-film"), std::string::npos);
-    EXPECT_EQ(server.post("/film", "case=" + id).body, R"({"film":true})") << "not computed twice";
+    EXPECT_NE(film.head.find("Content-Security-Policy: sandbox allow-scripts"), std::string::npos) << film.head;
+    EXPECT_EQ(film.head.find("allow-same-origin"), std::string::npos);
+    const auto again = Json::parse(server.post("/film", "case=" + id).body);
+    EXPECT_FALSE(again.contains("job")) << "not computed twice";
+    const auto address = again["film"].get<std::string>();
+    EXPECT_EQ(address.find(server.token()), std::string::npos);
+    const Connected stranger(server.port());
+    stranger.send(fmt::format("GET /{} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", address, server.port()));
+    EXPECT_EQ(stranger.answer().status, 200) << "its ticket opens this film and nothing else";
     const auto strange = Json::parse(server.work("/film", "case=" + std::string(32, '0')).body);
     EXPECT_EQ(strange["code"], 2) << "no such case";
-    EXPECT_FALSE(fs::exists(folder / ("a.films/" + std::string(32, '0') + ".html")));
+    EXPECT_EQ(server.get("/film", "case=" + std::string(32, '0')).status, 404);
+}
+
+// Others may have made, cut, altered or removed the other databases of a folder.
+TEST_F(ServedCampaign, ADatabaseThatCannotBeReadIsNamedAndTheOthersStay) {
+    for (const auto* name : {"a", "b"}) begin(name, 3, 0);
+    LiveServer server(folder, ".");
+    Reader reader(server.events());
+    const auto state = [&](std::size_t k) { return reader.now.is_object() ? reader.now["databases"].at(k) : Json(); };
+    const auto broken = [&] { return state(0).is_object() && !state(0)["error"].get<std::string>().empty(); };
+    EXPECT_TRUE(reader.until([&] { return state(1).is_object() && state(1)["error"] == ""; }));
+    fs::copy_file(folder / "a.db", folder / "kept");
+    fs::resize_file(folder / "a.db", fs::file_size(folder / "a.db") / 2);
+    EXPECT_TRUE(reader.until(broken));
+    EXPECT_NE(state(0)["error"].get<std::string>().find("a.db"), std::string::npos);
+    EXPECT_EQ(state(1)["error"], "");
+    EXPECT_EQ(server.work("/query", "database=b.db", "SELECT 1 AS one").status, 200);
+    EXPECT_EQ(server.get("/data").status, 200);
+    fs::rename(folder / "kept", folder / "a.db");
+    EXPECT_TRUE(reader.until([&] { return !broken(); })) << "and shown again once it is mended";
+    change(folder / "a.db", "DROP TABLE sim_case");
+    EXPECT_TRUE(reader.until(broken));
+    EXPECT_EQ(server.get("/").status, 200);
+    server.process().signal(SIGINT);
+    EXPECT_EQ(server.process().wait().code, 0);
+}
+
+// The stored view of a campaign may be endless: nobody reads it but a user's own SQL.
+TEST_F(ServedCampaign, AnEndlessViewStopsNothing) {
+    begin("a", 3, 0);
+    change(folder / "a.db",
+           "DROP VIEW a; CREATE VIEW a AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 "
+           "FROM n) SELECT i AS point FROM n");
+    LiveServer server(folder, "a.db");
+    EXPECT_EQ(Json::parse(server.get("/data").body)["campaigns"][0]["rows"], 3);
+    for (const auto* command : {"converge", "sensitivity", "status"})
+        EXPECT_EQ(run_program({command, "a.db"}, folder.path()).code, 0) << command;
+    EXPECT_EQ(run_program({"report", "a.db", "-o", "a.html"}, folder.path()).code, 0);
+    server.process().signal(SIGINT);
+    EXPECT_EQ(server.process().wait().code, 0);
+}
+
+TEST_F(ServedCampaign, ADatabaseThatIsMadeAnewIsFollowed) {
+    begin("a", 3, 0);
+    const LiveServer server(folder, "a.db");
+    Reader reader(server.events());
+    EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
+    fs::remove(folder / "a.db");
+    begin("a", 7, 0);
+    EXPECT_TRUE(reader.until([&] { return Json::parse(server.get("/data").body)["campaigns"][0]["rows"] == 7; }));
+    EXPECT_EQ(run_program({"run", "a.json", "--quiet", "-j", "1"}, folder.path()).code, 0);
+    EXPECT_TRUE(reader.until([&] { return Json::parse(server.get("/data").body)["campaigns"][0]["settled"] == 7; }));
+}
+
+// Links and named pipes beside a database are not followed, and no file of the folder says that a run is under way.
+TEST_F(ServedCampaign, FilesOfOthersBesideADatabaseStopNothing) {
+    begin("a", 3, 0);
+    folder.write("precious", "keep");
+    fs::create_symlink(folder / "precious", folder / "a.run.log");
+    LiveServer server(folder, "a.db", {"--control", "a.json"});
+    ASSERT_EQ(::mkfifo((folder / "a.now").c_str(), 0600), 0);
+    EXPECT_EQ(server.get("/data").status, 200);
+    fs::remove(folder / "a.now");
+    fs::create_directory(folder / "a.films");
+    ASSERT_EQ(::mkfifo((folder / ("a.films/" + std::string(32, '0') + ".html")).c_str(), 0600), 0);
+    EXPECT_EQ(server.get("/film", "case=" + std::string(32, '0')).status, 404);
+    std::string claims = "grainsweep now 1\ncampaign a\nhost elsewhere\nprocess 1\n";
+    folder.write("a.now", claims + std::string(2U << 20U, '\n'));
+    EXPECT_EQ(server.post("/stop", "").status, 409);
+    folder.write("a.now", claims);
+    fs::last_write_time(folder / "a.now", fs::file_time_type::clock::now() + 1h);
+    EXPECT_EQ(server.post("/stop", "").status, 409);
+    EXPECT_EQ(server.post("/run", "").status, 200) << "no run has the database";
+    Reader reader(server.events());
+    EXPECT_TRUE(reader.until([&] { return settled("a") == 3; }));
+    EXPECT_FALSE(fs::is_symlink(folder / "a.run.log"));
+    std::ifstream precious(folder / "precious");
+    std::string word;
+    precious >> word;
+    EXPECT_EQ(word, "keep");
+}
+
+TEST_F(ServedCampaign, ASecondRunIsRefusedWhateverStandsBesideTheDatabase) {
+    begin("a", 200, 0.02);
+    const LiveServer server(folder, "a.db", {"--control", "a.json"});
+    Process run(command_of("a"), folder.path());
+    await_settled(run, folder / "a.db", 5);
+    fs::remove(folder / "a.now");
+    EXPECT_EQ(server.post("/run", "").status, 409) << "the run has the lock";
+    run.signal(SIGINT);
+    EXPECT_EQ(run.wait().code, 130);
+}
+
+TEST_F(ServedCampaign, TheEndOfAKilledRunIsKnownAtOnce) {
+    begin("a", 200, 0.02);
+    Process run(command_of("a"), folder.path());
+    await_settled(run, folder / "a.db", 5);
+    EXPECT_TRUE(fs::exists(folder / "a.now"));
+    run.signal(SIGKILL);
+    EXPECT_EQ(run.wait().code, 128 + SIGKILL);
+    EXPECT_TRUE(fs::exists(folder / "a.now"));
+    const auto ended = run_program({"status", "a.db"}, folder.path());
+    EXPECT_EQ(ended.out.find("under way"), std::string::npos) << ended.out;
+}
+
+// Rounds of stop, kill, resume, status, verify and VACUUM beside an open page, from tests/bench/served_slow.cpp.
+TEST_F(ServedCampaign, RoundsOfStopKillAndResumeLoseNothing) {
+    write("a", 4000, 0.002);
+    const auto rounds = served_rounds(folder, 4, 20s);
+    EXPECT_EQ(rounds.complaint, "");
+    EXPECT_EQ(rounds.done, 4);
 }
 
 }  // namespace grainsweep::tests::served_test

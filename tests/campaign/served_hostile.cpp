@@ -6,8 +6,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -155,6 +157,53 @@ TEST_F(ServedToEnemies, ManyConnectionsHalfRequestsAndReadersThatDoNotReadEnd) {
     const auto start = Clock::now();
     EXPECT_EQ(server->process().wait().code, 0);
     EXPECT_LT(Clock::now() - start, 5s);
+}
+
+// A page of a stranger lies where films were once kept: a script there would have the token and every database.
+TEST_F(ServedToEnemies, FilmsOfAStrangersFolderAreNotServed) {
+    const auto id = std::string(32, '0');
+    fs::create_directory(folder / "a.films");
+    std::ofstream(folder / ("a.films/" + id + ".html")) << "<script>alert(1)</script>";
+    EXPECT_EQ(server->get("/film", "case=" + id).status, 404);
+    const auto made = Json::parse(server->work("/film", "case=" + id).body);
+    EXPECT_EQ(made["code"], 2) << "it is not there already: " << made;
+    EXPECT_EQ(server->get("/film", "case=" + id).status, 404);
+    for (const auto* ticket : {"", "0", "../../../etc/passwd"}) {
+        const auto seen = server->get("/film", std::string("ticket=") + ticket);
+        EXPECT_EQ(seen.status, 404) << ticket;
+    }
+}
+
+// They send a byte now and then: a request that is never whole.
+TEST_F(ServedToEnemies, SlowConnectionsKeepNobodyOut) {
+    std::vector<Connected> slow;
+    for (int k = 0; k < 300; ++k) {
+        slow.emplace_back(server->port());
+        if (slow.back().is_open()) slow.back().send("GET / HTTP/1.1\r\nX: ");
+    }
+    const auto stream = server->events();
+    for (int k = 0; k < 4; ++k) {
+        expect_served();
+        for (const auto& one : slow)
+            if (one.is_open()) (void)one.send("a");
+        std::this_thread::sleep_for(300ms);
+    }
+}
+
+TEST_F(ServedToEnemies, TheTokenStandsInNoArgumentOfABrowser) {
+    folder.write("xdg-open", "#!/bin/sh\necho \"$@\" > opened; cp \"$1\" page\n");
+    fs::permissions(folder / "xdg-open", fs::perms::owner_all);
+    const auto path = folder.path().string() + ":" + std::getenv("PATH");
+    Process opens({"/usr/bin/env", "PATH=" + path, program_command({})[0], "serve", "a.db", "--port", "0", "--open"},
+                  folder.path());
+    for (int k = 0; k < 1000 && !fs::exists(folder / "page"); ++k) std::this_thread::sleep_for(10ms);
+    std::ifstream given(folder / "opened"), page(folder / "page");
+    const std::string words{std::istreambuf_iterator<char>(given), {}}, text{std::istreambuf_iterator<char>(page), {}};
+    EXPECT_EQ(words.find("token"), std::string::npos) << words;
+    EXPECT_NE(text.find("?token="), std::string::npos) << text;
+    opens.signal(SIGINT);
+    EXPECT_EQ(opens.wait().code, 0);
+    EXPECT_FALSE(fs::exists(words.substr(0, words.find('\n')))) << "it is removed";
 }
 
 TEST_F(ServedToEnemies, TextsOfTheCampaignStayTexts) {

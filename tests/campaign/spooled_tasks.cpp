@@ -81,6 +81,23 @@ TEST(Spool, OneTaskAnswersAllAndTheRowsAreThoseOfARun) {
     campaign.expect_the_rows_of_a_run();
 }
 
+// What is collected was computed elsewhere: how long the import took says nothing of the cases that are left.
+TEST(Spool, AfterCollectingTheTimeLeftIsNotKnown) {
+    const SpooledCampaign campaign;
+    {
+        Process task(campaign.task("1/1"), campaign.folder().path());
+        while (task.running() && campaign.answers() < 20) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        task.signal(SIGKILL);
+        task.wait();
+    }
+    EXPECT_EQ(campaign.collect().code, 1);
+    const auto status = run_program({"status", "collected.db", "--format", "json"}, campaign.folder().path());
+    const auto row = json::parse(status.out)[0];
+    EXPECT_GE(row["completed"].get<int>(), 20);
+    EXPECT_TRUE(row["rate"].is_null()) << status.out;
+    EXPECT_TRUE(row["time_left"].is_null()) << status.out;
+}
+
 TEST(Spool, TasksShareTheWorkAndNothingIsComputedTwice) {
     const SpooledCampaign campaign;
     std::vector<std::unique_ptr<Process>> tasks;

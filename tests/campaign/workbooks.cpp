@@ -103,7 +103,8 @@ TEST_F(Workbooks, KeepWhatNoCellHoldsAsText) {
     const auto book = asked(
         "SELECT 5577006791947779410 AS seed, -9007199254740992 AS exact, 1e999 AS high, -1e999 AS low, '=1+1' AS "
         "formula, "
-        "char(7) || 'x' AS bell, CAST(x'ff41' AS TEXT) AS broken, '' AS empty, 0.1 AS tenth");
+        "char(7) || 'x' AS bell, CAST(x'ff41' AS TEXT) AS broken, '' AS empty, 0.1 AS tenth, "
+        "char(65534) || 'y' || char(65535) AS \"no\uFFFF xml\"");
     const auto& row = book["rows"][1];
     EXPECT_EQ(row["A"], "5577006791947779410");
     EXPECT_EQ(row["B"], -9007199254740992.0);
@@ -115,6 +116,8 @@ TEST_F(Workbooks, KeepWhatNoCellHoldsAsText) {
               "\xEF\xBF\xBD"
               "A");
     EXPECT_EQ(row["I"], 0.1);
+    EXPECT_EQ(row["J"], "\uFFFDy\uFFFD") << "no text of XML";
+    EXPECT_EQ(book["rows"][0]["J"], "no\uFFFD xml");
 }
 
 TEST_F(Workbooks, CutATextThatNoCellHolds) {

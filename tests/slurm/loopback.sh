@@ -147,9 +147,10 @@ host_killed)
     expect_no_crash
     ;;
 node_killed | spreading)
-    seconds=0.5
-    [ $scenario != spreading ] || seconds=spreading
-    campaign c 64 $seconds "$hosts" >c.json
+    # Enough cases that the job is not over before the node is dead, also on a loaded machine.
+    seconds=0.5 cases=160
+    [ $scenario != spreading ] || { seconds=spreading cases=64; }
+    campaign c $cases $seconds "$hosts" >c.json
     job=$(in_three_nodes)
     until_so 60 at_least 24
     batch=$(squeue -h -j "$job" -o %B)
@@ -166,7 +167,7 @@ node_killed | spreading)
     for process in "${there[@]}"; do kill -KILL "$process" 2>/dev/null && killed=$((killed + 1)); done
     [ $killed -ge 3 ] || { echo "only $killed processes ran on $victim"; exit 1; }
     settled_in 240 "$job"
-    expect_the_rows_of_a_run 64 $seconds
+    expect_the_rows_of_a_run $cases $seconds
     expect_no_crash
     ;;
 cancelled)

@@ -267,4 +267,16 @@ TEST(PowderExport, RefusesWhatIsNoDistribution) {
     EXPECT_THAT(refusal("Size (um),Volume Under %\n1,0\n2,100\n", {.shares = "7"}), HasSubstr("must be a column"));
 }
 
+TEST(PowderExport, RefusesSizesOfNoPowder) {
+    for (const auto* sizes : {"1e302,0\n2e302,50\n4e302,100\n", "1,0\n2,50\n1e9,100\n", "1e-9,0\n2,50\n4,100\n"})
+        EXPECT_THAT(refusal("Size (um),Volume Under %\n" + std::string(sizes)), HasSubstr("from 1 nm to 1 m"));
+}
+
+// No export has lines of a hundred thousand numbers, and reading them as all that they might be would take minutes.
+TEST(PowderExport, LooksAtNoLineThatIsTooLong) {
+    std::string line;
+    while (line.size() < 1U << 20U) line += "1,2;3 4\t";
+    EXPECT_THAT(refusal(line + "\n" + line + "\n"), HasSubstr("no table"));
+}
+
 }  // namespace grainsweep::tests::campaign_powder_export_test

@@ -66,6 +66,8 @@ TEST(Halton, SaysWhatCannotBe) {
     EXPECT_THROW((void)ask_design("halton", 17, {{"points", 8}, {"scramble", "braaten_weller_vc2006"}}),
                  std::invalid_argument);
     EXPECT_EQ(ask_design("halton", 40, {{"points", 8}}).size(), 8U);
+    EXPECT_THROW((void)ask_design("halton", 10'000, {{"points", 8}}), std::invalid_argument) << "a minute";
+    EXPECT_EQ(ask_design("halton", 10'000, {{"points", 8}, {"scramble", "none"}}).size(), 8U);
 }
 
 }  // namespace grainsweep::tests::designs_halton_test

@@ -1,8 +1,12 @@
 // The file beside a database that says what its run does: written and read again, and texts that are none.
+#include "sweep/files/processes.hpp"
 #include "sweep/live/now.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -63,6 +67,42 @@ TEST(LiveNow, AFileThatWasNotWrittenLatelySaysNothing) {
     write_now(now_file(database), some_run());
     fs::last_write_time(now_file(database), fs::file_time_type::clock::now() - std::chrono::seconds(11));
     EXPECT_FALSE(read_now(database)) << "its run was killed";
+}
+
+TEST(LiveNow, AFileOfTheFutureALinkAndALargeOneSayNothing) {
+    const Folder folder;
+    const auto database = folder / "x.db", file = now_file(database);
+    write_now(file, some_run());
+    fs::last_write_time(file, fs::file_time_type::clock::now() + std::chrono::hours(1));
+    EXPECT_FALSE(read_now(database)) << "it would say so for an hour";
+    write_now(folder / "other.now", some_run());
+    fs::remove(file);
+    fs::create_symlink(folder / "other.now", file);
+    EXPECT_FALSE(read_now(database));
+    fs::remove(file);
+    folder.write("x.now", text_of(some_run()) + std::string(2U << 20U, '\n'));
+    EXPECT_FALSE(read_now(database));
+    fs::remove(file);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    EXPECT_FALSE(read_now(database)) << "and waits for nobody";
+}
+
+TEST(LiveNow, ARunOfThisHostWhoseProcessHasEndedIsOver) {
+    const Folder folder;
+    const auto database = folder / "x.db";
+    auto run = some_run();
+    run.host = files::own_host();
+    run.process = ::getpid();
+    write_now(now_file(database), run);
+    EXPECT_TRUE(read_now(database));
+    const pid_t ended = ::fork();
+    if (ended == 0) ::_exit(0);
+    ::waitpid(ended, nullptr, 0);
+    for (const std::int64_t process : {std::int64_t{ended}, std::int64_t{-1}, std::int64_t{1} << 40}) {
+        run.process = process;
+        write_now(now_file(database), run);
+        EXPECT_FALSE(read_now(database)) << process;
+    }
 }
 
 TEST(LiveNow, NeverStandsInThePlaceOfTheDatabase) {

@@ -109,6 +109,54 @@ TEST_F(LiveServed, APageOfAnotherOriginMayAskForNothing) {
     EXPECT_EQ(status(own), 400u) << "an empty question, but of the page itself";
 }
 
+// Behind a proxy of a notebook or a cluster: its name, its path, its scheme, and nobody else's.
+TEST_F(LiveServed, AnswersBehindTheProxyThatTheUserNames) {
+    served.emplace(std::vector{folder / "a.db"}, std::nullopt, token,
+                   Proxy{.base_path = "/node/n7/8377/", .hosts = {"hub.example.org"}});
+    for (const auto* path : {"/node/n7/8377/", "/", "/node/n7/8377/data", "/data"}) {
+        for (const auto* host : {"hub.example.org", "hub.example.org:443", "127.0.0.1:8377"}) {
+            auto question = get(path);
+            question.host = host;
+            EXPECT_EQ(status(question), 200u) << path << ' ' << host;
+        }
+    }
+    auto question = get("/");
+    question.host = "evil.example.org";
+    EXPECT_EQ(status(question), 403u);
+    EXPECT_EQ(status(get("/node/n8/8377/data")), 404u);
+    for (const auto& [origin, wanted] : {std::pair{"https://hub.example.org", 400u},
+                                         {"http://hub.example.org:80", 400u},
+                                         {"https://evil.example.org", 403u},
+                                         {"https://hub.example.org.evil", 403u}}) {
+        auto query = post("/node/n7/8377/query");
+        query.origin = origin;
+        EXPECT_EQ(status(query), wanted) << origin;
+    }
+}
+
+// A tab that was reloaded has no token in its address. The script of the refusal finds the one that the tab has kept.
+TEST_F(LiveServed, APageWithoutTokenLeadsATabBackThatHasOne) {
+    auto question = get("/");
+    question.query.clear();
+    const auto seen = answered(question);
+    EXPECT_EQ(seen.status, 403u);
+    EXPECT_NE(seen.body->find("sessionStorage"), std::string::npos);
+    EXPECT_EQ(seen.body->find(token), std::string::npos);
+    EXPECT_NE(seen.policy.find("default-src 'none'; script-src 'sha256-"), std::string::npos);
+}
+
+TEST_F(LiveServed, AReaderWithoutAStreamGetsTheSameEvents) {
+    settle(store, cases[1].question, 1);
+    (void)awaited("event: results");
+    auto question = get("/events");
+    question.query.insert_or_assign("since", "x");
+    const auto stream = opened("x");
+    question.query.emplace("once", "1");
+    const auto seen = answered(question);
+    EXPECT_EQ(seen.type, "text/event-stream");
+    EXPECT_EQ(*seen.body, stream);
+}
+
 TEST_F(LiveServed, OddQuestionsGetASentence) {
     EXPECT_EQ(status(get("/../a.db")), 404u);
     EXPECT_EQ(status(get("/query")), 404u) << "SQL is posted";

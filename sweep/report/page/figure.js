@@ -146,7 +146,7 @@ function variableAxis(variable, numbers) {
     });
   const shown = quantity(variable, numbers);
   const log = variable.log && rangeOf(numbers || variable.values)[0] > 0;
-  const range = variable.high > variable.low ? { min: shown.of(variable.low), max: shown.of(variable.high) } : {};
+  const range = variable.high > variable.low ? { min: shown.of(variable.low), max: shown.of(variable.high) } : aroundOne(numbers || variable.values, shown.of);
   return axis(shown.title, Object.assign({ type: log ? "logarithmic" : "linear" }, range));
 }
 

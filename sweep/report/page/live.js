@@ -1,6 +1,8 @@
 // The page of `grainsweep serve`: the report whose data grows. Results come one by one and are drawn at once; figures that
 // need all of them (moments, indices, models) come with the next data of the whole page.
 const token = new URLSearchParams(location.search).get("token");
+// The token leaves the address, so that it is not in the history and not copied with it. A reload finds it here.
+try { sessionStorage.setItem(`grainsweep ${location.pathname}`, token); history.replaceState(null, "", location.pathname + location.hash); } catch (error) { /* a reader who keeps nothing */ }
 const address = (path, more) => `${path}?${new URLSearchParams({ token, ...more })}`;
 
 async function ask(path, more, body) {
@@ -11,7 +13,10 @@ async function ask(path, more, body) {
 
 // Asks for work and waits for its end.
 async function work(path, more, body) {
-  const begun = await ask(path, more, body);
+  return endOf(await ask(path, more, body));
+}
+
+async function endOf(begun) {
   if (begun.job === undefined) return begun;
   for (;;) {
     await new Promise((go) => setTimeout(go, 300));
@@ -51,7 +56,7 @@ function runningTable(state) {
     return [place ? place.model.places[0].values[place.row] : "", done, spanText(one.seconds), factors, one.attempt, one.host,
       place ? el("button", { type: "button", class: "plain", click: () => selectCase(place.model, place.row) }, one.case.slice(0, 10)) : one.case.slice(0, 10)];
   });
-  const more = state.run.running.length - shown.length;
+  const more = state.run.running.length + state.run.running_more - shown.length;
   return [table([["point", "number"], ["done"], ["for", "number"], ["factors", "text"], ["attempt", "number"], ["host"], ["case"]], rows),
     more > 0 ? el("p", { class: "says" }, `and ${more} more`) : null];
 }
@@ -99,6 +104,7 @@ function partOf({ database, run }) {
 function stateOf(state) {
   const many = data.databases.length > 1, name = many ? `${state.database}: ` : "";
   if (!state.in_place) return el("div", { class: "verdict no" }, `${name}the database was moved or deleted. The page shows what it held.`);
+  if (state.error) return el("div", { class: "verdict no" }, `${name}${state.error}`);
   if (!state.run) return el("div", { class: "card" }, el("p", { class: "says" }, `${name}no run is under way.`), steering(state));
   const { run } = state, share = run.questions > 0 ? run.decided / run.questions : 1, rate = run.seconds > 0 ? run.settled / run.seconds : 0;
   const facts = [`${run.decided} of ${plural(run.questions, "case")}`, rate > 0 ? (rate >= 0.5 ? `${show(rate, 3)}/s` : `${show(60 * rate, 3)}/min`) : null,
@@ -115,11 +121,17 @@ function failuresNow() {
     table([["case"], ["outcome"], ["reason", "text"]], live.failures.slice(-8).reverse().map((one) => [one.case.slice(0, 10), one.outcome.replace("_", " "), one.reason || ""])));
 }
 
+const mostShown = 20;
 function showNow() {
   if (live.panel.contains(document.activeElement) && document.activeElement.tagName !== "BUTTON") return;
+  const many = live.now && live.now.databases.length > mostShown;
+  const rank = (state) => (state.error || !state.in_place ? 0 : state.run ? 1 : 2);  // of many, what needs attention
+  const states = live.now ? (many ? [...live.now.databases].sort((a, b) => rank(a) - rank(b)).slice(0, mostShown) : live.now.databases) : [];
   const away = live.lost ? el("div", { class: "verdict no" }, "The server does not answer. The page shows the last it said and asks again.") : null;
-  const broken = live.now && live.now.error ? el("div", { class: "verdict no" }, live.now.error) : null;
-  live.panel.replaceChildren(...[away, broken, ...(live.now ? live.now.databases.map(stateOf) : []), failuresNow()].filter(Boolean));
+  const told = live.now && live.now.databases.some((one) => one.error);
+  const broken = live.now && live.now.error && !told ? el("div", { class: "verdict no" }, live.now.error) : null;
+  const more = many ? el("p", { class: "says" }, `and ${live.now.databases.length - states.length} more databases`) : null;
+  live.panel.replaceChildren(...[away, broken, ...states.map(stateOf), more, failuresNow()].filter(Boolean));
 }
 
 // ---- results as they come
@@ -226,8 +238,9 @@ document.addEventListener("grainsweep:case", (event) => {
   const show = button("▶ Film", async () => {
     said.textContent = " computing it again, at low priority …";
     try {
-      await work("film", { database: found.database, case: id }, "");
-      said.replaceChildren(" ", el("a", { href: address("film", { database: found.database, case: id }), target: "_blank", rel: "noopener" }, "open it"));
+      const begun = await ask("film", { database: found.database, case: id }, "");
+      await endOf(begun);
+      said.replaceChildren(" ", el("a", { href: begun.film, target: "_blank", rel: "noopener" }, "open it"));
     } catch (error) {
       said.textContent = ` ${error.message}`;
     }
@@ -242,9 +255,57 @@ document.getElementById("page").before(live.panel);
 const consoleOfSql = sqlConsole();
 document.getElementById("page").after(el("main", { class: "beside" }, consoleOfSql));
 
-const events = new EventSource(address("events", { since: data.event }));
-const told = (kind, use) => events.addEventListener(kind, (event) => { live.lost = false; use(JSON.parse(event.data), event.lastEventId); });
-told("results", ({ database, results }, id) => take(database, results, id));
-told("now", (now) => { live.now = now; showNow(); });
-told("page", refresh);
-events.addEventListener("error", () => { live.lost = true; showNow(); });
+// A browser opens six connections to a server, and a stream keeps one. So the tabs share the stream of one of them, which
+// holds a lock; when it is closed, the next one takes the lock. A tab that hears nothing asks by itself.
+const uses = { results: ({ database, results }, id) => take(database, results, id), now: (now) => { live.now = now; showNow(); }, page: refresh };
+const kinds = Object.keys(uses), silence = 5000;
+let last = data.event, heard = 0;
+
+function receive({ kind, text, id }) {
+  if (kind === "lost") { live.lost = true; showNow(); return; }
+  heard = performance.now();
+  live.lost = false;
+  if (kind === "results") {
+    const known = id.split("-")[0] === last.split("-")[0] && numberOf(id) <= numberOf(last);
+    if (known) return;
+    last = id;
+  }
+  uses[kind](JSON.parse(text), id);
+}
+
+async function catchUp() {
+  try {
+    const answer = await fetch(address("events", { since: last, once: 1 }));
+    if (!answer.ok) throw new Error(`the server answers ${answer.status}`);
+    for (const event of (await answer.text()).split("\n\n")) {
+      const field = (name) => (event.split("\n").find((line) => line.startsWith(`${name}: `)) || "").slice(name.length + 2);
+      if (kinds.includes(field("event"))) receive({ kind: field("event"), text: field("data"), id: field("id") });
+    }
+  } catch (error) {
+    receive({ kind: "lost" });
+  }
+}
+
+function openStream(pass) {
+  const events = new EventSource(address("events", { since: last }));
+  for (const kind of kinds)
+    events.addEventListener(kind, (event) => { const told = { kind, text: event.data, id: event.lastEventId }; receive(told); pass(told); });
+  events.addEventListener("error", () => { receive({ kind: "lost" }); pass({ kind: "lost" }); });
+}
+
+async function askAgainAndAgain(pause) {
+  for (;;) {
+    if (performance.now() - heard > pause) await catchUp();
+    await new Promise((go) => setTimeout(go, Math.min(pause, 1000)));
+  }
+}
+
+if (navigator.locks && window.BroadcastChannel) {
+  const name = `grainsweep ${location.pathname} ${data.event.split("-")[0]}`, channel = new BroadcastChannel(name);
+  channel.onmessage = (event) => receive(event.data);
+  navigator.locks.request(name, () => new Promise(() => openStream((told) => channel.postMessage(told))));
+  heard = performance.now() - silence + 300;  // soon, if this tab has no stream
+  askAgainAndAgain(silence);
+} else {
+  askAgainAndAgain(900);  // no secure context: a proxy without https
+}

@@ -40,6 +40,12 @@ function rangeOf(numbers) {
   return low <= high ? [low, high] : [0, 1];
 }
 
+// Ends of an axis for numbers that are all the same: the library would take one below and above, whatever they are.
+function aroundOne(numbers, of) {
+  const [low, high] = rangeOf(numbers), room = 0.1 * Math.abs(low) || 1;
+  return low === high ? { min: of(low - room), max: of(high + room) } : {};
+}
+
 // Units with the prefix that suits the largest number: 0.0036 m is drawn as 3.6 mm.
 const prefixes = { "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
 const prefixed = /^(m|s|N|Pa|J|W|Hz)(\/[A-Za-z0-9^]+)?$/;

@@ -23,7 +23,7 @@ function histogram(response, other) {
       data: { labels: centres, datasets: [{ data: own.counts.map((n, i) => ({ x: centres[i], y: height(own, n) })), backgroundColor: colour("one"), barPercentage: 1, categoryPercentage: 0.94, grouped: true }]
         .concat(second ? [{ type: "line", data: steps, borderColor: colour("two"), borderWidth: 2, pointRadius: 0, pointHitRadius: 0 }] : []) },
       options: {
-        scales: { x: axis(shown.title, high > low ? { type: "linear", min: shown.of(low), max: shown.of(high), offset: false } : { type: "linear", offset: true }),
+        scales: { x: axis(shown.title, high > low ? { type: "linear", min: shown.of(low), max: shown.of(high), offset: false } : Object.assign({ type: "linear", offset: false }, aroundOne([low], shown.of))),
           y: axis(second ? "share of the cases" : "cases", { beginAtZero: true }) },
         plugins: { tooltip: { filter: (item) => item.datasetIndex === 0, callbacks: {
           title: (items) => (items.length > 0 ? `${shown.says(own.low + items[0].dataIndex * own.width)} to ${shown.says(own.low + (items[0].dataIndex + 1) * own.width)}` : ""),

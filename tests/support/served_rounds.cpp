@@ -1,0 +1,120 @@
+#include "tests/support/served_rounds.hpp"
+
+#include "tests/support/live_server.hpp"
+#include "tests/support/process.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace grainsweep::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::json;
+using namespace std::chrono_literals;
+
+/// As another program sees the file; -1 where it cannot be read.
+std::int64_t stored(const fs::path& file) {
+    sqlite3* db = nullptr;
+    sqlite3_stmt* rows = nullptr;
+    std::int64_t count = -1;
+    if (sqlite3_open_v2(file.c_str(), &db, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK &&
+        sqlite3_busy_timeout(db, 20000) == SQLITE_OK &&
+        sqlite3_prepare_v2(db, "SELECT count(outcome) FROM sim_case WHERE outcome <> 'abandoned'", -1, &rows,
+                           nullptr) == SQLITE_OK &&
+        sqlite3_step(rows) == SQLITE_ROW)
+        count = sqlite3_column_int64(rows, 0);
+    sqlite3_finalize(rows);
+    sqlite3_close(db);
+    return count;
+}
+
+/// Returns the cases that are settled by the data of the page and the results that came since; -1: no answer.
+std::int64_t shown(const LiveServer& server) {
+    const auto seen = server.get("/data");
+    if (seen.status != 200) return -1;
+    const auto data = Json::parse(seen.body);
+    std::int64_t count = 0;
+    for (const auto& campaign : data["campaigns"])
+        for (const auto& [outcome, cases] :
+             campaign["outcomes"].get<std::vector<std::pair<std::string, std::int64_t>>>())
+            if (outcome != "not yet" && outcome != "abandoned") count += cases;
+    // Results that the data do not cover come as events.
+    const auto later = server.get("/events", fmt::format("once=1&since={}", data["event"].get<std::string>()));
+    for (auto at = later.body.find("\"case\":"); at != std::string::npos; at = later.body.find("\"case\":", at + 1))
+        if (later.body.rfind("event: ", at) == later.body.rfind("event: results", at)) ++count;
+    return count;
+}
+
+/// Files that were removed and that the process still has open.
+int removed_and_open(pid_t process) {
+    int count = 0;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(fmt::format("/proc/{}/fd", process), error)) {
+        const auto name = fs::read_symlink(entry.path(), error).string();
+        count += name.find(".db") != std::string::npos && name.ends_with("(deleted)") ? 1 : 0;
+    }
+    return count;
+}
+
+}  // namespace
+
+ServedRounds served_rounds(const Folder& folder, int most, std::chrono::seconds at_most) {
+    ServedRounds rounds;
+    const auto file = folder / "a.db";
+    const auto begun = Clock::now();
+    const auto run_it = program_command({"run", "a.json", "--quiet", "-j", "1"});
+    const auto first = run_program({"run", "a.json", "--quiet", "-j", "1", "--max-cases", "2"}, folder.path());
+    if (first.code != 1) return rounds.complaint = "the first run: " + first.err, rounds;
+    LiveServer server(folder, "a.db");
+    const auto complain = [&](const std::string& what) {
+        if (rounds.complaint.empty()) rounds.complaint = fmt::format("round {}: {}", rounds.done, what);
+    };
+    while (rounds.done < most && Clock::now() - begun < at_most && rounds.complaint.empty()) {
+        const auto before = stored(file);
+        {
+            Process run(run_it, folder.path());
+            for (const auto last = Clock::now() + 20s;
+                 run.running() && stored(file) < before + 5 && Clock::now() < last;)
+                std::this_thread::sleep_for(5ms);
+            const bool kills = rounds.done % 2 == 0;
+            run.signal(kills ? SIGKILL : SIGINT);
+            ++(kills ? rounds.kills : rounds.stops);
+            const auto ended = run.wait();
+            if (!kills && ended.code != 130 && ended.code != 0)
+                complain(fmt::format("Ctrl-C ended it with {}", ended.code));
+        }
+        if (run_program({"status", "a.db"}, folder.path()).code != 0) complain("status");
+        if (rounds.done % 3 == 0 && run_program({"verify", "a.db"}, folder.path()).code != 0)
+            complain("verify finds damage");
+        if (rounds.done % 3 == 1) {
+            sqlite3* db = nullptr;
+            sqlite3_open(file.c_str(), &db);
+            sqlite3_busy_timeout(db, 20000);
+            if (sqlite3_exec(db, "VACUUM", nullptr, nullptr, nullptr) == SQLITE_OK) ++rounds.vacuums;
+            sqlite3_close(db);
+        }
+        const auto now = stored(file);
+        if (now < before + 1) complain(fmt::format("{} cases are stored, {} were", now, before));
+        const auto start = Clock::now();
+        while (shown(server) != now && Clock::now() - start < 10s) std::this_thread::sleep_for(20ms);
+        const auto seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        rounds.slowest = std::max(rounds.slowest, seconds);
+        if (seconds >= 10) complain(fmt::format("the page shows {} cases, {} are stored", shown(server), now));
+        rounds.logs_lost += removed_and_open(server.process().pid());
+        if (rounds.logs_lost > 0) complain("the server reads a log that was removed");
+        ++rounds.done;
+    }
+    rounds.settled = stored(file);
+    server.process().signal(SIGINT);
+    if (server.process().wait().code != 0) complain("the server did not end with 0");
+    return rounds;
+}
+
+}  // namespace grainsweep::tests
