@@ -7,11 +7,11 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t fewest_seen = 120, fewest_farthest = 32, share_of_farthest = 16;
-constexpr double largest_shape = 0.5, allowance = 3.5;
+constexpr double largest_shape = 0.5, allowance = 3.5, least_endless = 0.05;
 
 }  // namespace
 
-std::optional<Tail> Tail::of(std::span<const double> sorted, bool upper, std::size_t together) {
+std::optional<Tail> Tail::of(std::span<const double> sorted, bool upper, std::size_t together, bool endless) {
     const std::size_t n = sorted.size();
     if (n < fewest_seen) return std::nullopt;
     const std::size_t m = std::min(std::max({n / share_of_farthest, fewest_farthest, strata * together}), n / 2);
@@ -26,6 +26,7 @@ std::optional<Tail> Tail::of(std::span<const double> sorted, bool upper, std::si
     if (!(mean > 2 * weighted)) return std::nullopt;
     Tail tail;
     tail.shape_ = 2 - mean / (mean - 2 * weighted) + allowance / std::pow(static_cast<double>(m), 0.75);
+    if (endless) tail.shape_ = std::max(tail.shape_, least_endless);
     if (!(tail.shape_ > 0)) return std::nullopt;
     tail.shape_ = std::min(tail.shape_, largest_shape);
     const double scale = (1 - tail.shape_) * mean;

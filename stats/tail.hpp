@@ -29,7 +29,9 @@ class Tail {
 public:
     /// Returns the upper or lower tail of ascending values of which `together` (R) share a stratum; none of fewer than
     /// 120 values, if the farthest are all equal, or if they seem to end (xi <= 0).
-    [[nodiscard]] static std::optional<Tail> of(std::span<const double> sorted, bool upper, std::size_t together);
+    /// `endless`: something else says that they do not end, and xi is 0.05 at least.
+    [[nodiscard]] static std::optional<Tail> of(std::span<const double> sorted, bool upper, std::size_t together,
+                                                bool endless = false);
 
     /// Returns the variance above. `f` is called at places of the tail, whole strata at a time.
     template <class Function>

@@ -82,16 +82,21 @@ double normal_variance(const RawMoments& gradient, double m, double s) {
     return c1 * c1 + 2 * c2 * c2 + 15 * c3 * c3 + 96 * c4 * c4 + 6 * c1 * c3 + 24 * c2 * c4;
 }
 
-BeyondCases::BeyondCases(std::span<const double> z, std::size_t sequences) : cases_(z.size()) {
-    std::vector<double> sorted(z.begin(), z.end());
-    std::ranges::sort(sorted);
+BeyondCases::BeyondCases(std::span<const double> z, std::size_t sequences)
+    : sorted_(z.begin(), z.end()), sequences_(sequences) {
+    std::ranges::sort(sorted_);
+    find_tails(false);
+}
+
+void BeyondCases::find_tails(bool endless) {
     for (const bool upper : {false, true})
-        if (auto tail = Tail::of(sorted, upper, sequences)) tails_.push_back(std::move(*tail));
+        if (auto tail = Tail::of(sorted_, upper, sequences_, endless)) tails_.push_back(std::move(*tail));
 }
 
 void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v) {
     const auto orders = orders_of(x);
     far_out_ = far_out_ || reaches_far_out(x, orders, q);
+    if (far_out_ && tails_.empty()) find_tails(true);
     for (const std::size_t depth : {outermost, outermost / 2, 2 * outermost}) {
         const auto count = std::min<std::size_t>(depth, static_cast<std::size_t>(x.rows()));
         std::vector<std::vector<Eigen::Index>> ends;
@@ -107,7 +112,7 @@ void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eige
 
 double BeyondCases::half_width(const RawMoments& gradient) const {
     double by_edges = 0, by_tails = 0;
-    const auto n = static_cast<double>(cases_);
+    const auto n = static_cast<double>(sorted_.size());
     for (const Edge& edge : edges_) {
         double by_noise = 0;
         for (const double m : edge.predicted) by_noise += normal_variance(gradient, m, edge.noise) / (n * n);

@@ -1,11 +1,13 @@
 // What a model of the response as control variate (stats/assisted_moments.hpp) says beyond the outermost cases, and its
-// error in the moments E[z^p].
+// error in the moments E[z^p]. With the closure g_p = E[z^p | m, v] = m, m^2 + v, m^3 + 3 m v, m^4 + 6 m^2 v + 3 v^2 of
+// a normal z of mean m and variance v:
 //
-//   closure   g_p = E[z^p | m, v] = m, m^2 + v, m^3 + 3 m v, m^4 + 6 m^2 v + 3 v^2      (normal z of mean m, variance
-//   v) edges     |gradient . sum over the 4 outermost cases of an end of a feature of (z^p - g_p)/n|, g_p from all
-//   others tails     u times the error that tails without a visible end give a sample (stats/tail.hpp),
-//             u = 3 times the missed part of the 4 cases: rms of z - m over rms of z, without noise; at least 0.3 if
-//             the points of the integral reach farther beyond an outermost case than that is from the eighth
+// - Of each end of a feature |gradient . sum over the 4 outermost cases of (z^p - g_p)/n|, g_p predicted from all
+// others.
+// - u times the error that tails without a visible end give a sample (stats/tail.hpp). u is three times the missed part
+//   of the outermost 2, 4 or 8 cases, the largest: rms of z - m over rms of z, without noise. If the points of the
+//   integral reach farther beyond an outermost case than that is from the eighth, u is 0.3 at least, and tails have no
+//   end either.
 #pragma once
 
 #include "stats/moment_statistics.hpp"
@@ -55,7 +57,10 @@ private:
     static std::vector<Edge> edges_of(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& ends,
                                       double v);
 
-    std::size_t cases_;
+    void find_tails(bool endless);
+
+    std::vector<double> sorted_;
+    std::size_t sequences_;
     std::vector<Tail> tails_;
     std::vector<Edge> edges_;
     double unforeseen_ = 0;
