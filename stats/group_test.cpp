@@ -12,7 +12,7 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t permutations = 999, most_points = 1000;
-constexpr double tie = 1 - 1e-9;  // of a statistic that another order of summation gives
+constexpr double tie = 1e-9;  // of a standardised statistic, by another order of summation
 constexpr std::uint64_t seed = 0x67726F757073ULL;
 
 using Labels = std::vector<bool>;
@@ -104,16 +104,15 @@ private:
     std::vector<std::vector<std::size_t>> orders_;  ///< of the points along each feature
 };
 
-/// Share of the values that are at least as large, for each of them.
-std::vector<double> shares_above(const std::vector<double>& values) {
-    auto sorted = values;
-    std::ranges::sort(sorted);
-    std::vector<double> shares;
-    for (const double x : values) {
-        const auto from = std::ranges::lower_bound(sorted, x * tie);
-        shares.push_back(static_cast<double>(sorted.end() - from) / static_cast<double>(values.size()));
-    }
-    return shares;
+/// Values less their mean, divided by their standard deviation; 0 if all are equal.
+std::vector<double> standardised(std::vector<double> values) {
+    const auto n = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    double squares = 0;
+    for (const double x : values) squares += (x - mean) * (x - mean);
+    const double sd = std::sqrt(squares / n);
+    for (double& x : values) x = sd > 0 ? (x - mean) / sd : 0;
+    return values;
 }
 
 }  // namespace
@@ -146,18 +145,18 @@ GroupTest compare_groups(Rows points, const std::vector<bool>& in_first, std::sp
         const auto all = statistics.of(labels);
         for (std::size_t k = 0; k <= d; ++k) of_feature[k].push_back(all[k]);
     }
-    std::vector<double> smallest(permutations + 1, 1), own;
-    for (const auto& values : of_feature) {
-        const auto shares = shares_above(values);
-        own.push_back(shares.front());
-        for (std::size_t b = 0; b < shares.size(); ++b) smallest[b] = std::min(smallest[b], shares[b]);
+    std::vector<double> largest(permutations + 1, 0), own;
+    for (auto& values : of_feature) {
+        const auto z = standardised(std::move(values));
+        own.push_back(z.front());
+        for (std::size_t b = 0; b < z.size(); ++b) largest[b] = std::max(largest[b], z[b]);
     }
-    const auto corrected = [&](double p) {
-        return static_cast<double>(std::ranges::count_if(smallest, [&](double x) { return x <= p; })) /
-               static_cast<double>(smallest.size());
+    const auto share_above = [&](double z) {
+        return static_cast<double>(std::ranges::count_if(largest, [&](double x) { return x >= z - tie; })) /
+               static_cast<double>(largest.size());
     };
-    test.p_value = corrected(smallest.front());
-    for (std::size_t j = 0; j < d; ++j) test.p_of_feature[j] = corrected(own[j]);
+    test.p_value = share_above(largest.front());
+    for (std::size_t j = 0; j < d; ++j) test.p_of_feature[j] = share_above(own[j]);
     return test;
 }
 

@@ -4,9 +4,9 @@
 //   T_j = 2 integral (F(x_j) - G(x_j))^2 dx_j       the same of feature j alone, F and G the two empirical functions
 //
 // X, Y: points of the two groups, features scaled to their box. If the group does not depend on the features, every
-// assignment of the labels to the points is equally likely. The p value of each T is its rank among 999 permutations of
-// the labels. The smallest of these p values is itself compared with the smallest of each permutation, so that several
-// features are no repeated look (Westfall & Young 1993, section 2.3.3).
+// assignment of the labels to the points is equally likely. Each T is standardised by its mean and standard deviation
+// over 999 permutations of the labels. The p value of a T is the share of permutations whose largest T is at least as
+// large, so that several features are no repeated look (Westfall & Young 1993, section 2.3.4).
 #pragma once
 
 #include "stats/response_model.hpp"

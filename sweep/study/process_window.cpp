@@ -259,10 +259,8 @@ void say_what_failed(Window& window, const ModelCases& cases) {
     if (cases.failed.empty()) return;
     window.notes.push_back(
         fmt::format("{}; in {:.1f} % of {} a case has an answer with a probability below {:.6g}, where no setting is "
-                    "counted or recommended; at the ends of the 95 % interval of this probability the share where the "
-                    "condition holds is {:.1f} and {:.1f} %",
-                    failed_text(cases), 100 * window.share_failed, share_of(cases.factors), 1 - window.risk,
-                    100 * window.share_low, 100 * window.share_high));
+                    "counted or recommended",
+                    failed_text(cases), 100 * window.share_failed, share_of(cases.factors), 1 - window.risk));
     for (const auto& test : window.answers->tests(cases)) window.notes.push_back(test.text());
     if (const auto& chosen = window.best ? window.best : window.surest)
         window.notes.push_back(fmt::format(

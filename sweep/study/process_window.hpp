@@ -20,8 +20,9 @@
 // The cases of a batch differ: by at least a tenth of the range of a searched factor, or as much as is possible with
 // half the gain of the best case, at least a fortieth.
 //
-// The share of the box has an error of counting and one of the model of failures. The latter is half the difference of
-// the shares at the two ends of the 95 % interval of the probability of an answer, divided by 1.96.
+// The 95 % half-width of the share of the box has three parts in quadrature: of counting, of every model of an
+// observable, and of the model of failures. The last is half the difference of the shares at the two ends of the 95 %
+// interval of the probability of an answer.
 //
 // For factors with a distribution, the box is their range (stats::Distribution::range) and the points are quantiles, so
 // a share of points is a probability. No random numbers are used: the same cases give the same window.
