@@ -19,11 +19,11 @@ void require_table(BraatenWellerTable table, std::size_t dimensions) {
                                     std::to_string(dimensions) + "; use \"random\"");
 }
 
-/// Random permutations of 10,000 factors would take a minute for each sequence.
+/// The tables of digits of 10,000 factors would take a minute for each sequence.
 void require_few_factors(std::size_t dimensions) {
     constexpr std::size_t most = 1000;
     if (dimensions > most)
-        throw std::invalid_argument("random scrambling serves " + std::to_string(most) + " factors, not " +
+        throw std::invalid_argument("halton serves " + std::to_string(most) + " factors, not " +
                                     std::to_string(dimensions) + R"(; use "sobol", "latin_hypercube" or "random")");
 }
 
@@ -32,7 +32,7 @@ class Inverses {
 public:
     explicit Inverses(const DesignRequest& request) : scramble_(request.word("scramble")), seed_(request.seed) {
         if (scramble_ == "braaten_weller") require_table(BraatenWellerTable::original, request.dimensions());
-        if (scramble_ == "random") require_few_factors(request.dimensions());
+        require_few_factors(request.dimensions());
         if (scramble_ == "braaten_weller_vc2006") require_table(BraatenWellerTable::vc2006, request.dimensions());
         bases_ = primes(request.dimensions());
     }
@@ -79,14 +79,14 @@ DesignInfo halton_design() {
             "factors at 100 points (star discrepancy, smaller is more even): scramble 'random' 0.079, 'none' 0.117, "
             "'braaten_weller' 0.144 (sobol 0.064, random points 0.17). With 8 random sequences every statistic has "
             "an honest error bar, and mean, sd and kurtosis of a smooth response are known to 1 % at about 2400 "
-            "points.",
+            "points. It serves 1000 factors at most.",
         .options =
             {points_option("number of points, all sequences together"),
              {.name = "scramble",
               .meaning =
                   "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "
                   "braaten_weller_vc2006: the table of Vandewoestyne & Cools 2006 (16 factors); "
-                  "random: an independent permutation per digit, from the campaign's seed (1000 factors at most)",
+                  "random: an independent permutation per digit, from the campaign's seed",
               .kind = OptionSpec::Kind::word,
               .default_value = std::string("random"),
               .maximum = 1,

@@ -139,7 +139,7 @@ bool GrowingPage::renew(std::unique_lock<std::mutex>& lock, const std::stop_toke
 }
 
 void GrowingPage::keep_up(const std::stop_token& stop) {
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);  // of this thread alone
+    bool lowered = false;
     std::unique_lock lock(mutex_);
     auto last = Clock::now() - std::chrono::hours(1);
     while (!stop.stop_requested()) {
@@ -161,6 +161,8 @@ void GrowingPage::keep_up(const std::stop_token& stop) {
         spent_ += last_seconds_;
         last = Clock::now();
         publish();
+        if (!std::exchange(lowered, true))  // the first figures are waited for; of this thread alone
+            ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
         wake_.notify_all();
     }
 }

@@ -422,9 +422,9 @@ HttpReply Served::steer(const HttpQuestion& question, std::string_view path) {
             return refused(409, "the run has ended");
         return json({{"stopping", true}});
     }
-    if (runs || runner_.running()) return refused(409, "a run is under way; stop it first");
     const auto* config = config_of(question);
     if (config == nullptr) return refused(404, "there is no such campaign file");
+    if (runs || runner_.running()) return refused(409, "a run is under way; stop it first");
     std::vector<std::string> arguments = {"run", fs::absolute(*config).string(), "--db", file.string()};
     if (path == "/again") {
         const auto outcome = argument(question, "outcome");

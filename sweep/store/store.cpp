@@ -133,7 +133,6 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     const auto seen = static_cast<std::size_t>(schema_version(db, file));
     const bool unprotected = !has_checksums(db);
     const bool views_as_written = damaged_views(db).empty();
-    if (unprotected && seen > 0) refuse_impossible(db, file);
     for (const auto migration : migrations.subspan(seen)) db.execute(migration);
     db.execute(schema_views());
     // A migration that changes data with a checksum renews the checksum itself. Renewing it here would hide damage.
@@ -223,6 +222,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     const bool as_remembered = !pages_then.empty();
     if (!empty) check_tables(db, file);
     if (!empty && !as_remembered) check_structure(db, file);
+    if (!empty && !has_checksums(db)) refuse_impossible(db, file);
     if (empty) {
         Transaction transaction(db);
         migrate(db, file);

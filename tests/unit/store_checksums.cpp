@@ -244,7 +244,10 @@ TEST_F(StoreChecksums, AFileFromBeforeIsProtectedFromTheNextRunOn) {
         EXPECT_EQ(dump_of(store), whole);
         EXPECT_TRUE(store.verify().empty());
     }
-    { const Store store(file, Store::Mode::create); }
+    {
+        Store store(file, Store::Mode::create);
+        (void)store.enrol(asked, cases, here());
+    }
     {
         const Store store(file, Store::Mode::read);
         EXPECT_TRUE(store.has_checksums());

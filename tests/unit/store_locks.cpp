@@ -56,11 +56,13 @@ TEST_F(StoreLocks, AReaderKeepsThemWhileOthersOfItsProcessComeAndGo) {
     {
         Store writer(file, Store::Mode::create);
         EXPECT_THROW(Store(file, Store::Mode::create), BrokenWorld) << "one writer";
+        (void)writer.enrol(asked, cases, here());
         settle(writer, cases[1].question, 1);
         expect_that_others_see_us();
     }
     expect_that_others_see_us();
     Store resumed(file, Store::Mode::create);
+    (void)resumed.enrol(asked, cases, here());
     settle(resumed, cases[2].question, 1);
     EXPECT_EQ(only_cell(reader, "SELECT count(outcome) FROM sim_case"), "3");
     EXPECT_EQ(run_program({"verify", "a.db"}, folder.path()).code, 0);
