@@ -176,7 +176,7 @@ bool only_zero_and_one(std::span<const double> values) {
 
 namespace {
 
-std::vector<Prediction> predictions_of(const ProbabilityModel::State& state, Rows points, bool with_latent) {
+std::vector<Prediction> predicted_by_parts(const ProbabilityModel::State& state, Rows points, bool with_latent) {
     const Eigen::MatrixXd x = place_in_box(points, state.low, state.high);
     std::vector<Prediction> result;
     for (Eigen::Index from = 0; from < x.rows(); from += places_at_once) {
@@ -189,11 +189,11 @@ std::vector<Prediction> predictions_of(const ProbabilityModel::State& state, Row
 }  // namespace
 
 std::vector<Prediction> ProbabilityModel::predict(Rows points) const {
-    return predictions_of(*state_, points, true);
+    return predicted_by_parts(*state_, points, true);
 }
 
 std::vector<Prediction> ProbabilityModel::with_errors(Rows points) const {
-    return predictions_of(*state_, points, false);
+    return predicted_by_parts(*state_, points, false);
 }
 
 std::vector<double> ProbabilityModel::probabilities(Rows points) const {

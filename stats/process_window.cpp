@@ -70,7 +70,11 @@ SampledErrors::SampledErrors(std::span<const double> freedom, std::span<const st
         if (k < scores.size() && scores[k].size() >= fewest_scores) sorted[k] = scores[k];
         std::ranges::sort(sorted[k]);
         const double f = freedom[k];
-        widest_.push_back(std::isfinite(f) ? std::sqrt(f / (2 * boost::math::gamma_p_inv(f / 2, narrowest_share))) : 1);
+        const auto ratio = [&](double share) {
+            return std::isfinite(f) ? std::sqrt(f / (2 * boost::math::gamma_p_inv(f / 2, share))) : 1;
+        };
+        widest_.push_back(ratio(narrowest_share));
+        narrowest_.push_back(ratio(1 - narrowest_share));
     }
     SobolSequence sequence(models_);
     constexpr double cells = 0x1p64;

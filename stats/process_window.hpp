@@ -55,6 +55,8 @@ public:
     [[nodiscard]] std::size_t points() const;
     /// Returns sqrt(f/q) of the header, by which a local scatter may be larger than its estimate.
     [[nodiscard]] double widest(std::size_t model) const { return widest_[model]; }
+    /// Returns the same with the 90 % quantile: by how little a local scatter may be.
+    [[nodiscard]] double narrowest(std::size_t model) const { return narrowest_[model]; }
     /// Returns one error per model at an integration point.
     [[nodiscard]] std::span<const double> at(std::size_t point) const {
         return std::span(errors_).subspan(point * models_, models_);
@@ -63,7 +65,7 @@ public:
 private:
     std::size_t models_;
     std::vector<double> errors_;  ///< (points, models)
-    std::vector<double> widest_;
+    std::vector<double> widest_, narrowest_;
 };
 
 /// Returns the probability that a condition holds at each point: predictions[k][i] of model k at point i. Throws

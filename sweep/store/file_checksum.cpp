@@ -49,7 +49,7 @@ PageHashes hashes_of_file(const Connection& db) {
     return hashes;
 }
 
-std::uint64_t sum_of(const PageHashes& hashes) {
+std::uint64_t sum_of_pages(const PageHashes& hashes) {
     return std::accumulate(hashes.begin(), hashes.end(), std::uint64_t{0});
 }
 
@@ -91,7 +91,7 @@ PageHashes pages_as_remembered(const Connection& db, const std::filesystem::path
     auto hashes = hashes_of_file(db);
     auto rows = db.ask("SELECT pages, checksum FROM file_checksum");
     const bool same = rows.next() && std::cmp_equal(rows.get<std::int64_t>(0), hashes.size()) &&
-                      static_cast<std::uint64_t>(rows.get<std::int64_t>(1)) == sum_of(hashes);
+                      static_cast<std::uint64_t>(rows.get<std::int64_t>(1)) == sum_of_pages(hashes);
     return same ? hashes : PageHashes();
 }
 
@@ -114,7 +114,7 @@ void remember_file(Connection& db, const PageHashes& then, const FileChecks& che
     const bool little = !then.empty() && differ_only_in(db, checks.tables, then, now);
     if (!(little ? checks.tables_are_sound() : checks.all_is_sound())) return;
     db.run("UPDATE file_checksum SET pages = ?, checksum = ?", static_cast<std::int64_t>(now.size()),
-           static_cast<std::int64_t>(sum_of(now)));
+           static_cast<std::int64_t>(sum_of_pages(now)));
 }
 
 }  // namespace grainsweep::store

@@ -79,7 +79,7 @@ std::vector<ComputedSetting> computed_settings(const ModelCases& cases, std::spa
 }
 
 /// Returns at most points_of_front of the indices, the first and the last among them.
-std::vector<std::size_t> thinned(std::span<const std::size_t> front) {
+std::vector<std::size_t> thinned_front(std::span<const std::size_t> front) {
     const auto shown = std::min(front.size(), points_of_front);
     std::vector<std::size_t> chosen;
     for (std::size_t k = 0; k < shown; ++k)
@@ -89,7 +89,7 @@ std::vector<std::size_t> thinned(std::span<const std::size_t> front) {
 
 std::vector<std::size_t> front_of(std::span<const double> first, std::span<const double> second, const Window& window,
                                   const WindowRequest& request) {
-    return thinned(stats::trade_off_front(first, request.maximise, second, window.against_maximised));
+    return thinned_front(stats::trade_off_front(first, request.maximise, second, window.against_maximised));
 }
 
 /// Trade-off of the objective and the first other observable that the condition bounds from one side: of the computed

@@ -17,9 +17,10 @@ bool is_finite(const Judgement& one) {
                                [](const auto& p) { return std::isfinite(p.mean) && std::isfinite(p.mean_error); });
 }
 
-/// The prediction if the mean is known to be `end`, without the caution of a promise.
-stats::Prediction known_mean(stats::Prediction p, double end) {
+/// The prediction if the mean is known to be `end`, with the least scatter: the share may be so large.
+stats::Prediction known_mean(stats::Prediction p, double end, double narrowest) {
     p.mean_error = 0;
+    p.scatter *= narrowest;
     p.even_scatter = std::numeric_limits<double>::quiet_NaN();
     p.mean = end;
     if (p.latent) p.latent = {stats::normal_quantile(std::clamp(end, 1e-12, 1 - 1e-12)), 0};
@@ -181,7 +182,7 @@ void WindowQuestion::add_ends(Judgement& one) const {
     for (std::size_t k = 0; k < one.predictions.size(); ++k) {
         const auto predicted = one.predictions[k];
         for (const double end : {predicted.mean_low(), predicted.mean_high()}) {
-            one.predictions[k] = known_mean(predicted, end);
+            one.predictions[k] = known_mean(predicted, end, errors_->narrowest(k));
             one.at_ends.push_back(known ? one.answers * probability(one) : 0);
         }
         one.predictions[k] = predicted;

@@ -22,7 +22,7 @@ constexpr int exit_code_of(int signal) {
     return signal == SIGINT ? 130 : 75;
 }
 
-void answer(int signal) {
+void note_signal(int signal) {
     const int before = errno;
     if (attending > 0) {
         const auto byte = static_cast<unsigned char>(signal);
@@ -42,7 +42,7 @@ void answer(int signal) {
 void answer_end_requests() {
     if (pipe_ends[0] < 0 && ::pipe2(pipe_ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
     struct sigaction action {};
-    action.sa_handler = answer;
+    action.sa_handler = note_signal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     for (const int signal : signals_answered) ::sigaction(signal, &action, nullptr);

@@ -133,7 +133,7 @@ void count_assisted(const JudgedResponse& response, std::int64_t n) {
     remember_measured("assisted_moments", {"response", "cases", "mean", "sd", "g1", "kurtosis"}, {row}, 2);
 }
 
-/// Share of campaigns that stop with a gate farther from the truth than the tolerance, of those that stop.
+/// Share of campaigns that stop with a gate farther from the truth than the tolerance, and of those that stop at all.
 std::string count_stops(const JudgedResponse& response, std::int64_t block, double tolerance) {
     constexpr std::int64_t most = 4096;
     std::uint64_t stopped = 0, wrong = 0;
@@ -158,8 +158,11 @@ std::string count_stops(const JudgedResponse& response, std::int64_t block, doub
                 static_cast<double>(stopped) / static_cast<double>(campaigns()),
                 static_cast<double>(wrong) / static_cast<double>(campaigns()));
     std::fflush(stdout);
-    if (stopped == 0) return "none stops";
-    return fmt::format("{:.3g} %", 100 * static_cast<double>(wrong) / static_cast<double>(stopped));
+    const auto percent = [](std::uint64_t count) {
+        return 100 * static_cast<double>(count) / static_cast<double>(campaigns());
+    };
+    return stopped == campaigns() ? fmt::format("{:.3g} %", percent(wrong))
+                                  : fmt::format("{:.3g} % of {:.3g} %", percent(wrong), percent(stopped));
 }
 
 TEST(SlowCoverage, OfPlainMoments) {
