@@ -5,11 +5,14 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/workers/end_requests.hpp"
 #include "sweep/workers/job_cores.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -18,6 +21,7 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 
 namespace {
 
@@ -53,10 +57,17 @@ void occupy_standard_descriptors() {
     }
 }
 
+/// Whether a command answers requests to end with its own exit codes, from its first moment.
+bool runs_cases(std::string_view command) {
+    constexpr std::array<std::string_view, 5> commands = {"run", "calibrate", "accuracy", "work", "collect"};
+    return std::ranges::count(commands, command) > 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     occupy_standard_descriptors();
+    if (argc > 1 && runs_cases(argv[1])) workers::answer_end_requests();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     stats::allow_fits_at_once(workers::job_cores());
     if (const auto why = unsupported_processor(); !why.empty()) return complain(broken_world, why);

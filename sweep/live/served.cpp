@@ -424,7 +424,6 @@ HttpReply Served::steer(const HttpQuestion& question, std::string_view path) {
     }
     const auto* config = config_of(question);
     if (config == nullptr) return refused(404, "there is no such campaign file");
-    if (runs || runner_.running()) return refused(409, "a run is under way; stop it first");
     std::vector<std::string> arguments = {"run", fs::absolute(*config).string(), "--db", file.string()};
     if (path == "/again") {
         const auto outcome = argument(question, "outcome");
@@ -439,6 +438,7 @@ HttpReply Served::steer(const HttpQuestion& question, std::string_view path) {
             return refused(400, "the number of points must be a whole number, at least 1");
         arguments.insert(arguments.end(), {"--points", std::string(points)});
     }
+    if (runs || runner_.running()) return refused(409, "a run is under way; stop it first");
     if (!runner_.start(arguments, file)) return refused(503, "the run cannot be started");
     return json({{"started", true}});
 }

@@ -4,10 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <string>
 
 namespace grainsweep::tests::opened_files_test {
@@ -38,15 +39,21 @@ const std::map<std::string, std::string>& openers() {
     return known;
 }
 
+constexpr std::array words_that_open = {"std::ifstream ", "std::ofstream ", "std::fstream ", "fopen(",
+                                        "O_RDONLY",       "O_RDWR",         "O_WRONLY"};
+
 TEST(OpenedFiles, NobodyButSqliteOpensADatabase) {
-    static const std::regex opens(R"(std::(i|o)?fstream [a-z]|\bfopen\(|\bO_(RDONLY|RDWR|WRONLY)\b)");
+    const auto opens = [](const std::string& line) {
+        return std::ranges::any_of(words_that_open,
+                                   [&](const char* word) { return line.find(word) != std::string::npos; });
+    };
     std::map<std::string, int> found;
     for (const auto& entry : fs::recursive_directory_iterator(source("sweep"))) {
         if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
         const auto name = fs::relative(entry.path(), source()).string();
         std::ifstream stream(entry.path());
         for (std::string line; std::getline(stream, line);) {
-            if (std::regex_search(line, opens)) ++found[name];
+            if (opens(line)) ++found[name];
         }
     }
     for (const auto& [name, count] : found) {

@@ -46,12 +46,21 @@ TEST(EndRequests, BetweenWavesHaveTheDocumentedCodes) {
     }
 }
 
-TEST(EndRequests, AtTheStartToo) {
+/// Whether the process answers the signal itself.
+bool answers(pid_t process, int signal) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("SigCgt:")) return (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1U) != 0;
+    return false;
+}
+
+TEST(EndRequests, FromTheFirstMoment) {
     const Folder folder;
     folder.write("c.json", calibration);
     for (int tries = 0; tries < 5; ++tries) {
-        Process run(program_command({"run", "c.json", "--quiet"}), folder.path());
-        std::this_thread::sleep_for(30ms + tries * 25ms);
+        Process run(program_command({"calibrate", "c.json", "--quiet"}), folder.path());
+        while (run.running() && !answers(run.pid(), SIGTERM)) std::this_thread::sleep_for(1ms);
+        std::this_thread::sleep_for(tries * 20ms);
         run.signal(SIGTERM);
         EXPECT_EQ(run.wait().code, 75) << tries;
     }

@@ -35,7 +35,7 @@ std::int64_t stored(const fs::path& file) {
     return count;
 }
 
-/// Returns the cases that are settled by the data of the page and the results that came since; -1: no answer.
+/// Returns the cases that are settled by the data of the page; -1: no answer.
 std::int64_t shown(const LiveServer& server) {
     const auto seen = server.get("/data");
     if (seen.status != 200) return -1;
@@ -45,10 +45,6 @@ std::int64_t shown(const LiveServer& server) {
         for (const auto& [outcome, cases] :
              campaign["outcomes"].get<std::vector<std::pair<std::string, std::int64_t>>>())
             if (outcome != "not yet" && outcome != "abandoned") count += cases;
-    // Results that the data do not cover come as events.
-    const auto later = server.get("/events", fmt::format("once=1&since={}", data["event"].get<std::string>()));
-    for (auto at = later.body.find("\"case\":"); at != std::string::npos; at = later.body.find("\"case\":", at + 1))
-        if (later.body.rfind("event: ", at) == later.body.rfind("event: results", at)) ++count;
     return count;
 }
 
