@@ -19,8 +19,7 @@ namespace {
 
 constexpr std::size_t least_sequences = 4, least_rare = 30, least_scramblings = 4;
 constexpr std::size_t first_of_shape = 2;  // g1, in the order of the statistics
-constexpr double most_unforeseen = 0.03;
-constexpr double contradiction = 2;  // in joint half-widths
+constexpr double contradiction = 2;        // in joint half-widths
 constexpr std::int64_t least_freedom = 2;
 // Cases from which on, and error of the models (in sd) below which, two estimates of one variance are averaged.
 constexpr std::size_t fewest_averaged = 200;
@@ -309,17 +308,16 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
     const bool good = result.model_error < settings.refused_error && !unforeseen;
     if (unforeseen)
         result.remark =
-            "the plain estimates stand: the response has no visible end, and predicted from all others its outermost "
+            "the plain estimates stand: the response seems to have no end, and predicted from all others its outermost "
             "cases are missed by " +
-            shown(100 * *unforeseen) + " % of their distance from the mean (limit " + shown(100 * most_unforeseen) +
-            ")";
+            shown(100 * *unforeseen) + " % of their distance from the mean";
     else if (!good)
         result.remark = "the plain estimates stand: left-out sequences are predicted with an error of " +
                         shown(result.model_error) + " standard deviations (limit " + shown(settings.refused_error) +
                         ")";
     if (good && result.endless)
         result.remark =
-            "g1 and kurtosis are the plain ones: the response has no visible end, and a model says nothing of "
+            "g1 and kurtosis are the plain ones: the response seems to have no end, and a model says nothing of "
             "its tail";
     for (std::size_t k = 0; k < assisted_statistics.size(); ++k) {
         auto& s = result.statistics[k];
@@ -358,7 +356,7 @@ std::variant<AssistedMoments, Refusal> assisted_estimate(const AssistedInput& in
     result.model_error = parts.error = std::sqrt(squares / static_cast<double>(result.cases));
     add_assisted(result, c, parts, input.noise_variance_error);
     result.endless = parts.beyond.endless();
-    if (result.endless && parts.beyond.unforeseen() > most_unforeseen) result.unforeseen = parts.beyond.unforeseen();
+    if (parts.beyond.says_nothing()) result.unforeseen = parts.beyond.unforeseen();
     return result;
 }
 

@@ -28,8 +28,9 @@
 // it; (e) where a tail of the responses has no visible end (tail.hpp), a share of the error that the tail gives the
 // plain estimate: three times the part of their distance from the mean by which the model misses the outermost cases,
 // and 0.3 at least if Q reaches far beyond the cases (features without an end, such as a normal factor). Above a part
-// of 0.03 the model is not taken, and never for g1 and kurtosis: of a response like exp(normal) or a waiting time,
-// which its cases seem to give exactly, intervals without (e) held in 0 to 0.8.
+// of 0.1 the model is not taken; where the tail surely has no end, above 0.03, and never for g1 and kurtosis. Of a
+// response like exp(normal) or a waiting time, which its cases seem to give exactly, intervals without (e) held in 0 to
+// 0.8.
 //
 // Two targets. With scatter: moments of single runs, what the plain estimate says. Without: of the mean response. By
 // the law of total cumulance, with noise of variance v_i that is symmetric about the mean,

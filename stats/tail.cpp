@@ -25,7 +25,9 @@ std::optional<Tail> Tail::of(std::span<const double> sorted, bool upper, std::si
     }
     if (!(mean > 2 * weighted)) return std::nullopt;
     Tail tail;
-    tail.shape_ = 2 - mean / (mean - 2 * weighted) + allowance / std::pow(static_cast<double>(m), 0.75);
+    const double shape = 2 - mean / (mean - 2 * weighted);
+    tail.surely_endless_ = endless || shape > 0;
+    tail.shape_ = shape + allowance / std::pow(static_cast<double>(m), 0.75);
     if (endless) tail.shape_ = std::max(tail.shape_, least_endless);
     if (!(tail.shape_ > 0)) return std::nullopt;
     tail.shape_ = std::min(tail.shape_, largest_shape);

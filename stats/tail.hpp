@@ -50,11 +50,14 @@ public:
     }
 
     [[nodiscard]] double shape() const { return shape_; }
+    /// Returns whether xi is positive without what is added to it.
+    [[nodiscard]] bool surely_endless() const { return surely_endless_; }
 
 private:
     static constexpr std::size_t strata = 4, places = 64;
 
     double shape_ = 0, weight_ = 0;
+    bool surely_endless_ = false;
     std::vector<double> values_;  ///< (strata, places)
 };
 

@@ -7,6 +7,7 @@
 namespace grainsweep::stats::response {
 namespace {
 
+constexpr double most_missed = 0.1, most_missed_without_end = 0.03;
 constexpr double beyond_unforeseen = 3, unforeseen_far_out = 0.3;
 
 /// The cases in the order of each feature.
@@ -108,6 +109,14 @@ void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eige
         if (depth == outermost) edges_.insert(edges_.end(), edges.begin(), edges.end());
         for (const Edge& edge : edges) unforeseen_ = std::max(unforeseen_, edge.unforeseen);
     }
+}
+
+bool BeyondCases::endless() const {
+    return std::ranges::any_of(tails_, &Tail::surely_endless);
+}
+
+bool BeyondCases::says_nothing() const {
+    return !tails_.empty() && unforeseen_ > (endless() ? most_missed_without_end : most_missed);
 }
 
 double BeyondCases::half_width(const RawMoments& gradient) const {

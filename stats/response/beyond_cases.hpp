@@ -39,8 +39,11 @@ public:
     /// Adds one of two models: `x`, features of its cases; `q`, of the points of the integral; `v`, its noise variance.
     void add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v);
 
-    /// Returns whether a tail of the responses has no visible end.
-    [[nodiscard]] bool endless() const { return !tails_.empty(); }
+    /// Returns whether a tail of the responses surely has no end.
+    [[nodiscard]] bool endless() const;
+    /// Returns whether a model says nothing of a tail that may have no end: it misses a tenth of the outermost cases,
+    /// or 3 % where there surely is none.
+    [[nodiscard]] bool says_nothing() const;
     /// Returns the missed part of the outermost cases, the largest over the edges.
     [[nodiscard]] double unforeseen() const { return unforeseen_; }
     /// Returns the 95 % half-width of gradient . M by both errors of the header.
