@@ -7,7 +7,7 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t fewest_seen = 120, fewest_farthest = 32, share_of_farthest = 16;
-constexpr double largest_shape = 0.5, allowance = 3.5, least_endless = 0.05;
+constexpr double largest_shape = 0.5, allowance = 3.5, least_endless = 0.05, surely_endless_shape = 0.1;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::optional<Tail> Tail::of(std::span<const double> sorted, bool upper, std::si
     if (!(mean > 2 * weighted)) return std::nullopt;
     Tail tail;
     const double shape = 2 - mean / (mean - 2 * weighted);
-    tail.surely_endless_ = endless || shape > 0;
+    tail.surely_endless_ = shape > surely_endless_shape;
     tail.shape_ = shape + allowance / std::pow(static_cast<double>(m), 0.75);
     if (endless) tail.shape_ = std::max(tail.shape_, least_endless);
     if (!(tail.shape_ > 0)) return std::nullopt;

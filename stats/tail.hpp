@@ -50,7 +50,7 @@ public:
     }
 
     [[nodiscard]] double shape() const { return shape_; }
-    /// Returns whether xi is positive without what is added to it.
+    /// Returns whether xi is above 0.1 without what is added to it.
     [[nodiscard]] bool surely_endless() const { return surely_endless_; }
 
 private:

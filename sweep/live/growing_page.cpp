@@ -108,8 +108,9 @@ bool GrowingPage::renew(std::unique_lock<std::mutex>& lock, const std::stop_toke
                         std::chrono::milliseconds at_most) {
     const auto start = Clock::now();
     while (!stop.stop_requested() && Clock::now() - start < at_most) {
-        const auto due = std::ranges::find_if(parts_, [](const Part& part) {
-            return part.stale && (part.error.empty() || seconds_since(part.tried) > retry_pause);
+        // Each once: a run that commits all the time is no reason to read all the time.
+        const auto due = std::ranges::find_if(parts_, [&](const Part& part) {
+            return part.stale && part.tried < start && (part.error.empty() || seconds_since(part.tried) > retry_pause);
         });
         if (due == parts_.end()) break;
         due->stale = false;
