@@ -7,6 +7,7 @@
 namespace grainsweep::stats::response {
 namespace {
 
+constexpr double far = 1.5;
 constexpr double most_missed = 0.1, most_missed_without_end = 0.03;
 constexpr double beyond_unforeseen = 3, unforeseen_far_out = 0.3;
 
@@ -21,7 +22,7 @@ std::vector<std::vector<Eigen::Index>> orders_of(const Eigen::MatrixXd& x) {
     return orders;
 }
 
-/// Returns whether the points q end farther from the outermost case of a feature than that is from the eighth.
+/// Returns whether the points q end much farther from the outermost case of a feature than that is from the eighth.
 bool reaches_far_out(const Eigen::MatrixXd& x, const std::vector<std::vector<Eigen::Index>>& orders,
                      const Eigen::MatrixXd& q) {
     const auto inner = std::min<std::size_t>(2 * outermost, static_cast<std::size_t>(x.rows())) - 1;
@@ -29,7 +30,8 @@ bool reaches_far_out(const Eigen::MatrixXd& x, const std::vector<std::vector<Eig
         const auto& order = orders[static_cast<std::size_t>(j)];
         const double low = x(order.front(), j), high = x(order.back(), j);
         const double from_low = x(order[inner], j), from_high = x(order[order.size() - 1 - inner], j);
-        if (low - q.col(j).minCoeff() > from_low - low || q.col(j).maxCoeff() - high > high - from_high) return true;
+        if (low - q.col(j).minCoeff() > far * (from_low - low) || q.col(j).maxCoeff() - high > far * (high - from_high))
+            return true;
     }
     return false;
 }

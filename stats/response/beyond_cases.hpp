@@ -6,8 +6,8 @@
 // others.
 // - u times the error that tails without a visible end give a sample (stats/tail.hpp). u is three times the missed part
 //   of the outermost 2, 4 or 8 cases, the largest: rms of z - m over rms of z, without noise. If the points of the
-//   integral reach farther beyond an outermost case than that is from the eighth, u is 0.3 at least, and tails have no
-//   end either.
+//   integral reach 1.5 times as far beyond an outermost case as that is from the eighth, u is 0.3 at least, and tails
+//   have no end either.
 #pragma once
 
 #include "stats/moment_statistics.hpp"
