@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace grainsweep::tests::stats_group_test {
+namespace grainsweep::tests::stats_group_test_test {
 
 using stats::compare_groups;
 
@@ -66,4 +66,4 @@ TEST(GroupTest, ChoosesAmongManyPointsAndRefusesWhatHasNoAnswer) {
     EXPECT_THROW((void)compare_groups({x, 3}, std::vector<bool>(5, true), zeros, ones), std::invalid_argument);
 }
 
-}  // namespace grainsweep::tests::stats_group_test
+}  // namespace grainsweep::tests::stats_group_test_test
