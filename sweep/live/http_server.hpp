@@ -2,8 +2,8 @@
 // the other. Streams send events (Server-sent events, WHATWG HTML section 9.2).
 //
 // It listens on 127.0.0.1 only. Limits for clients: connections, bytes of a request, seconds of a request and of
-// silence, and pending bytes of a slow stream. Connections whose requests were all refused keep nobody out: only a few
-// of them stay, the latest.
+// silence, and pending bytes of a slow stream. Of the connections whose requests were all refused, the server
+// keeps the latest few.
 #pragma once
 
 #include <chrono>

@@ -58,7 +58,7 @@ private:
     std::int64_t last_ = 0;
 };
 
-/// Folder of this process that nobody else may enter. It ends with this object.
+/// Folder with permissions for this user alone. The destructor removes it.
 class PrivateFolder {
 public:
     /// Throws BrokenWorld if it cannot be made.

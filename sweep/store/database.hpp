@@ -153,7 +153,7 @@ public:
     Connection(const std::filesystem::path& file, Access access);
     [[nodiscard]] static Connection in_memory();
 
-    /// Returns SQLite's own descriptor of the file. It ends with this object, and nobody else closes it.
+    /// Returns SQLite's own descriptor of the file. SQLite closes it with the connection; callers must not.
     [[nodiscard]] int descriptor() const { return descriptor_; }
 
     /// Chooses the journal, and synchronous FULL. A write-ahead log lets readers and the writer work at the same time,

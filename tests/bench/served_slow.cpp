@@ -110,7 +110,7 @@ bool one_bad_database() {
     return ends(server) && held;
 }
 
-/// Connections without the token that send a byte now and then keep nobody out.
+/// Returns whether the server answers while 200 connections without the token send a byte every few seconds.
 bool slow_sockets() {
     const Folder folder;
     make_database(folder, "a", 8);

@@ -294,7 +294,7 @@ TEST_F(ServedCampaign, ADatabaseThatCannotBeReadIsNamedAndTheOthersStay) {
     EXPECT_EQ(server.process().wait().code, 0);
 }
 
-// The stored view of a campaign may be endless: nobody reads it but a user's own SQL.
+// The stored view of a campaign may be endless. Only the user's own SQL reads it.
 TEST_F(ServedCampaign, AnEndlessViewStopsNothing) {
     begin("a", 3, 0);
     change(folder / "a.db",

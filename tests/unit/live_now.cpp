@@ -84,7 +84,7 @@ TEST(LiveNow, AFileOfTheFutureALinkAndALargeOneSayNothing) {
     EXPECT_FALSE(read_now(database));
     fs::remove(file);
     ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
-    EXPECT_FALSE(read_now(database)) << "and waits for nobody";
+    EXPECT_FALSE(read_now(database)) << "a named pipe is not opened";
 }
 
 TEST(LiveNow, ARunOfThisHostWhoseProcessHasEndedIsOver) {

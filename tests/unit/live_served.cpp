@@ -109,7 +109,7 @@ TEST_F(LiveServed, APageOfAnotherOriginMayAskForNothing) {
     EXPECT_EQ(status(own), 400u) << "an empty question, but of the page itself";
 }
 
-// Behind a proxy of a notebook or a cluster: its name, its path, its scheme, and nobody else's.
+// Behind a proxy of a notebook or a cluster, the server accepts the name, path and scheme of this proxy only.
 TEST_F(LiveServed, AnswersBehindTheProxyThatTheUserNames) {
     served.emplace(std::vector{folder / "a.db"}, std::nullopt, token,
                    Proxy{.base_path = "/node/n7/8377/", .hosts = {"hub.example.org"}});
