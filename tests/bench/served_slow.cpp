@@ -110,7 +110,7 @@ bool one_bad_database() {
     return ends(server) && held;
 }
 
-/// Returns whether the server answers while 200 connections without the token send a byte every few seconds.
+/// Returns whether the server answers while 300 connections without the token send a byte every few seconds.
 bool slow_sockets() {
     const Folder folder;
     make_database(folder, "a", 8);
