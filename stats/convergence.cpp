@@ -134,13 +134,6 @@ Middle SortedSample::middle() {
     return {sorted_[(sorted_.size() - 1) / 2], sorted_[sorted_.size() / 2]};
 }
 
-std::vector<Tail> SortedSample::tails(std::size_t together) const {
-    std::vector<Tail> tails;
-    for (const bool upper : {false, true})
-        if (auto tail = Tail::of(sorted_, upper, together)) tails.push_back(std::move(*tail));
-    return tails;
-}
-
 double SortedSample::carriers(double centre, double p) const {
     if (sorted_.empty()) return 0;
     const double farthest = std::max(std::abs(sorted_.front() - centre), std::abs(sorted_.back() - centre));
@@ -233,7 +226,7 @@ void Convergence::find_errors(Checkpoint& now) {
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
     }
     doubt_agreement(now);
-    const auto tails = pooled_.sample.tails(std::max<std::size_t>(1, sequences_.size()));
+    const auto tails = tails_of(pooled_.sample.sorted(), std::max<std::size_t>(1, sequences_.size()));
     judge_shape(now, summaries, !tails.empty());
     doubt_tails(now, tails);
 }

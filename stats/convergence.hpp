@@ -120,8 +120,8 @@ public:
     [[nodiscard]] Middle middle();
     /// Returns (sum |y - centre|^p)^2 / sum |y - centre|^2p of the values at the last middle().
     [[nodiscard]] double carriers(double centre, double p) const;
-    /// Returns the tails of the values at the last middle(), each drawn `together` times.
-    [[nodiscard]] std::vector<Tail> tails(std::size_t together) const;
+    /// Returns the values at the last middle(), ascending.
+    [[nodiscard]] std::span<const double> sorted() const { return sorted_; }
 
 private:
     std::vector<double> sorted_;

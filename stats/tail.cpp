@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace grainsweep::stats {
 namespace {
@@ -40,6 +41,13 @@ std::optional<Tail> Tail::of(std::span<const double> sorted, bool upper, std::si
         tail.values_.push_back(upper ? start + beyond : start - beyond);
     }
     return tail;
+}
+
+std::vector<Tail> tails_of(std::span<const double> sorted, std::size_t together, bool endless) {
+    std::vector<Tail> tails;
+    for (const bool upper : {false, true})
+        if (auto tail = Tail::of(sorted, upper, together, endless)) tails.push_back(std::move(*tail));
+    return tails;
 }
 
 }  // namespace grainsweep::stats

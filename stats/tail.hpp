@@ -4,14 +4,14 @@
 //
 //   y(p) = y_m + beta/xi ((p n/m)^-xi - 1)
 //
-// with xi and beta from probability-weighted moments (Hosking & Wallis 1987, Technometrics 29, 339, with k = -xi). To
-// xi 3.5 m^(-3/4) is added (1.5 standard errors for m = 32, 1 for 128): a tail that may have no end is taken for one
-// that has none, the sooner the fewer values say so. A design of R even sequences draws each of the outermost shares
+// with xi and beta from probability-weighted moments (Hosking & Wallis 1987, Technometrics 29, 339, with k = -xi). The
+// estimate of xi is raised by 3.5 m^(-3/4), 1.5 standard errors for m = 32 and 1 for 128: the fewer values, the sooner
+// the tail counts as endless. A design of R even sequences draws each of the outermost shares
 // R/n from R independent places, so that the mean of f(y) has at least the variance
 //
 //   sum over these shares k of (1/R) (R/n)^2 Var[f(y) within share k]
 //
-// Whether a rare large value was drawn does not matter to it, as it does to the scatter between the sequences.
+// Unlike the scatter between the sequences, this variance hardly depends on whether a rare large value was drawn.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ inline constexpr double tail_95 = 2.8;
 class Tail {
 public:
     /// Returns the upper or lower tail of ascending values of which `together` (R) share a stratum; none of fewer than
-    /// 120 values, if the farthest are all equal, or if they seem to end (xi <= 0).
-    /// `endless`: something else says that they do not end, and xi is 0.05 at least.
+    /// 120 values, if the farthest are all equal, or if they seem to end (xi <= 0). `endless`: the caller has other
+    /// evidence that they do not end; xi is then 0.05 at least.
     [[nodiscard]] static std::optional<Tail> of(std::span<const double> sorted, bool upper, std::size_t together,
                                                 bool endless = false);
 
@@ -60,5 +60,8 @@ private:
     bool surely_endless_ = false;
     std::vector<double> values_;  ///< (strata, places)
 };
+
+/// Returns the lower and the upper tail of ascending values, as far as there are any; arguments as of Tail::of.
+[[nodiscard]] std::vector<Tail> tails_of(std::span<const double> sorted, std::size_t together, bool endless = false);
 
 }  // namespace grainsweep::stats

@@ -88,18 +88,13 @@ double normal_variance(const RawMoments& gradient, double m, double s) {
 BeyondCases::BeyondCases(std::span<const double> z, std::size_t sequences)
     : sorted_(z.begin(), z.end()), sequences_(sequences) {
     std::ranges::sort(sorted_);
-    find_tails(false);
-}
-
-void BeyondCases::find_tails(bool endless) {
-    for (const bool upper : {false, true})
-        if (auto tail = Tail::of(sorted_, upper, sequences_, endless)) tails_.push_back(std::move(*tail));
+    tails_ = tails_of(sorted_, sequences_);
 }
 
 void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v) {
     const auto orders = orders_of(x);
     far_out_ = far_out_ || reaches_far_out(x, orders, q);
-    if (far_out_ && tails_.empty()) find_tails(true);
+    if (far_out_ && tails_.empty()) tails_ = tails_of(sorted_, sequences_, true);
     for (const std::size_t depth : {outermost, outermost / 2, 2 * outermost}) {
         const auto count = std::min<std::size_t>(depth, static_cast<std::size_t>(x.rows()));
         std::vector<std::vector<Eigen::Index>> ends;

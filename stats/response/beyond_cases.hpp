@@ -60,8 +60,6 @@ private:
     static std::vector<Edge> edges_of(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& ends,
                                       double v);
 
-    void find_tails(bool endless);
-
     std::vector<double> sorted_;
     std::size_t sequences_;
     std::vector<Tail> tails_;
