@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
 constexpr std::size_t most_halvings = 3;
+constexpr double most_widened = 3;
 constexpr double steepest_fall = 0.35355339059327376;  // 2^(-3/2)
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -234,18 +235,19 @@ void Convergence::find_errors(Checkpoint& now) {
 void Convergence::doubt_tails(Checkpoint& now, std::span<const Tail> tails) {
     const auto of = [&](Statistic statistic) { return now.of(statistic).value; };
     const double mean = of(Statistic::mean), sd = of(Statistic::sd);
-    const auto widen = [&](Statistic statistic, const auto& influence) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto widen = [&](Statistic statistic, double at_most, const auto& influence) {
         double variance = 0;
         for (const Tail& tail : tails)
             variance += tail.variance_of_mean([&](double y) { return influence((y - mean) / sd); });
         double& error = now.estimates[static_cast<std::size_t>(statistic)].error;
-        if (error < tail_95 * std::sqrt(variance)) error = tail_95 * std::sqrt(variance);
+        error = std::max(error, std::min(tail_95 * std::sqrt(variance), at_most * error));
     };
-    widen(Statistic::mean, [&](double z) { return sd * z; });
-    widen(Statistic::sd, [&](double z) { return sd * z * z / 2; });
-    widen(Statistic::skewness, [&](double z) { return 3 * z - of(Statistic::skewness) * z * z / 2; });
-    widen(Statistic::g1, [&](double z) { return z * z * z - 1.5 * of(Statistic::g1) * z * z - 3 * z; });
-    widen(Statistic::kurtosis,
+    widen(Statistic::mean, most_widened, [&](double z) { return sd * z; });
+    widen(Statistic::sd, most_widened, [&](double z) { return sd * z * z / 2; });
+    widen(Statistic::skewness, infinite, [&](double z) { return 3 * z - of(Statistic::skewness) * z * z / 2; });
+    widen(Statistic::g1, infinite, [&](double z) { return z * z * z - 1.5 * of(Statistic::g1) * z * z - 3 * z; });
+    widen(Statistic::kurtosis, infinite,
           [&](double z) { return z * z * (z * z - 2 * of(Statistic::kurtosis)) - 4 * of(Statistic::g1) * z; });
 }
 

@@ -31,7 +31,8 @@
 //   first half of each sequence times 2^-3/2, of the first quarter times 2^-3, of the first eighth times 2^-9/2.
 // - Sequences that lack the same rare large values agree about too small an sd. No error is smaller than 2.8 standard
 //   errors of the statistic from the tails, to first order in its influence function (z: standardised value): sd z for
-//   the mean, sd z^2/2, 3 z - skewness z^2/2, z^3 - 3 z - 3/2 g1 z^2, z^4 - 4 g1 z - 2 kurtosis z^2.
+//   the mean, sd z^2/2, 3 z - skewness z^2/2, z^3 - 3 z - 3/2 g1 z^2, z^4 - 4 g1 z - 2 kurtosis z^2. Those of mean and
+//   sd grow threefold at most: beyond, a bounded response with two clusters of values would pay for the tail it lacks.
 //
 // An undefined error never passes. While all values are equal, or all repetitions of a statistic are, its scatter is
 // unknown and its error undefined. A check without a new value since the check before is no confirmation: its measures
