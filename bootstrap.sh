@@ -93,7 +93,7 @@ build_program() {
     local tests=OFF
     [ -e "$here/build/tests" ] && tests=ON
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=$tests)
-    [ -x "$here/build/grainsweep" ] || echo "building (four to six minutes on two cores)" >&2
+    [ -x "$here/build/grainsweep" ] || echo "building (five to eight minutes on two cores)" >&2
     quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep command_documents
 }
 
