@@ -163,16 +163,18 @@ std::vector<double> gains(const WindowQuestion& question, std::span<const Judgem
 /// everywhere at the same end of its interval.
 double share_error(const WindowQuestion& question, std::span<const Judgement> judged, double share) {
     const auto doubted = judged.first(judged.size() / share_of_doubted);
+    const auto share_by = [&](auto meets) {
+        return static_cast<double>(std::ranges::count_if(doubted, meets)) / static_cast<double>(doubted.size());
+    };
     double below = 0, above = 0;
     for (std::size_t k = 0; k < question.models().size() && !doubted.empty(); ++k) {
         const auto at = [&](std::size_t end) {
-            const auto inside = std::ranges::count_if(
-                doubted, [&](const Judgement& one) { return question.meets(one.at_ends[2 * k + end]); });
-            return static_cast<double>(inside) / static_cast<double>(doubted.size());
+            return share_by([&](const Judgement& one) { return question.meets(one.at_ends[2 * k + end]); });
         };
+        const double here = share_by([&](const Judgement& one) { return question.meets(one); });
         const auto [low, high] = std::minmax({at(0), at(1)});
-        below = std::hypot(below, std::max(share - low, 0.0));
-        above = std::hypot(above, std::max(high - share, 0.0));
+        below = std::hypot(below, std::max(here - low, 0.0));
+        above = std::hypot(above, std::max(high - here, 0.0));
     }
     return std::hypot(std::max(below, above),
                       1.96 * std::sqrt(share * (1 - share) / static_cast<double>(judged.size())));
