@@ -372,7 +372,7 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
     // The name of a machine is a hash, which tells the reader nothing.
     if (const auto shown = shown_scene(asked.scene); stored.scene != asked.scene && shown != asked.scene) {
         const bool part = shown == stored.scene;  // of an older program
-        const bool changed = shown == shown_scene(stored.scene);
+        const bool changed = shown == shown_scene(stored.scene), program = shown.starts_with("program ");
         throw wrong_question(
             "$.scene", shown,
             fmt::format("campaign '{}' stands in '{}' with {}: give the campaign another name in the same database, or "
@@ -381,7 +381,8 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
                         part      ? fmt::format("scene {} of an older program. Since then {} is a machine, whose cases "
                                                      "have other ids",
                                                 shown, shown)
-                        : changed ? fmt::format("another version of machine {}, whose file has changed", shown)
+                        : changed ? fmt::format("another version of {}{}, whose {} changed", program ? "" : "machine ",
+                                                shown, program ? "command or files have" : "file has")
                                   : fmt::format("scene {}", shown_scene(stored.scene)),
                         part ? "the program that wrote it (`grainsweep explain` names it)"
                              : "the scene that it was begun with"));

@@ -95,7 +95,8 @@ TEST_F(Adoption, IsRefusedWhereMoreChanged) {
     expect_refused(run_script(folder, script("first"), named("q", 4), adopt), "its program is this one");
     expect_refused(run_script(folder, script("second"), named("q", 4), {"--db", "p.db", "--adopt", "pp"}),
                    "Did you mean 'p'?");
-    expect_refused(run_script(folder, script("second"), named("p", 4), adopt), "another question needs another name");
+    expect_refused(run_script(folder, script("second"), named("p", 4), adopt),
+                   "another version of program sh, whose command or files have changed");
     expect_refused(run_script(folder, script("second"), named("q", 4), {"--db", "n.db", "--adopt", "p"}),
                    "there is no database 'n.db'");
     EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM campaign")[0]["n"], 1);

@@ -47,7 +47,7 @@ TEST_F(Distributions, StatisticsWindowAndPredictionAreOverThem) {
     const auto moments = json::parse(out({"converge", "c.db", "--format", "json"}));
     EXPECT_THAT(moments.dump(), HasSubstr("\"mean\""));
     const auto window = out({"window", "c.db", "--where", "x1 >= 0.5", "--maximize", "y"});
-    EXPECT_THAT(window, HasSubstr("in 50.0 +- 0.8 % of the distribution of the factors"));
+    EXPECT_THAT(window, HasSubstr("in 50.0 +- 1.5 % of the distribution of the factors"));
     EXPECT_EQ(ask({"predict", "c.db", "--at", "x1=0.5", "--at", "x2=0.2"}).code, 0);
     const auto beyond = ask({"predict", "c.db", "--at", "x1=0.5", "--at", "x2=0.6"});
     EXPECT_EQ(beyond.code, 2);
