@@ -116,6 +116,8 @@ TEST(FastWalls, EqualTheDoubleEngine) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
             setup.walls[0].surface = {.friction = 0.5, .rolling_friction = 0.2, .restitution = 0.8};
+            // No touch begins with a step: in which of two steps it begins would be a matter of rounding.
+            setup.spheres[0].position = setup.spheres[0].position + Vec3{3e-8, 2e-8, 1e-8};
             const auto mixed = dem::fast::make_mixed_engine(setup, path);
             const auto reference = dem::make_engine(setup, {});
             mixed->run(one_impact), reference->run(one_impact);

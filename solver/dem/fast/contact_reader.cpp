@@ -166,7 +166,7 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
     const MovingWall& wall = walls[w];
     std::vector<WallTouch> touched;
     for_each_near(field_, walls, w, [&](std::int32_t i, std::int32_t slot) {
-        const Vec3 x = wall.image().of(position_of(field_.records[i], space_.scale));
+        const Vec3 x = wall.image().of(position_at_walls(field_, i, space_.scale));
         touched.clear();
         wall.find(0, x, radius(i) + beyond_wall_, touched);
         for (const auto& [entry, closest] : touched) {

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "solver/dem/fast/left_over.hpp"
+
 namespace grainsweep::dem::fast {
 
 namespace {
@@ -72,6 +74,14 @@ std::vector<std::int32_t> slots_by_particle(const Field& f, const Columns& c, co
 Vec3 position_of(const Record& record, const Scale& scale) {
     Vec3 x{};
     for (std::size_t a = 0; a < 3; ++a) x[a] = scale.centre[a] + record.position[a] * scale.unit[a];
+    return x;
+}
+
+Vec3 position_at_walls(const Field& f, std::int32_t particle, const Scale& scale) {
+    Vec3 x = position_of(f.records[particle], scale);
+    if (f.refined == 0) return x;
+    const Residual left = left_over(f, particle);
+    for (std::size_t a = 0; a < 3; ++a) x[a] += static_cast<double>(left.position[a]) * scale.unit[a];
     return x;
 }
 

@@ -32,7 +32,9 @@ void for_each_near(const Field& f, const Walls& walls, std::size_t w, Visit&& vi
     }
 }
 
-/// Returns the position of a particle that the forces use, m.
+/// Returns the position of a particle in whole units, m.
 [[nodiscard]] Vec3 position_of(const Record& record, const Scale& scale);
+/// Returns the position that the forces of walls use, m.
+[[nodiscard]] Vec3 position_at_walls(const Field& field, std::int32_t particle, const Scale& scale);
 
 }  // namespace grainsweep::dem::fast

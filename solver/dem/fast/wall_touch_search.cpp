@@ -150,9 +150,9 @@ std::int32_t WallTouches::ask_shape(const Search& s, Scratch& own, Place particl
     const MovingWall& wall = *s.wall;
     const Scale& scale = *s.scale;
     Columns& c = *s.columns;
-    const Record& r = s.field->records[record_index(particle)];
-    const double radius = radius_of(r, scale);
-    const Vec3 x = wall.image().of(position_of(r, scale));
+    const auto i = static_cast<std::int32_t>(record_index(particle));
+    const double radius = radius_of(s.field->records[i], scale);
+    const Vec3 x = wall.image().of(position_at_walls(*s.field, i, scale));
     const double reach = radius + double{s.field->constants.beyond_wall} * scale.length;
     const Twist& twist = wall.twist();
     own.places.clear();
