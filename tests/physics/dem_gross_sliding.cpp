@@ -212,6 +212,41 @@ TEST(GrossSliding, BooksTheLossOfAnyImpact) {
     RecordProperty("worst_mixed", std::to_string(worst[1]));
 }
 
+// Of bodies that attract each other, from head-on to grazing: they part at other places than they touch, or in the air.
+TEST(GrossSliding, BooksTheLossOfStickyImpacts) {
+    using dem::CohesionLaw;
+    double worst[2] = {0, 0};
+    for (const auto& [name, setup] : cases)
+        for (const CohesionLaw law : {CohesionLaw::jkr, CohesionLaw::dmt, CohesionLaw::capillary, CohesionLaw::sjkr})
+            for (const TangentialLimit limit : {TangentialLimit::sum, TangentialLimit::spring})
+                for (const double e : {0.1, 0.5, 0.9})
+                    for (const double angle : {0, 45, 80, 88})
+                        for (const double phase : {0.07, 0.53}) {
+                            dem::Setup s = setup();
+                            prepare(s, NormalLaw::hertz, e, 0.1, phase);
+                            s.material.tangential_limit = limit;
+                            s.material.cohesion_law = law;
+                            s.material.cohesion = law == CohesionLaw::sjkr ? 1e7 : 0;
+                            s.material.surface_energy = acts_by_surface_energy(law) ? 2 : 0;
+                            s.material.surface_tension = law == CohesionLaw::capillary ? 0.02 : 0;
+                            s.spheres[0].velocity[0] *= speed * std::tan(angle * std::numbers::pi / 180);
+                            s.spheres[0].velocity[1] *= angle > 0 ? 1 : 0;
+                            const double before = kinetic_energy(s, state_of(*dem::make_engine(s, engines[0])));
+                            for (const Method& method : engines) {
+                                const Impulses of = impact(s, method);
+                                const double lost = before + of.work - kinetic_energy(s, of.state);
+                                const bool mixed = method.precision == Method::Precision::mixed;
+                                const double error = std::abs(of.dissipated - lost);
+                                EXPECT_LT(error, mixed ? 1e-3 * lost + 1e-7 * before : 1e-9 * before)
+                                    << name << " " << static_cast<int>(law) << static_cast<int>(limit) << " " << e
+                                    << " " << angle << " " << phase;
+                                worst[mixed ? 1 : 0] = std::max(worst[mixed ? 1 : 0], error / lost);
+                            }
+                        }
+    RecordProperty("worst_double", std::to_string(worst[0]));
+    RecordProperty("worst_mixed", std::to_string(worst[1]));
+}
+
 // A belt that starts under a resting sphere, at the start or later, pulls it by mu times its weight from the first step
 // on, although it slips there with the whole speed of the belt. By `spring` the dashpot of the first half step is not
 // limited, as in LIGGGHTS.

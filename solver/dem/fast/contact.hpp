@@ -62,6 +62,8 @@ struct Meeting {
         // sqrt(R* d) and its root: one uses the divider, the other multiplications, so that both units work in parallel
         root = root_radius * sqrt(squeezed);
         root_of_root = root * inverse_root(root);
+        // A dashpot that is not limited would slow bodies down over the whole way of a bridge.
+        if constexpr (Kernel::acts_apart) root_of_root = keep(broadcast(0.0f) < overlap, root_of_root);
         // tangential velocity at the contact: v - v_n n - surface x n
         if constexpr (Kernel::spin) slip = add_cross(fnma(normal_velocity, normal, velocity), normal, surface);
     }
