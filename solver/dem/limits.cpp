@@ -17,4 +17,10 @@ std::string flaw_of_contact(double share, double swing, double deepest) {
     return text;
 }
 
+std::string flaw_of_frozen(std::size_t wall) {
+    return "wall " + std::to_string(wall) +
+           ", which forces move, has reached a glued particle, and they do not touch each other: leave the particle "
+           "free, or hold the wall before it";
+}
+
 }  // namespace grainsweep::dem

@@ -1,6 +1,7 @@
 // Limits of a sound state. Beyond them the case is reported as unstable and has no result.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace grainsweep::dem {
@@ -29,8 +30,14 @@ inline constexpr double largest_sound_speed_factor = 10;
 /// case found by this check alone reaches 27.
 inline constexpr double largest_sound_energy_gain = 15;
 
+/// Depth of a frozen sphere in a wall that forces move, divided by its diameter, beyond which the case ends: there is
+/// no contact between them.
+inline constexpr double deepest_frozen = 0.05;
+
 /// Returns the fault of a contact in words that "with" and its partner follow; empty: none. `share`: its overlap
 /// divided by the smaller diameter, at most `deepest`. `swing`: rad per step.
 [[nodiscard]] std::string flaw_of_contact(double share, double swing, double deepest = largest_sound_overlap);
+/// Returns the fault of a wall with this number that a frozen sphere lies in.
+[[nodiscard]] std::string flaw_of_frozen(std::size_t wall);
 
 }  // namespace grainsweep::dem

@@ -219,19 +219,6 @@ void read_species(const Section& top, MachineReading& reading) {
     if (spec.species.size() > 200) all.refuse("a machine has at most 200 species");
 }
 
-/// Returns whether a filling is glued.
-static bool read_glued(const Section& section, const machine::Spec& spec) {
-    if (!section.flag("glued", false)) return false;
-    for (const machine::MachineWall& wall : spec.walls)
-        for (const machine::WallMotion& motion : wall.motions)
-            if (std::holds_alternative<geometry::Flight>(motion.motion))
-                section.at("glued").refuse(
-                    fmt::format("glued particles and the free body '{}' do not touch each other: leave them free, or "
-                                "make them a wall",
-                                wall.name));
-    return true;
-}
-
 void read_fills(const Section& top, MachineReading& reading) {
     const auto all = top.find("fill");
     if (!all) return;
@@ -244,7 +231,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             for (const char* key : {"mix", "by", "count", "mass", "volume", "in", "as", "velocity", "shaken"})
                 if (const auto too = section.find(key)) too->refuse("beside \"spheres\" it has no effect");
             if (!section.find("species")) throw wrong_question(place.path(), "", "key 'species' is missing");
-            const bool glued = read_glued(section, reading.spec);
+            const bool glued = section.flag("glued", false);
             const std::size_t species = reading.scope.place_in(section.at("species"), reading.species, "species");
             std::vector<machine::Placed> placed;
             if (spheres->json().is_array())
@@ -267,7 +254,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             std::ranges::find(words, reading.scope.word(section, "as", words, words.front())) - words.begin());
         fill.velocity = reading.scope.vector(section, "velocity", "m/s");
         fill.shaken = reading.scope.number(section, "shaken", "m/s", 0, no_negative_number);
-        fill.glued = read_glued(section, reading.spec);
+        fill.glued = section.flag("glued", false);
         reading.spec.fills.emplace_back(std::move(fill));
     }
 }

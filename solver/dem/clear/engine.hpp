@@ -158,6 +158,7 @@ private:
     void set_speed_limit();
     void judge_wall_speeds();
     void judge_passages(const Contacts& contacts);
+    void judge_frozen();
     void report(const std::string& what, std::size_t i);
     void report_contacts();
 

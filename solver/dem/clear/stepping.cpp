@@ -241,6 +241,7 @@ void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     list_ = std::move(fresh);
     if (remembers_separation_) forget_separated();
     list_walls(fresh_index);
+    judge_frozen();
     position_at_build_ = p_.position;
     displaced_ = false;
     near_open_face_.clear();

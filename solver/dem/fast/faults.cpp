@@ -190,6 +190,25 @@ std::string unsound_contact(const FaultView& s, bool advanced) {
     return found;
 }
 
+std::string describe_frozen(const FaultView& s) {
+    std::vector<std::uint32_t> frozen;
+    std::vector<Vec3> position(static_cast<std::size_t>(s.field.count));
+    std::vector<double> radius(position.size());
+    for (std::uint32_t i = 0; i < position.size(); ++i) {
+        const Record& r = s.field.records[i];
+        if (r.inverse_mass > 0) continue;
+        frozen.push_back(i);
+        position[i] = position_of(r, s.scale);
+        radius[i] = radius_of(r, s.scale);
+    }
+    for (std::size_t w = 0; w < s.walls.count(); ++w) {
+        if (!s.walls[w].free() || !s.walls[w].present()) continue;
+        if (const auto entry = s.walls[w].reaches(frozen, position, {0, radius}, deepest_frozen))
+            return flaw_of_frozen(w) + where_and_when(s, static_cast<std::int32_t>(frozen[*entry]));
+    }
+    return {};
+}
+
 /// Looks for the pair again, by the positions the forces were computed at or one step later.
 std::string describe_overlap(const FaultView& s, const Tally& tally) {
     double most = 0;

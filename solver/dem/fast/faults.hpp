@@ -51,6 +51,9 @@ struct FaultView {
 /// Returns a description of the first contact of the last force evaluation that is too deep or not resolved by the time
 /// step; empty: none. `advanced`: the particles have advanced by a step since then.
 [[nodiscard]] std::string unsound_contact(const FaultView& view, bool advanced);
+/// Returns a description of the first frozen particle in a wall that forces move; empty: there is none. Between two
+/// rebuilds a wall moves by less than half of the smallest diameter.
+[[nodiscard]] std::string describe_frozen(const FaultView& view);
 [[nodiscard]] std::string describe_overlap(const FaultView& view, const Tally& tally);
 
 }  // namespace grainsweep::dem::fast

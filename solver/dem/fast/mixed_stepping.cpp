@@ -157,6 +157,8 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
             space_.skin = std::min(
                 static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
                 largest_skin_);
+        const bool may_meet = needs_.frozen && walls_.any_free();
+        if (adapts_skin_ && may_meet) space_.skin = std::min(space_.skin, smallest_diameter_ / 2);
         const std::int32_t before = field_.count;
         join_lists();
         const Parts parts = subdomains_.parts();
@@ -181,6 +183,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         drift_.outer = 0;
         drift_.steps = 0;
         if (crossings_.wanted()) list_crossings();
+        if (may_meet && fault_.empty()) fault_ = describe_frozen(view());
         ++work_.rebuilds;
     }
     inner_skin_ = static_cast<float>(

@@ -26,6 +26,8 @@ public:
     [[nodiscard]] std::size_t count() const { return moving_.size(); }
     [[nodiscard]] const MovingWall& operator[](std::size_t w) const { return moving_[w]; }
     [[nodiscard]] std::span<const MovingWall> all() const { return moving_; }
+    /// Returns whether forces move a wall.
+    [[nodiscard]] bool any_free() const { return any_free_; }
     /// Returns whether a wall can be touched in one place only, which is found over lanes.
     [[nodiscard]] bool is_single(std::size_t w) const { return single_[w]; }
     /// Returns the laws of a wall's contacts with a kind of particles, in SI.

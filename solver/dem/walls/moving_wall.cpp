@@ -330,6 +330,17 @@ void MovingWall::find(std::uint32_t entry, const Vec3& position, double reach, s
     std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, one); }, found_);
 }
 
+std::optional<std::uint32_t> MovingWall::reaches(std::span<const std::uint32_t> list, std::span<const Vec3> position,
+                                                 const particles::Radii& radii, double share) const {
+    std::vector<WallTouch> touches;
+    find(list, position, radii, 0, touches);
+    for (const WallTouch& touch : touches) {
+        const double radius = radii[list[touch.entry]];
+        if (std::abs(touch.place.distance) < (1 - 2 * share) * radius) return touch.entry;
+    }
+    return std::nullopt;
+}
+
 void MovingWall::inherit(std::span<const WallTouch> before, std::span<const WallTouch> now,
                          std::vector<std::int32_t>& from) const {
     from.assign(now.size(), -1);

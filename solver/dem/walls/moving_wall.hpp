@@ -11,6 +11,7 @@
 #include "solver/particles/cells.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -107,6 +108,11 @@ public:
               double beyond, std::vector<WallTouch>& into) const;
     /// Appends the touches of one particle.
     void find(std::uint32_t entry, const Vec3& position, double reach, std::vector<WallTouch>& into) const;
+    /// Returns the entry in `list` of the first sphere that lies deeper in the wall than a share of its diameter, but
+    /// not as a whole behind it.
+    [[nodiscard]] std::optional<std::uint32_t> reaches(std::span<const std::uint32_t> list,
+                                                       std::span<const Vec3> position, const particles::Radii& radii,
+                                                       double share) const;
     /// Finds the origin of the memory of one particle's contacts: for each of `now` its index in `before`, or -1. For a
     /// shape with one contact the memory continues as long as the contact. Several contacts are matched by their
     /// normals (geometry/contact_memory.hpp).
