@@ -69,6 +69,8 @@ public:
     }
     /// Moves all crossings so far behind `into`, in the order of the steps.
     void take(std::vector<Crossing>& into);
+    /// Forgets the crossings that were not taken: a restored state does not continue the steps that made them.
+    void forget() { found_.clear(); }
 
 private:
     struct Followed {

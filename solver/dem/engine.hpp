@@ -223,6 +223,7 @@ public:
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;
     /// Saves the complete state. An engine of the same Setup and Method restored from it continues with the same bits.
+    /// restore() forgets crossings that were not taken.
     virtual void save(std::vector<std::byte>& into) const = 0;
     virtual void restore(std::span<const std::byte> from) = 0;
 };

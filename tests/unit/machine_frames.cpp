@@ -3,11 +3,13 @@
 #include "solver/machine/frames.hpp"
 #include "solver/machine/plan.hpp"
 #include "tests/support/machines.hpp"
+#include "tests/support/spheres.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -112,10 +114,15 @@ TEST(MachineFrames, MeansOfLoadsAreImpulsesOverTime) {
 
 TEST(MachineFrames, ResumedOneGivesTheSameBits) {
     for (const char* precision : precisions) {
-        json machine = in_box(R"({"force": {"wall_force": {"wall": "b", "along": [0, 0, 1]}},
-                                  "stays": {"residence_time": {"along": [0, 0, 1], "from": -0.005, "to": 0.005}},
-                                  "passed": {"passed_number": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "as": "slope"}})",
-                              0.2, 15);
+        json machine = in_box(
+            R"({"force": {"wall_force": {"wall": "b", "along": [0, 0, 1]}},
+                "stays": {"residence_time": {"along": [0, 0, 1], "from": -0.005, "to": 0.005}},
+                "spread": {"residence_time_sd": {"along": [0, 0, 1], "from": -0.005, "to": 0.005}},
+                "density": {"residence_time_density": {"along": [0, 0, 1], "from": -0.005, "to": 0.005,
+                            "longest": 0.1}, "as": "last_profile"},
+                "mass": {"passed_mass": {"point": [0, 0, 0.001], "normal": [0, 0, 1]}},
+                "passed": {"passed_number": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "as": "slope"}})",
+            0.2, 15);
         machine["walls"] = {{"a", plate(-0.01, 1)}, {"b", plate(0.01, -1)}};
         machine["fill"] =
             json::parse(R"([{"species": "b", "spheres": [{"at": [0.005, 0, 0], "velocity": [0, 0, 0.5]}]}])");
@@ -139,6 +146,29 @@ TEST(MachineFrames, ResumedOneGivesTheSameBits) {
         last.advance(1);
         last.observe(found);
         EXPECT_EQ(text_of(found), text_of(expected));
+    }
+}
+
+// Passages of steps that a restored state undoes are no passages.
+TEST(MachineFrames, ARestoredEngineForgetsPassagesOfLaterSteps) {
+    for (const auto precision : {dem::Method::Precision::mixed, dem::Method::Precision::double_precision}) {
+        dem::Setup setup = empty_space();
+        setup.spheres = {{{0, 0, 0}, {0.1, 0, 0}, {}, 0.001, true}};
+        setup.counting = {{{0.001, 0, 0}, {1, 0, 0}}};
+        const auto engine = dem::make_engine(setup, {precision});
+        const auto passage = std::llround(0.01 / setup.time_step);
+        engine->run(passage / 2);
+        std::vector<std::byte> bytes;
+        engine->save(bytes);
+        engine->run(passage);
+        engine->restore(bytes);
+        std::vector<dem::Crossing> found;
+        engine->take_crossings(found);
+        EXPECT_TRUE(found.empty());
+        engine->run(passage);
+        engine->take_crossings(found);
+        ASSERT_EQ(found.size(), 1U);
+        EXPECT_NEAR(found[0].steps * setup.time_step, 0.01, 1e-6);
     }
 }
 
@@ -219,6 +249,78 @@ TEST(MachineFrames, NothingIsConveyedByAVibrationWithoutADirection) {
     // In step with the floor the powder would seem to move at about 0.6 of 2 pi 50 Hz 0.05 mm = 16 mm/s.
     EXPECT_LT(std::abs(seen.at("speed")), 4 * seen.at("speed_error"));
     EXPECT_LT(std::abs(seen.at("speed")), 1e-3);
+}
+
+json fed_chute() {
+    return json::parse(R"({
+        "name": "chute", "gravity": {"size": 9.81, "tilt": 0.45}, "contacts": {"friction": 0.5, "rolling_friction": 0.1},
+        "materials": {"g": {"density": 2500, "youngs_modulus": "5 MPa"}, "s": {"youngs_modulus": "5 MPa"}},
+        "species": {"b": {"material": "g", "diameter": "4 mm"}},
+        "domain": {"low": [0, 0, "-5 mm"], "high": ["120 mm", "20 mm", "60 mm"], "sides": ["open", "periodic", "open"]},
+        "walls": {"floor": {"plane": {"normal": [0, 0, 1]}, "material": "s"}},
+        "feed": [{"species": "b", "rate": 0.05, "velocity": [0.3, 0, 0],
+                  "through": {"box": {"low": [0.004, 0, 0.004], "high": [0.02, 0.02, 0.02]}}}],
+        "phases": [{"name": "start", "for": "0.5 s"}, {"name": "convey", "for": "1 s"}],
+        "measure": {"speed": {"velocity": {"along": [1, 0, 0]}, "during": "convey"},
+                    "load": {"wall_force": {"wall": "floor", "along": [0, 0, -1]}, "during": "convey"},
+                    "held": {"mass": {}, "during": "convey"}, "height": {"mean_height": {}, "during": "convey"},
+                    "motion": {"kinetic_energy": {}, "during": "convey"},
+                    "flow": {"passed_mass": {"point": [0.1, 0, 0], "normal": [1, 0, 0]}, "during": "convey",
+                             "as": "slope"}}})");
+}
+
+json small_drum() {
+    return json::parse(R"({
+        "name": "drum", "contacts": {"friction": 0.5, "rolling_friction": 0.05},
+        "materials": {"g": {"density": 2500, "youngs_modulus": "5 MPa"}, "s": {"youngs_modulus": "5 MPa"}},
+        "species": {"b": {"material": "g", "diameter": "5 mm"}},
+        "domain": {"low": [0, null, null], "high": [0.02, null, null], "sides": ["periodic", "open", "open"]},
+        "walls": {"drum": {"cylinder": {"point": [0.01, 0, 0], "axis": [1, 0, 0], "radius": 0.03}, "material": "s",
+                           "motion": [{"rotate": {"axis": [1, 0, 0], "speed": 6}}]}},
+        "fill": [{"species": "b", "count": 150, "in": {"cylinder": {"base": [0, 0, 0], "axis": [1, 0, 0],
+                                                                    "radius": 0.03, "length": 0.02}}}],
+        "phases": [{"name": "settle", "for": "0.6 s"}, {"name": "convey", "for": "1.3 s"}],
+        "measure": {"torque": {"wall_torque": {"wall": "drum", "axis": [1, 0, 0]}, "during": "convey"},
+                    "pressure": {"wall_pressure": {"wall": "drum", "along": [0, 0, -1], "area": 0.001},
+                                 "during": "convey"},
+                    "aside": {"centre": {"along": [0, 1, 0]}, "during": "convey"},
+                    "motion": {"kinetic_energy": {}, "during": "convey"},
+                    "heat": {"granular_temperature": {}, "during": "convey"},
+                    "contacts": {"coordination": {}, "during": "convey"},
+                    "power": {"wall_work": {"wall": "drum"}, "during": "convey", "as": "slope"}}})");
+}
+
+// Frames change no trajectory: means over some of its moments differ by no more than their errors.
+TEST(MachineFrames, MeansAgreeWithinTheirErrorsAtAnyNumberOfFrames) {
+    json vibrated = trough();
+    for (const auto& [name, probe] : std::initializer_list<std::pair<const char*, json>>{
+             {"load", {{"wall_force", {{"wall", "floor"}, {"along", {0, 0, -1}}}}}},
+             {"height", {{"mean_height", json::object()}}},
+             {"motion", {{"kinetic_energy", json::object()}}}}) {
+        vibrated["measure"][name] = probe;
+        vibrated["measure"][name]["during"] = "convey";
+    }
+    vibrated["phases"][1].erase("frames");
+    int compared = 0, beyond = 0;
+    for (const json& machine : {vibrated, fed_chute(), small_drum()}) {
+        std::vector<decltype(Observations::scalars)> seen;
+        for (const std::int64_t frames : {300, 100, 30, 10}) {
+            machine::Spec spec = spec_of(machine);
+            spec.phases[1].frames = frames;  // as by default: scattered where they are in step with a motion
+            seen.push_back(answer_of(spec).scalars);
+            for (const auto& [name, value] : seen.front()) {
+                const std::string error = name + "_error";
+                if (!seen.front().contains(error) || !seen.back().contains(error) || seen.size() == 1) continue;
+                const double apart = std::abs(seen.back().at(name) - value),
+                             allowed = std::hypot(seen.back().at(error), seen.front().at(error));
+                EXPECT_LT(apart, 3 * allowed + 1e-9 * std::abs(value)) << machine["name"] << " " << name << frames;
+                ++compared;
+                beyond += apart > 1.96 * allowed + 1e-9 * std::abs(value) ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(compared, 30);
+    EXPECT_LT(beyond, 0.1 * compared) << compared;
 }
 
 }  // namespace grainsweep::tests::machine_frames_test

@@ -207,6 +207,7 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     restore_walls(in);
     in.finish();
     require_possible();
+    crossings_.forget();
     if (crossings_.wanted()) list_crossings();
     if (shaken_) shake();
 }

@@ -231,6 +231,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     list_advanced();
     stand_walls();
     touches_.restored(field_, columns_, walls_, space_.scale, static_cast<double>(space_.skin) - drift_.outer);
+    crossings_.forget();
     if (crossings_.wanted()) list_crossings();
     if (shaken_) shake();
 }
