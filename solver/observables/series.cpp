@@ -12,7 +12,8 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t blocks = 10;
 constexpr std::size_t most = 4096;  // values; the time is quadratic in them
 constexpr double least_independent = 4;
-constexpr double rounding = 1e-28;  // of a variance, in squares of the mean
+constexpr double least_of_few = 0.25;  // v/g_0 where blocks have one value: neighbours with a correlation of -0.6
+constexpr double rounding = 1e-28;     // of a variance, in squares of the mean
 
 /// Returns the 0.975 quantile of Student's distribution divided by that of the normal one: Fisher and Cornish's
 /// expansion (Abramowitz and Stegun 26.7.5).
@@ -74,6 +75,8 @@ double standard_error_of_mean(std::span<const double> series) {
     double of_one = std::max(0.0, 2 * sum - variance) / left;
     if (const double of_blocks = block_standard_error(series, blocks); std::isfinite(of_blocks))
         of_one = std::max(of_one, n * of_blocks * of_blocks);
+    else
+        of_one = std::max(of_one, least_of_few * variance);
     const double independent = std::min(n, n * variance / of_one);
     if (!(left > 0) || !(independent >= least_independent)) return undefined;
     return student_over_normal((independent - 1) / 2) * std::sqrt(of_one / n);

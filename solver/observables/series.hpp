@@ -20,8 +20,9 @@ namespace grainsweep::observables {
 /// g_k: autocovariance at lag k. The sum ends before the first G_j <= 0, at lag w, and no G_j counts more than the one
 /// before it: Geyer (1992), Statistical Science 7, 473, initial monotone sequence. The denominator corrects for the
 /// mean, which comes from the same values. t: quantile of Student's distribution with half as many degrees of freedom
-/// as there are independent values, n g_0/v. v is at least that of the means of ten blocks. NaN for fewer than ten
-/// values, or fewer than four independent ones.
+/// as there are independent values, n g_0/v. v is at least that of the means of ten blocks; of fewer than twenty values
+/// at least g_0/4, because chance makes the sum 0 or less. NaN for fewer than ten values, or fewer than four
+/// independent ones.
 [[nodiscard]] double standard_error_of_mean(std::span<const double> series);
 
 }  // namespace grainsweep::observables

@@ -52,6 +52,14 @@ TEST(SeriesError, HoldsTheMeanOfCorrelatedValues) {
         }
     }
     EXPECT_GT(coverage(0.9, 300).held, 0.9);
+    for (const double a : {-0.5, 0.0, 0.5})
+        for (const std::size_t n : {12U, 19U}) EXPECT_GT(coverage(a, n).held, 0.85) << a << " " << n;
+}
+
+TEST(SeriesError, IsNotZeroWhereFewValuesAlternate) {
+    std::vector<double> values;
+    for (int k = 0; k < 10; ++k) values.push_back(k % 2);
+    EXPECT_GT(observables::standard_error_of_mean(values), 0.05);
 }
 
 TEST(SeriesError, IsAbsentWhereTheSeriesIsOneValue) {
