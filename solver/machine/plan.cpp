@@ -278,7 +278,7 @@ double cost_of_step_probes(const Spec& spec) {
     double seconds = 0;
     for (std::size_t p = 0; p < spec.phases.size(); ++p) {
         const auto probes = std::ranges::count_if(spec.measures, [&](const Measure& measure) {
-            return holds(measure.during, p) && find_probe(measure.probe)->steps;
+            return holds(measure.during, p) && find_probe(measure.probe)->source == Source::steps;
         });
         if (probes == 0) continue;
         const double steps = length_of(spec.phases[p]) / spec.time_step;

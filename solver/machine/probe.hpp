@@ -119,16 +119,25 @@ public:
     /// Called for every passage in the selected phases, in the order of time. Of `sight` only what is given by id
     /// holds.
     virtual void passed(const Sight&, const Passage&) {}
-    /// Called at every step of the selected phases, if the row of the probe has `steps`. The contacts have the forces
-    /// of the step itself (dem::Engine::step_contacts).
+    /// Called at every step of the selected phases, if the source of the probe is `steps`. The contacts have the
+    /// forces of the step itself (dem::Engine::step_contacts).
     virtual void step(const Sight&) {}
-    /// Returns the integral of the value over all steps since the start, if the row of the probe has `integrated`.
+    /// Returns the integral of the value over all steps since the start, if the source of the probe is `loads`.
     [[nodiscard]] virtual double integral(const Sight&) { return undefined; }
     /// Appends bins and values at this moment; a scalar appends none.
     virtual void profile(const Sight&, std::vector<Sample>&) {}
     /// Writes the state that it keeps between two calls of look().
     virtual void save(ByteWriter&) const {}
     virtual void restore(ByteReader&) {}
+};
+
+/// From what a probe has its values, and so which of them depend on frames.
+enum class Source {
+    frames,    ///< the particles at a frame
+    loads,     ///< loads on walls at a frame; for means and integrals those of every step
+    sums,      ///< sums of the engine over every step
+    steps,     ///< step(), which costs about as much as eight steps
+    passages,  ///< passed()
 };
 
 struct ProbeInfo {
@@ -139,8 +148,7 @@ struct ProbeInfo {
     std::string_view over = {};  ///< of a profile: its coordinate with unit
     /// Returns the error of a combination of options, in one sentence; empty: none. May be null.
     std::string (*flaw)(const Options&) = nullptr;
-    bool steps = false;       ///< called at every step, which costs about as much as eight steps
-    bool integrated = false;  ///< a load on walls: its integral over the steps replaces values at frames in means
+    Source source = Source::frames;
 };
 
 /// Returns all probes, sorted by name.

@@ -102,7 +102,7 @@ bool holds(const Phases& phases, std::size_t phase) {
 }
 
 bool is_integrated(const Measure& measure) {
-    return find_probe(measure.probe)->integrated && find_reduction(measure.reduction)->of_intervals != nullptr;
+    return find_probe(measure.probe)->source == Source::loads && find_reduction(measure.reduction)->of_intervals != nullptr;
 }
 
 static bool loads_are_integrated(const Spec& spec, std::size_t wall) {

@@ -82,8 +82,23 @@ std::string forms_table(std::string_view what, std::span<const keys::Form> forms
     return table;
 }
 
+std::string words_of(machine::Source source) {
+    switch (source) {
+        case machine::Source::frames:
+            return "at frames";
+        case machine::Source::loads:
+            return "every step in `mean` and `integral`, else at frames";
+        case machine::Source::sums:
+        case machine::Source::steps:
+            return "every step";
+        case machine::Source::passages:
+            return "every passage";
+    }
+    throw std::logic_error("a source without words");
+}
+
 std::string probes_table() {
-    std::string table = head({"probe", "unit", "measures", "options, the required ones first"});
+    std::string table = head({"probe", "unit", "measures", "counts", "options, the required ones first"});
     for (const auto& probe : machine::probe_catalogue()) {
         std::string required, others;
         for (const auto& option : probe.options) {
@@ -92,7 +107,8 @@ std::string probes_table() {
         }
         if (!required.empty()) required = "**needs** " + required + (others.empty() ? "" : "; ");
         table += row({code(std::string(probe.name)), std::string(probe.unit),
-                      std::string(probe.meaning) + (probe.over.empty() ? "" : "; a profile"), required + others});
+                      std::string(probe.meaning) + (probe.over.empty() ? "" : "; a profile"), words_of(probe.source),
+                      required + others});
     }
     return table;
 }
@@ -116,7 +132,7 @@ std::string options_table() {
 }
 
 std::string reductions_table() {
-    std::string table = head({"`as`", "unit", "gives", "becomes"});
+    std::string table = head({"`as`", "unit", "gives", "error", "becomes"});
     for (const auto& reduction : machine::reduction_catalogue()) {
         const std::string unit = reduction.unit.empty()
                                      ? "of the probe"
@@ -124,7 +140,8 @@ std::string reductions_table() {
         const std::string shape = reduction.shape == Shape::scalar   ? "a scalar"
                                   : reduction.shape == Shape::series ? "a series"
                                                                      : "a profile";
-        table += row({code(std::string(reduction.name)), unit, std::string(reduction.meaning), shape});
+        table += row({code(std::string(reduction.name)), unit, std::string(reduction.meaning),
+                      reduction.error != nullptr ? "`NAME_error`" : "none", shape});
     }
     return table;
 }

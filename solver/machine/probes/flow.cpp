@@ -42,9 +42,23 @@ std::unique_ptr<machine::Probe> make_flow(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo flow_mass{"passed_mass", "kg", "mass that has passed through a plane; its slope is the mass flow",
-                          flow_options, make_flow<true>};
-const ProbeInfo flow_number{"passed_number", "1", "particles that have passed through a plane", flow_options,
-                            make_flow<false>};
+const ProbeInfo flow_mass{"passed_mass",
+                          "kg",
+                          "mass that has passed through a plane; its slope is the mass flow",
+                          flow_options,
+                          make_flow<true>,
+                          false,
+                          {},
+                          nullptr,
+                          Source::passages};
+const ProbeInfo flow_number{"passed_number",
+                            "1",
+                            "particles that have passed through a plane",
+                            flow_options,
+                            make_flow<false>,
+                            false,
+                            {},
+                            nullptr,
+                            Source::passages};
 
 }  // namespace grainsweep::machine::probes

@@ -152,7 +152,7 @@ const ProbeInfo impact_energy{"impact_energy",
                               false,
                               {},
                               nullptr,
-                              true};
+                              Source::steps};
 const ProbeInfo impact_energy_spectrum{"impact_energy_spectrum",
                                        "J",
                                        "the same of contacts that have ended, by their energy",
@@ -161,10 +161,10 @@ const ProbeInfo impact_energy_spectrum{"impact_energy_spectrum",
                                        false,
                                        "energy of a contact, J",
                                        flaw_of_bins_along,
-                                       true};
+                                       Source::steps};
 const ProbeInfo impact_number{
-    "impact_number", "1", "contacts that have ended", impact_number_options, make_impacts<true>, false, {},
-    nullptr,         true};
+    "impact_number", "1",          "contacts that have ended", impact_number_options, make_impacts<true>, false, {},
+    nullptr,         Source::steps};
 const ProbeInfo impact_number_spectrum{"impact_number_spectrum",
                                        "1",
                                        "the same by the energy that they dissipated",
@@ -173,6 +173,6 @@ const ProbeInfo impact_number_spectrum{"impact_number_spectrum",
                                        false,
                                        "energy of a contact, J",
                                        flaw_of_bins_along,
-                                       true};
+                                       Source::steps};
 
 }  // namespace grainsweep::machine::probes

@@ -112,7 +112,8 @@ const ProbeInfo residence_time{"residence_time",
                                make_residence<OfResidence::mean>,
                                false,
                                {},
-                               flaw_of_residence_time};
+                               flaw_of_residence_time,
+                               Source::passages};
 const ProbeInfo residence_time_sd{"residence_time_sd",
                                   "s",
                                   "standard deviation of those times",
@@ -120,7 +121,8 @@ const ProbeInfo residence_time_sd{"residence_time_sd",
                                   make_residence<OfResidence::deviation>,
                                   false,
                                   {},
-                                  flaw_of_residence_time};
+                                  flaw_of_residence_time,
+                                  Source::passages};
 
 const ProbeInfo residence_time_density{"residence_time_density",
                                        "1/s",
@@ -129,6 +131,7 @@ const ProbeInfo residence_time_density{"residence_time_density",
                                        make_residence<OfResidence::density>,
                                        false,
                                        "residence time, s",
-                                       flaw_of_residence_time};
+                                       flaw_of_residence_time,
+                                       Source::passages};
 
 }  // namespace grainsweep::machine::probes

@@ -103,8 +103,14 @@ const ProbeInfo contact_energy{
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<ContactEnergy>(given); },
     true};
 const ProbeInfo wall_energy{
-    "wall_energy", "J", "kinetic energy of pressed, driven and free walls, or a part of its balance",
+    "wall_energy",
+    "J",
+    "kinetic energy of pressed, driven and free walls, or a part of its balance",
     wall_energy_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<WallEnergy>(given); }};
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<WallEnergy>(given); },
+    false,
+    {},
+    nullptr,
+    Source::sums};
 
 }  // namespace grainsweep::machine::probes

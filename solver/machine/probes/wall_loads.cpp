@@ -111,7 +111,7 @@ template <class P>
 ProbeInfo integrated_load(std::string_view name, std::string_view unit, std::string_view meaning,
                           std::span<const OptionSpec> options) {
     ProbeInfo row{name, unit, meaning, options, make_load<P>};
-    row.integrated = true;
+    row.source = Source::loads;
     return row;
 }
 
@@ -129,7 +129,8 @@ const ProbeInfo wall_pressure = integrated_load<Force>(
     "wall_pressure", "Pa", "force of the powder on walls, a component, divided by an area", pressure_options);
 const ProbeInfo wall_torque =
     integrated_load<Torque>("wall_torque", "N m", "torque of the powder on walls about an axis", torque_options);
-const ProbeInfo wall_work{"wall_work", "J", "work of walls on the powder since the start", work_options,
-                          make_load<Work>};
+const ProbeInfo wall_work{
+    "wall_work", "J",         "work of walls on the powder since the start", work_options, make_load<Work>, false, {},
+    nullptr,     Source::sums};
 
 }  // namespace grainsweep::machine::probes

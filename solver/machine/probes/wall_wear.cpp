@@ -95,7 +95,7 @@ const ProbeInfo wall_wear{
     false,
     {},
     nullptr,
-    true};
+    Source::steps};
 const ProbeInfo wall_wear_profile{"wall_wear_profile",
                                   "J",
                                   "the same in bins along a direction",
@@ -104,6 +104,6 @@ const ProbeInfo wall_wear_profile{"wall_wear_profile",
                                   false,
                                   "centre of the bin, m",
                                   flaw_of_bins_along,
-                                  true};
+                                  Source::steps};
 
 }  // namespace grainsweep::machine::probes
