@@ -18,7 +18,7 @@ namespace {
 using geometry::dot;
 using geometry::norm;
 
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0003ULL;  // "grnsmc", version 3
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0004ULL;  // "grnsmc", version 4
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
@@ -60,7 +60,7 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
         auto& watching = watching_.emplace_back();
         auto& at_steps = at_steps_.emplace_back();
         const auto attend = [&](const Measure& measure, Probe& probe) {
-            if (find_probe(measure.probe)->steps) at_steps.push_back(&probe);
+            if (find_probe(measure.probe)->source == Source::steps) at_steps.push_back(&probe);
         };
         for (std::size_t m = 0; m < probes_.size(); ++m)
             if (holds(spec_.measures[m].during, at_steps_.size() - 1)) attend(spec_.measures[m], *probes_[m]);
@@ -172,8 +172,18 @@ void Run::begin_phase() {
     take_frame();
 }
 
+/// Returns whether a step of a phase can change an answer; a first value is from before its steps.
+bool Run::measured(std::size_t phase) const {
+    return std::ranges::any_of(spec_.measures,
+                               [phase](const Measure& m) { return holds(m.during, phase) && m.reduction != "first"; });
+}
+
 void Run::end_phase(std::uint8_t condition) {
     times_.end.push_back(time());
+    if (measured(phase_)) {
+        judged_overlap_ = std::max(judged_overlap_, engine_->peak_overlap());
+        judged_wall_overlap_ = std::max(judged_wall_overlap_, engine_->peak_wall_overlap());
+    }
     for (std::size_t k = 0; condition > 0 && k < feeders_.size(); ++k)
         if (holds(spec_.feeds[k].during, phase_))
             feeders_[k].owe(-static_cast<double>(credited_ahead(spec_.feeds[k])) * spec_.time_step);
@@ -375,7 +385,8 @@ template <class State, class Visit>
 void Run::fields(State& run, Visit&& visit) {
     visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
     visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.peak_wall_overlap_),
-        visit(run.fault_), visit(run.lost_first_), visit(run.times_.begin);
+        visit(run.judged_overlap_), visit(run.judged_wall_overlap_), visit(run.fault_), visit(run.lost_first_),
+        visit(run.times_.begin);
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),

@@ -65,6 +65,7 @@ private:
     void begin_phase();
     void judge_walls_that_appear();
     void end_phase(std::uint8_t condition);
+    [[nodiscard]] bool measured(std::size_t phase) const;
     void stop_here();
     void feed();
     /// Returns the future steps with which a feed has already been credited.
@@ -112,6 +113,8 @@ private:
     std::vector<double> calm_since_, watched_;  // by condition that ends the phase
     double peak_overlap_ = 0;                   // of the earlier phases
     double peak_wall_overlap_ = 0;              // likewise
+    double judged_overlap_ = 0;                 // of the earlier phases that are measured: pouring harms no answer
+    double judged_wall_overlap_ = 0;            // likewise
     std::string fault_;                         // of a wall that appears in particles
     std::int64_t glued_ = 0;
     std::int64_t lost_first_ = 0;  // particles that left in the first phase

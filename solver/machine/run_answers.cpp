@@ -2,6 +2,7 @@
 #include "solver/machine/frames.hpp"
 #include "solver/machine/reduction.hpp"
 #include "solver/machine/run.hpp"
+#include "solver/machine/setup.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 
 #include <algorithm>
@@ -26,16 +27,17 @@ std::string Run::with_names(std::string fault) const {
 }
 
 std::string Run::remark() const {
-    constexpr double many = 0.1;   // of the particles: a vessel that does not hold its filling
+    constexpr double many = 0.1;   // of the particles: a vessel that does not hold its filling; a feed flows through
     constexpr double deep = 0.05;  // overlap divided by the diameter: here Hertz's force errs by about as much
     const auto filled = static_cast<double>(species_.size());
     std::string lost, soft;
-    if (spec_.phases.size() > 1 && static_cast<double>(lost_first_) > many * filled)
+    const bool fed = std::ranges::any_of(spec_.feeds, [](const Feed& feed) { return holds(feed.during, 0); });
+    if (spec_.phases.size() > 1 && !fed && static_cast<double>(lost_first_) > many * filled)
         lost = kit::sentence(
             "%.0f of %.0f particles left the domain during the first phase: look with draw whether the "
             "vessel holds its filling",
             static_cast<double>(lost_first_), filled);
-    const double at_walls = peak_wall_overlap(), largest = std::max(at_walls, peak_overlap());
+    const double at_walls = judged_wall_overlap_, largest = std::max(at_walls, judged_overlap_);
     if (largest > deep)
         soft = (at_walls < largest ? "particles overlapped each other" : "particles overlapped a wall") +
                kit::sentence(

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace grainsweep::tests::machine_overlaps_test {
@@ -104,6 +105,22 @@ TEST(MachineOverlaps, TheRemarkStatesDeepOnes) {
     }
 }
 
+// Impacts while powder is poured are no reason to doubt what is measured afterwards.
+TEST(MachineOverlaps, TheRemarkIsOnPhasesThatAreMeasured) {
+    for (const char* precision : precisions) {
+        json machine = sphere_at_wall(-0.01);
+        machine["fill"][0]["spheres"][0]["velocity"] = {0, 0, -10};
+        machine["phases"][0]["for"] = 0.003;
+        for (const auto& [during, as, remarked] :
+             {std::tuple{"first", "last", true}, {"first", "first", false}, {"second", "last", false}}) {
+            machine["measure"]["speed"] = {{"rms_speed", json::object()}, {"during", during}, {"as", as}};
+            const Ending end = ending(machine, precision);
+            EXPECT_GT(end.seen.scalars.at("max_wall_overlap"), 0.1);
+            EXPECT_EQ(!end.remark.empty(), remarked) << during << as << end.remark;
+        }
+    }
+}
+
 TEST(MachineOverlaps, ContinueFromACheckpoint) {
     json machine = sphere_at_wall(-0.01);
     machine["fill"][0]["spheres"][0]["velocity"] = {0, 0, -10};
@@ -139,16 +156,32 @@ TEST(MachineOverlaps, AWallThatIsTooFastIsNamed) {
     }
 }
 
-TEST(MachineOverlaps, RefuseAFreeBodyAmongGluedParticles) {
-    json machine = sphere_at_wall(-2);
-    machine["walls"]["stone"] = json::parse(
+// They do not touch each other: such a wall would go on through the particle.
+TEST(MachineOverlaps, AWallThatForcesMoveEndsTheRunAtAGluedParticle) {
+    const char* walls[] = {
+        R"({"rectangle": {"corner": [-0.02, -0.02, 0.03], "along": [0.04, 0, 0], "across": [0, 0.04, 0]},
+            "motion": [{"press": {"along": [0, 0, -1], "force": 1, "mass": 0.01, "speed_at_most": 1}}]})",
+        R"({"rectangle": {"corner": [0.003, -0.03, -0.02], "along": [0, 0.06, 0], "across": [0, 0, 0.04]},
+            "motion": [{"drive": {"axis": [0, 0, 1], "through": [0.003, -0.03, 0], "torque": 0.001, "inertia": 1e-5,
+                                  "speed_at_most": 10}}]})",
         R"({"box": {"low": [-0.004, -0.004, 0.03], "high": [0.004, 0.004, 0.038]},
-        "motion": [{"free": {"mass": 0.001, "speed_at_most": 1}}]})");
-    EXPECT_EQ(refusal(machine), "");
-    machine["fill"][0]["glued"] = true;
-    EXPECT_NE(refusal(machine).find("glued particles and the free body 'stone' do not touch each other"),
-              std::string::npos)
-        << refusal(machine);
+            "motion": [{"free": {"mass": 0.001, "speed_at_most": 1}}]})"};
+    for (const char* wall : walls)
+        for (const char* precision : precisions) {
+            json machine = sphere_at_wall(-2);
+            machine["gravity"] = {0, 0, -9.81};
+            machine["domain"] = {{"low", {-0.2, -0.2, -0.2}}, {"high", {0.2, 0.2, 0.2}}};
+            machine["walls"]["moved"] = json::parse(wall);
+            machine["fill"][0]["glued"] = true;
+            machine["phases"][1]["for"] = 0.3;
+            const std::string reason = ending(machine, precision).reason;
+            EXPECT_EQ(reason.find("wall 'moved', which forces move, has reached a glued particle, and they do not "
+                                  "touch each other: leave the particle free, or hold the wall before it"),
+                      0U)
+                << wall << precision << reason;
+            machine["phases"][1]["for"] = 0.001;
+            EXPECT_EQ(ending(machine, precision).reason, "") << "not reached yet";
+        }
 }
 
 }  // namespace grainsweep::tests::machine_overlaps_test
