@@ -164,20 +164,6 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
     return next_run(why_failed(attempts, places));
 }
 
-/// Returns the fate of the checkpoint beside the database; empty: there is none, or the next run continues from it.
-std::string checkpoint_note(const std::string& database, const campaign::CaseId& id) {
-    bool usable = false;
-    std::string origin;
-    files::ArtefactFolder(folder_beside(database, of_artefacts)).visit([&](std::string_view key) {
-        if (workers::checkpointed_case(key) != id) return;
-        usable = usable || key == workers::checkpoint_key(id, this_computer());
-        origin = workers::checkpoint_origin(key);
-    });
-    if (usable || origin.empty()) return {};
-    return fmt::format(
-        "; its checkpoint is of another program ({}), so that with this one it starts from the beginning", origin);
-}
-
 std::string described_build(const campaign::Computer& by) {
     const std::string id = by.build.empty() ? "" : " " + by.build.substr(0, 12);
     return fmt::format("{} ({}){}", by.version, by.commit, id);
@@ -223,7 +209,10 @@ int explain(const Arguments& asked, Format format) {
     const Table table = attempts_table(attempts);
     std::string reason =
         why(attempts, archive.places(question.id), archive.result(question.id), why_not_again(question));
-    if (!archive.is_settled(question.id)) reason += checkpoint_note(asked.database, question.id);
+    const auto others = workers::checkpoints_of_others(
+        files::ArtefactFolder(folder_beside(asked.database, of_artefacts)), this_computer(), false);
+    if (const auto other = others.find(question.id); other != others.end() && !archive.is_settled(question.id))
+        reason += fmt::format("; with this program it starts {}", other->second);
     if (format == Format::csv) {
         report::write(std::cout, table, format);
         return 0;

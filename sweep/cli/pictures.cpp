@@ -79,8 +79,9 @@ void Pictures::say(bool on_standard_output) const {
     if ((series_ || film_) && !any_) out << "no pictures: nothing was simulated\n";
     if (!any_) return;
     if (film_)
-        out << fmt::format("{} ({}): {} frames of {} particles; open it in a browser\n", request_.page,
-                           report::size_text(page_bytes_), film_->frames(), film_->spheres());
+        out << fmt::format("{} ({}): {} frame{} of {} particles; open it in a browser\n", request_.page,
+                           report::size_text(page_bytes_), film_->frames(), film_->frames() == 1 ? "" : "s",
+                           film_->spheres());
     if (!series_) return;
     std::uintmax_t bytes = 0;
     std::size_t files = 0;

@@ -2,10 +2,12 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/folder_beside.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/program_case.hpp"
 #include "sweep/cli/stored_case.hpp"
 #include "sweep/workers/compute.hpp"
+#include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -122,6 +124,22 @@ Expectation expectation_of(const ReplayRequest& request, const campaign::Program
     return {tolerance_across_paths, false, "another build or instruction path"};
 }
 
+/// Shows an unfinished case in the state of its checkpoint: of a running case, at most a minute old.
+int show_checkpoint(const ReplayRequest& request, const campaign::Case& question) {
+    Pictures pictures(request.pictures, question);
+    if (!workers::shoot_checkpoint(question, folder_beside(request.database, of_artefacts), this_computer(),
+                                   pictures.camera()))
+        throw campaign::wrong_question(
+            "CASE", request.id,
+            "has no result yet, and this program has no checkpoint of it to show: a running case saves one every "
+            "minute");
+    campaign::CaseResult result;
+    result.message = "unfinished: the state of its last checkpoint";
+    pictures.finish(result);
+    pictures.say(true);
+    return 0;
+}
+
 }  // namespace
 
 int replay(const ReplayRequest& request, Format format) {
@@ -131,9 +149,11 @@ int replay(const ReplayRequest& request, Format format) {
     const campaign::Case question = as_asked_today(as_stored);
     archive.enter_files_of(question);
     const auto stored = archive.result(question.id);
-    if (!stored) throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
-    if (stored->outcome == Outcome::abandoned)
-        throw campaign::wrong_question("CASE", request.id, "was interrupted: there is no result to compare with yet");
+    if (!stored || stored->outcome == Outcome::abandoned) {
+        const bool shows = !request.pictures.page.empty() || !request.pictures.folder.empty();
+        if (shows && program == nullptr) return show_checkpoint(request, question);
+        throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
+    }
     if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
         std::cerr << fmt::format("grainsweep: this case {}; it may do the same here\n",
                                  stored->outcome == Outcome::crashed ? "crashed its worker" : "ran out of time");

@@ -19,7 +19,8 @@ struct ReplayRequest {
     std::int64_t threads = 0;         ///< 0: one for each core of the job
 };
 
-/// Runs the command and returns the exit code: 0 if both agree. Throws WrongQuestion if there is no stored answer.
+/// Runs the command and returns the exit code: 0 if both agree. Of a case without an answer it only takes the requested
+/// pictures, of its checkpoint. Throws WrongQuestion if there is no stored answer and no picture.
 [[nodiscard]] int replay(const ReplayRequest& request, report::Format format);
 
 }  // namespace grainsweep::cli

@@ -36,7 +36,6 @@
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <set>
 #include <utility>
 
 namespace grainsweep::cli {
@@ -166,27 +165,15 @@ void sweep(const files::ArtefactFolder& folder, const store::Store& store) {
     });
 }
 
-/// Returns a sentence on unfinished cases whose only checkpoints another build or instruction path has saved; empty:
-/// there is none. `hosts` may have other instruction paths than this one.
+/// Returns a sentence on unfinished cases that start from the beginning in spite of a checkpoint; empty: there is none.
+/// `hosts` may have other instruction paths than this one.
 std::string passed_over(const files::ArtefactFolder& folder, const store::Store& store, bool hosts) {
-    const auto build = fmt::format("\nbuild={}\n", build_id());
-    std::set<campaign::CaseId> usable, others;
-    std::string origin;
-    folder.visit([&](std::string_view key) {
-        const auto id = workers::checkpointed_case(key);
-        if (!id) return;
-        const bool fits =
-            hosts ? key.find(build) != std::string_view::npos : key == workers::checkpoint_key(*id, this_computer());
-        (fits ? usable : others).insert(*id);
-        if (!fits) origin = workers::checkpoint_origin(key);
-    });
-    std::erase_if(others,
-                  [&](const auto& id) { return usable.contains(id) || store.is_settled(id) || !store.find_case(id); });
+    auto others = workers::checkpoints_of_others(folder, this_computer(), hosts);
+    std::erase_if(others, [&](const auto& one) { return store.is_settled(one.first) || !store.find_case(one.first); });
     if (others.empty()) return {};
-    return fmt::format(
-        "note: {} unfinished case{} with a checkpoint of another program ({}) start{} from the beginning: a state is "
-        "continued by the build and instruction path that saved it",
-        others.size(), others.size() == 1 ? "" : "s", origin, others.size() == 1 ? "s" : "");
+    const bool one = others.size() == 1;
+    return fmt::format("note: {} unfinished case{} start{} {}", others.size(), one ? "" : "s", one ? "s" : "",
+                       others.begin()->second);
 }
 
 /// Shows the information that the user needs before the first answer.

@@ -30,7 +30,7 @@ Json about_case(const campaign::Case& question, const campaign::CaseResult& resu
     std::string title = shown_scene(question.scene);
     std::ranges::replace(title, '_', ' ');
     const std::string message = result.outcome == campaign::Outcome::completed
-                                    ? ""
+                                    ? result.message
                                     : fmt::format("{}: {}", campaign::to_string(result.outcome), result.message);
     Json inputs = Json::array(), results = Json::array();
     if (scene != nullptr) {

@@ -22,6 +22,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 namespace grainsweep::workers {
@@ -204,13 +205,8 @@ void answer(const Run& run, Answerer& answerer, Desk& desk) {
         desk.give_back();
 }
 
-}  // namespace
-
-std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program) {
-    return fmt::format("{}{}\n{}", checkpoint_of_case, id, binding(program));
-}
-
-std::string checkpoint_origin(std::string_view key) {
+/// Returns the version, commit and instruction path of a checkpoint's key, in words.
+std::string origin_of(std::string_view key) {
     const auto line = [&](std::string_view name) {
         const auto at = key.find(fmt::format("\n{}=", name));
         if (at == std::string_view::npos) return std::string_view("?");
@@ -220,10 +216,48 @@ std::string checkpoint_origin(std::string_view key) {
     return fmt::format("version {}, build {}, {}", line("version"), line("build").substr(0, 12), line("path"));
 }
 
+}  // namespace
+
+std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program) {
+    return fmt::format("{}{}\n{}", checkpoint_of_case, id, binding(program));
+}
+
 std::optional<campaign::CaseId> checkpointed_case(std::string_view key) {
     if (!key.starts_with(checkpoint_of_case)) return std::nullopt;
     key.remove_prefix(checkpoint_of_case.size());
     return campaign::CaseId(key.substr(0, key.find('\n')));
+}
+
+std::map<campaign::CaseId, std::string> checkpoints_of_others(const files::ArtefactFolder& folder,
+                                                              const campaign::Computer& program, bool any_path) {
+    const auto build = fmt::format("\nbuild={}\n", program.build);
+    std::map<campaign::CaseId, std::string> others;
+    std::set<campaign::CaseId> own;
+    folder.visit([&](std::string_view key) {
+        const auto id = checkpointed_case(key);
+        if (!id) return;
+        const bool fits = any_path ? key.find(build) != std::string_view::npos : key == checkpoint_key(*id, program);
+        if (fits)
+            own.insert(*id);
+        else
+            others[*id] = fmt::format(
+                "from the beginning: the checkpoint is of another program ({}), and only the build and instruction "
+                "path that saved it can continue it",
+                origin_of(key));
+    });
+    std::erase_if(others, [&](const auto& one) { return own.contains(one.first); });
+    return others;
+}
+
+bool shoot_checkpoint(const campaign::Case& question, const std::filesystem::path& artefacts,
+                      const campaign::Computer& program, const Camera& camera) {
+    files::ArtefactFolder folder(artefacts);
+    const auto saved = folder.get(checkpoint_key(question.id, program));
+    if (!saved) return false;
+    OwnArtefacts shared(&folder, program);
+    (void)compute(
+        question, 1, shared, saved, [](const Scene&) { return false; }, camera);
+    return true;
 }
 
 int work(const WorkerOptions& options) {

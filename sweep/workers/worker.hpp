@@ -5,8 +5,11 @@
 #pragma once
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/files/artefacts.hpp"
+#include "sweep/workers/compute.hpp"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,10 +33,17 @@ struct WorkerOptions {
 
 /// Returns the key of an unfinished case's checkpoint, which is stored beside the database.
 [[nodiscard]] std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program);
-/// Returns the version, commit and instruction path of a checkpoint's key, in words.
-[[nodiscard]] std::string checkpoint_origin(std::string_view key);
 /// Returns the case of a checkpoint of any build and instruction path; empty if the key is of something else.
 [[nodiscard]] std::optional<campaign::CaseId> checkpointed_case(std::string_view key);
+/// Returns the cases that this program does not continue, because other programs have saved all their checkpoints. Each
+/// has a text "from the beginning: ..." that names one of these programs. `any_path`: workers on other computers may
+/// have the instruction path of any checkpoint.
+[[nodiscard]] std::map<campaign::CaseId, std::string> checkpoints_of_others(const files::ArtefactFolder& folder,
+                                                                            const campaign::Computer& program,
+                                                                            bool any_path);
+/// Takes a picture of an unfinished case in the state of its checkpoint. Returns false if this program has none of it.
+[[nodiscard]] bool shoot_checkpoint(const campaign::Case& question, const std::filesystem::path& artefacts,
+                                    const campaign::Computer& program, const Camera& camera);
 
 /// Runs a worker. Returns the exit code of the process.
 int work(const WorkerOptions& options);

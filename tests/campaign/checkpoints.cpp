@@ -70,6 +70,27 @@ TEST(Checkpoints, ACaseOfAKilledMainProgramIsContinued) {
     EXPECT_EQ(files_in(folder / "hit.artefacts"), 0U);
 }
 
+TEST(Checkpoints, ThatOfAnUnfinishedCaseIsShown) {
+    const Folder folder;
+    folder.write("c.json", config);
+    {
+        Process run(program_command({"run", "c.json", "--db", "hit.db", "--quiet"}), folder.path());
+        await_checkpoint(run, folder / "hit.artefacts");
+        run.signal(SIGKILL);
+        run.wait();
+    }
+    const auto ids = run_program({"query", "hit.db", "SELECT case_id FROM long", "--format", "csv"}, folder.path()).out;
+    const auto id = ids.substr(ids.find('\n') + 1, 32);
+    const auto shown = run_program({"replay", "hit.db", id, "--watch", "case.html"}, folder.path());
+    EXPECT_EQ(shown.code, 0) << shown.err;
+    EXPECT_NE(shown.out.find("1 frame of"), std::string::npos) << shown.out;
+    EXPECT_EQ(run_program({"replay", "hit.db", id}, folder.path()).code, 2) << "nothing to compare with";
+    std::filesystem::remove_all(folder / "hit.artefacts");
+    const auto none = run_program({"replay", "hit.db", id, "--watch", "case.html"}, folder.path());
+    EXPECT_EQ(none.code, 2);
+    EXPECT_NE(none.err.find("no checkpoint"), std::string::npos) << none.err;
+}
+
 // A checkpoint says of which build and instruction path it is; once its case is settled it is of no use to any.
 TEST(Checkpoints, ThoseOfAnotherInstructionPathAreSweptWithTheirCase) {
     const Folder folder;
