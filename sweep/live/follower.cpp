@@ -94,14 +94,10 @@ Follower::Stamp Follower::stamp() const {
 
 std::vector<Follower::Settled> Follower::fresh(std::int64_t first) {
     std::vector<Settled> found;
-    bool gapless = true;
-    std::size_t rows = 0;
+    first_open_ = first;
     const auto each = [&](const std::vector<store::Table::Cell>& row) {
-        ++rows;
-        gapless = gapless && row[1].index() != 0 && found.size() < most_at_once;
-        if (row[1].index() == 0) return;
-        if (gapless) first_open_ = whole(row[0]) + 1;
         const auto key = static_cast<std::size_t>(whole(row[0]));
+        if (whole(row[0]) == first_open_ && found.size() < most_at_once) ++first_open_;
         if (key > most_keys) throw BrokenWorld(fmt::format("'{}': case number {}", database_.string(), key));
         if (known_.size() <= key) known_.resize(key + 1 + key / 2, 0);
         const auto mark = mark_of(words(row[1]), row[4], whole(row[5]));
@@ -109,12 +105,19 @@ std::vector<Follower::Settled> Follower::fresh(std::int64_t first) {
         known_[key] = mark;
         found.push_back({whole(row[0]), whole(row[2]), words(row[3]), words(row[1])});
     };
-    store().query(
-        fmt::format("SELECT case_key, outcome, attempts, case_id, wall_seconds, failures FROM sim_case "
-                    "WHERE case_key >= {} ORDER BY case_key",
+    const auto ask = [&](const std::string& sql, const auto& take) {
+        store().query(
+            sql, {}, [](const auto&) {}, take);
+    };
+    ask(fmt::format("SELECT case_key, outcome, attempts, case_id, wall_seconds, failures FROM sim_case "
+                    "WHERE case_key >= {} AND outcome IS NOT NULL ORDER BY case_key",
                     first),
-        {}, [](const auto&) {}, each);
-    if (first == 1) anew_ = std::exchange(rows_, rows) != rows || anew_;
+        each);
+    if (first == 1)
+        ask("SELECT count(*) FROM sim_case", [&](const auto& row) {
+            const auto rows = static_cast<std::size_t>(whole(row[0]));
+            anew_ = std::exchange(rows_, rows) != rows || anew_;
+        });
     return found;
 }
 
@@ -203,6 +206,14 @@ std::vector<JsonText> Follower::read(const Stamp& now) {
 bool Follower::in_place() const {
     std::error_code error;
     return std::filesystem::exists(database_, error);
+}
+
+bool Follower::is_settled(std::string_view case_id) {
+    try {
+        return store().is_settled(case_id);
+    } catch (const std::exception&) {
+        return false;
+    }
 }
 
 bool Follower::is_being_written() {

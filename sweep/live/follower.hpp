@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,8 @@ public:
     [[nodiscard]] const std::string& error() const { return error_; }  ///< of the last poll; empty: none
     /// Returns whether a run, of any process, has the lock of the writer. False if the file cannot be read.
     [[nodiscard]] bool is_being_written();
+    /// Returns whether the case has a result. False if the file cannot be read.
+    [[nodiscard]] bool is_settled(std::string_view case_id);
     [[nodiscard]] const std::filesystem::path& file() const { return database_; }
 
     static constexpr std::size_t most_at_once = 5000;

@@ -1,5 +1,6 @@
 #include "sweep/live/growing_page.hpp"
 
+#include "sweep/live/thread_clock.hpp"
 #include "sweep/report/page.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <exception>
 #include <utility>
 
@@ -28,13 +28,6 @@ constexpr auto longest_renewal = std::chrono::seconds(2);
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Processor time of this thread, s.
-double own_seconds() {
-    timespec spent{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
-    return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
 }
 
 }  // namespace
@@ -153,12 +146,12 @@ void GrowingPage::keep_up(const std::stop_token& stop) {
             wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return false; });
             continue;
         }
-        const double start = own_seconds();
+        const double start = thread_seconds();
         busy_ = true;
         grown_ = false;
         grown_ = renew(lock, stop, longest_renewal) || grown_;
         busy_ = false;
-        last_seconds_ = own_seconds() - start;
+        last_seconds_ = thread_seconds() - start;
         spent_ += last_seconds_;
         last = Clock::now();
         publish();

@@ -5,6 +5,7 @@
 #include "sweep/files/broken_world.hpp"
 #include "sweep/files/processes.hpp"
 #include "sweep/files/whole_file.hpp"
+#include "sweep/live/thread_clock.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_template.hpp"
 
@@ -27,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using campaign::JsonText;
 
-constexpr double least_pause = 0.4, rest_after_poll = 20;  // s; times the duration of a poll
+constexpr double least_pause = 0.4, rest_after_poll = 20;  // s; times the processor time of a poll
 constexpr auto now_pause = std::chrono::seconds(1);
 constexpr std::size_t most_recent = 32U << 20U;  // bytes of events kept for readers that were away
 // A film takes as long as its case: SQL is still answered beside two of them.
@@ -209,6 +210,7 @@ std::string Served::look() {
     const auto since = [&](Clock::time_point then) { return std::chrono::duration<double>(now - then).count(); };
     std::string events;
     if (since(polled_) >= std::max(least_pause, rest_after_poll * poll_seconds_)) {
+        const double start = thread_seconds();
         for (auto& follower : followers_) {
             auto results = follower.poll();
             if (followers_.size() > most_open) follower.rest();
@@ -232,8 +234,8 @@ std::string Served::look() {
             recent_bytes_ -= recent_.front().second.size();
             recent_.pop_front();
         }
-        polled_ = now;
-        poll_seconds_ = std::chrono::duration<double>(Clock::now() - now).count();
+        polled_ = Clock::now();
+        poll_seconds_ = thread_seconds() - start;
     }
     if (const auto latest = page_.latest(); latest->version != version_) {
         version_ = latest->version;
@@ -360,7 +362,7 @@ fs::path Served::film_file(const std::string& ticket) const {
 }
 
 HttpReply Served::start_film(const HttpQuestion& question) {
-    const auto* follower = asked(question);
+    auto* follower = asked(question);
     const std::string id(argument(question, "case"));
     if (follower == nullptr || !is_case_id(id)) return refused(404, "there is no such case");
     const auto file = fs::absolute(follower->file());
@@ -368,10 +370,11 @@ HttpReply Served::start_film(const HttpQuestion& question) {
     const auto film_json = [](const Film& film) { return JsonText{{"film", "film?ticket=" + film.ticket}}; };
     std::error_code error;
     if (const auto made = films_.find(key); made != films_.end()) {
-        if (fs::exists(film_file(made->second.ticket), error)) return json(film_json(made->second));
+        if (made->second.whole && fs::exists(film_file(made->second.ticket), error))
+            return json(film_json(made->second));
         if (jobs_.is_running(made->second.job)) return json(film_json(made->second).add("job", made->second.job));
     }
-    Film film{drawn_word(16)};
+    Film film{drawn_word(16), follower->is_settled(id)};
     const auto number = jobs_.start({"replay", file.string(), id, "--watch", film_file(film.ticket).string()},
                                     file.parent_path(), of_film);
     if (!number) return refused(503, "too much is asked at once; ask again");

@@ -80,6 +80,7 @@ private:
     /// Film of a case, made by this server.
     struct Film {
         std::string ticket;
+        bool whole = false;  ///< false: a picture of an unfinished case, which is soon out of date
         std::int64_t job = 0;
     };
     [[nodiscard]] HttpReply start_film(const HttpQuestion& question);

@@ -53,11 +53,12 @@ function runningTable(state) {
     const place = placeOf(state.database, one.case);
     const factors = place ? place.model.factors.map((f) => `${f.name} ${quantity(f).says(f.values[place.row])}`).join(", ") : "";
     const done = one.share === null ? el("span", {}, "begins") : el("progress", { max: 1, value: one.share, title: `${Math.round(100 * one.share)} %` });
-    return [place ? place.model.places[0].values[place.row] : "", done, spanText(one.seconds), factors, one.attempt, one.host,
-      place ? el("button", { type: "button", class: "plain", click: () => selectCase(place.model, place.row) }, one.case.slice(0, 10)) : one.case.slice(0, 10)];
+    const name = place ? `point ${place.model.places[0].values[place.row]}` : one.case.slice(0, 10);
+    return [place ? el("button", { type: "button", class: "plain", title: one.case, click: () => selectCase(place.model, place.row) }, name) : name,
+      done, spanText(one.seconds), factors, one.attempt, one.host];
   });
   const more = state.run.running.length + state.run.running_more - shown.length;
-  return [table([["point", "number"], ["done"], ["for", "number"], ["factors", "text"], ["attempt", "number"], ["host"], ["case"]], rows),
+  return [table([["case"], ["done"], ["for", "number"], ["factors", "text"], ["attempt", "number"], ["host"]], rows),
     more > 0 ? el("p", { class: "says" }, `and ${more} more`) : null];
 }
 
@@ -124,13 +125,12 @@ function failuresNow() {
 const mostShown = 20;
 function showNow() {
   if (live.panel.contains(document.activeElement) && document.activeElement.tagName !== "BUTTON") return;
-  const many = live.now && live.now.databases.length > mostShown;
-  const rank = (state) => (state.error || !state.in_place ? 0 : state.run ? 1 : 2);  // of many, what needs attention
-  const states = live.now ? (many ? [...live.now.databases].sort((a, b) => rank(a) - rank(b)).slice(0, mostShown) : live.now.databases) : [];
+  const rank = (state) => (state.error || !state.in_place ? 0 : state.run ? 1 : 2);  // what needs attention stands first
+  const all = live.now ? [...live.now.databases].sort((a, b) => rank(a) - rank(b)) : [], states = all.slice(0, mostShown);
   const away = live.lost ? el("div", { class: "verdict no" }, "The server does not answer. The page shows the last it said and asks again.") : null;
   const told = live.now && live.now.databases.some((one) => one.error);
   const broken = live.now && live.now.error && !told ? el("div", { class: "verdict no" }, live.now.error) : null;
-  const more = many ? el("p", { class: "says" }, `and ${live.now.databases.length - states.length} more databases`) : null;
+  const more = all.length > mostShown ? el("p", { class: "says" }, `and ${all.length - mostShown} more databases`) : null;
   live.panel.replaceChildren(...[away, broken, ...states.map(stateOf), more, failuresNow()].filter(Boolean));
 }
 
@@ -234,9 +234,10 @@ function sqlConsole() {
 
 document.addEventListener("grainsweep:case", (event) => {
   const { campaign, case_id: id } = event.detail, found = data.campaigns.find((one) => one.name === campaign);
+  const place = placeOf(found.database, id), unfinished = place && ["not yet", "abandoned"].includes(place.model.outcome(place.row));
   const said = el("span", { class: "says" });
-  const show = button("▶ Film", async () => {
-    said.textContent = " computing it again, at low priority …";
+  const show = button(unfinished ? "Picture of the last checkpoint" : "▶ Film", async () => {
+    said.textContent = unfinished ? " …" : " computing it again, at low priority …";
     try {
       const begun = await ask("film", { database: found.database, case: id }, "");
       await endOf(begun);

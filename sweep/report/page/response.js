@@ -49,11 +49,12 @@ function moment(campaign, response, other, [name, title]) {
       return [{ data: points.map((x, i) => ({ x, y: values[i] })), errorsOf: errors, borderColor: colour(tone), backgroundColor: colour(tone), borderWidth: 2, pointRadius: points.length > 40 ? 0 : 2.5, pointHitRadius: 8 },
         Object.assign({ data: at(1), fill: "+1" }, edge), Object.assign({ data: at(-1) }, edge)];
     };
+    const datasets = line(history, "one").concat(other ? line(other, "two") : []);
     return {
       type: "line",
-      data: { datasets: line(history, "one").concat(other ? line(other, "two") : []) },
+      data: { datasets },
       options: {
-        scales: { x: axis("design points", { type: "linear", min: 0 }), y: axis(shown.unit) },
+        scales: { x: axis("design points", { type: "linear", min: 0 }), y: axis(shown.unit, aroundOne(datasets.flatMap(({ data }) => data.map(({ y }) => y)), (y) => y)) },
         plugins: {
           marker: { at: campaign.stopped_at !== null ? campaign.stopped_at : history.converged_at, label: campaign.stopped_at !== null ? "stopped" : "converged" },
           tooltip: { filter: (item) => item.datasetIndex % 3 === 0, callbacks: {
