@@ -1,4 +1,6 @@
 // `grainsweep serve` beside a run: what a reader of its events gets, and what the reader may do.
+#include "tests/support/event_reader.hpp"
+#include "tests/support/failing_call.hpp"
 #include "tests/support/live_server.hpp"
 #include "tests/support/progress.hpp"
 #include "tests/support/served_rounds.hpp"
@@ -42,47 +44,6 @@ void change(const fs::path& file, const std::string& sql) {
     sqlite3_close(db);
 }
 
-/// Reads a stream of events as it comes.
-class Reader {
-public:
-    explicit Reader(Connected stream) : stream_(std::move(stream)) {}
-
-    /// Reads on until the condition holds; false where it does not for a minute, or the stream ends.
-    template <class Condition>
-    bool until(Condition holds) {
-        for (const auto last = Clock::now() + 60s; !holds();) {
-            const auto more = stream_.receive(20ms);
-            if (!more || Clock::now() > last) return false;
-            text_ += *more;
-            for (auto end = text_.find("\n\n"); end != std::string::npos; end = text_.find("\n\n")) {
-                take(text_.substr(0, end));
-                text_.erase(0, end + 2);
-            }
-        }
-        return true;
-    }
-
-    std::multiset<std::string> cases;  ///< told, by id
-    Json now;                          ///< the last of its kind
-    int pages = 0;
-
-private:
-    void take(const std::string& event) {
-        const auto kind = [&](const char* name) {
-            return event.find(std::string("event: ") + name) != std::string::npos;
-        };
-        if (kind("page")) ++pages;
-        if (kind("now")) now = data_of(event);
-        if (!kind("results")) return;
-        const auto data = data_of(event);
-        for (const auto& one : data["results"]) cases.insert(one["case"].get<std::string>());
-    }
-    static Json data_of(const std::string& event) { return Json::parse(event.substr(event.find("data: ") + 6)); }
-
-    Connected stream_;
-    std::string text_;
-};
-
 struct ServedCampaign : testing::Test {
     Folder folder;
 
@@ -108,7 +69,7 @@ TEST_F(ServedCampaign, ResultsReachAReaderWithinTwoSeconds) {
     begin("a", 300, 0.02);
     const auto before = settled("a");
     const LiveServer server(folder, "a.db");
-    Reader reader(server.events());
+    EventReader reader(server.events());
     Process run(command_of("a"), folder.path());
     std::vector<double> seconds;
     while (run.running() && seconds.size() < 5) {
@@ -132,7 +93,7 @@ TEST_F(ServedCampaign, AReaderStaysWhileTheRunIsKilledAndResumed) {
     begin("a", 150, 0.02);
     const auto before = settled("a");
     const LiveServer server(folder, "a.db");
-    Reader reader(server.events());
+    EventReader reader(server.events());
     {
         Process run(command_of("a"), folder.path());
         await_settled(run, folder / "a.db", 30);
@@ -152,7 +113,7 @@ TEST_F(ServedCampaign, AFolderIsServedAndADatabaseThatAppears) {
     const LiveServer server(folder, ".");
     const auto databases = [&] { return Json::parse(server.get("/data").body)["databases"]; };
     EXPECT_EQ(databases(), Json({"a.db", "b.db"}));
-    Reader reader(server.events());
+    EventReader reader(server.events());
     EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
     const int before = reader.pages;
     const auto asked = Json::parse(server.post("/query", "database=a.db", "SELECT 1 AS one").body);
@@ -168,7 +129,7 @@ TEST_F(ServedCampaign, AFolderIsServedAndADatabaseThatAppears) {
 TEST_F(ServedCampaign, ADatabaseThatIsMovedAwayIsReported) {
     begin("a", 3, 0);
     const LiveServer server(folder, "a.db");
-    Reader reader(server.events());
+    EventReader reader(server.events());
     EXPECT_TRUE(reader.until([&] { return reader.now.is_object() && reader.now["databases"][0]["in_place"] == true; }));
     fs::rename(folder / "a.db", folder / "kept.db");
     EXPECT_TRUE(reader.until([&] { return reader.now["databases"][0]["in_place"] == false; }));
@@ -178,7 +139,7 @@ TEST_F(ServedCampaign, ADatabaseThatIsMovedAwayIsReported) {
 TEST_F(ServedCampaign, AnEndedReaderAndCtrlCLeaveNothing) {
     begin("a", 3, 0);
     LiveServer server(folder, "a.db");
-    std::list<Reader> readers;
+    std::list<EventReader> readers;
     for (int k = 0; k < 20; ++k) readers.emplace_back(server.events());
     for (auto& reader : readers) EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
     for (int k = 0; k < 10; ++k) readers.pop_front();
@@ -207,7 +168,7 @@ TEST_F(ServedCampaign, APortThatIsTakenGetsOneSentence) {
 TEST_F(ServedCampaign, WithControlTheReaderStopsAndStartsTheRun) {
     begin("a", 100, 0.05);
     const LiveServer server(folder, "a.db", {"--control", "a.json"});
-    Reader reader(server.events());
+    EventReader reader(server.events());
     const auto runs = [&] { return reader.now.is_object() && reader.now["databases"][0]["run"].is_object(); };
     Process run(command_of("a"), folder.path());
     EXPECT_TRUE(reader.until(runs));
@@ -234,7 +195,7 @@ TEST_F(ServedCampaign, OfAFolderEveryCampaignFileCanBeStarted) {
     begin("b", 4, 0);
     folder.write("notes.json", R"({"no": "campaign"})");
     const LiveServer server(folder, ".", {"--control", "."});
-    Reader reader(server.events());
+    EventReader reader(server.events());
     EXPECT_EQ(server.post("/run", "database=b.db").status, 404) << "which file?";
     EXPECT_EQ(server.post("/run", "database=b.db&config=notes.json").status, 404) << "no campaign";
     EXPECT_EQ(server.post("/run", "database=b.db&config=b.json").status, 200);
@@ -274,7 +235,7 @@ TEST_F(ServedCampaign, AFilmIsComputedOnceAndShownWithoutOriginAndToken) {
 TEST_F(ServedCampaign, ADatabaseThatCannotBeReadIsNamedAndTheOthersStay) {
     for (const auto* name : {"a", "b"}) begin(name, 3, 0);
     LiveServer server(folder, ".");
-    Reader reader(server.events());
+    EventReader reader(server.events());
     const auto state = [&](std::size_t k) { return reader.now.is_object() ? reader.now["databases"].at(k) : Json(); };
     const auto broken = [&] { return state(0).is_object() && !state(0)["error"].get<std::string>().empty(); };
     EXPECT_TRUE(reader.until([&] { return state(1).is_object() && state(1)["error"] == ""; }));
@@ -312,7 +273,7 @@ TEST_F(ServedCampaign, AnEndlessViewStopsNothing) {
 TEST_F(ServedCampaign, ADatabaseThatIsMadeAnewIsFollowed) {
     begin("a", 3, 0);
     const LiveServer server(folder, "a.db");
-    Reader reader(server.events());
+    EventReader reader(server.events());
     EXPECT_TRUE(reader.until([&] { return reader.now.is_object(); }));
     fs::remove(folder / "a.db");
     begin("a", 7, 0);
@@ -340,7 +301,7 @@ TEST_F(ServedCampaign, FilesOfOthersBesideADatabaseStopNothing) {
     fs::last_write_time(folder / "a.now", fs::file_time_type::clock::now() + 1h);
     EXPECT_EQ(server.post("/stop", "").status, 409);
     EXPECT_EQ(server.post("/run", "").status, 200) << "no run has the database";
-    Reader reader(server.events());
+    EventReader reader(server.events());
     EXPECT_TRUE(reader.until([&] { return settled("a") == 3; }));
     EXPECT_FALSE(fs::is_symlink(folder / "a.run.log"));
     std::ifstream precious(folder / "precious");
@@ -370,6 +331,42 @@ TEST_F(ServedCampaign, TheEndOfAKilledRunIsKnownAtOnce) {
     EXPECT_TRUE(fs::exists(folder / "a.now"));
     const auto ended = run_program({"status", "a.db"}, folder.path());
     EXPECT_EQ(ended.out.find("under way"), std::string::npos) << ended.out;
+}
+
+TEST_F(ServedCampaign, NoProgramRemovesTheLogOfADatabaseThatTheServerHasOpen) {
+    begin("a", 200, 0.01);
+    const RemovedLogs removed(folder.path());
+    LiveServer server(folder, "a.db");
+    EventReader reader(server.events());
+    for (const int ended_by : {SIGKILL, SIGINT}) {
+        Process run(command_of("a"), folder.path());
+        await_settled(run, folder / "a.db", settled("a") + 20);
+        run.signal(ended_by);
+        (void)run.wait();
+        for (const auto* command : {"status", "verify", "dump"})
+            EXPECT_EQ(run_program({command, "a.db"}, folder.path()).code, 0) << command;
+        EXPECT_EQ(run_program({"run", "a.json", "--quiet", "--max-cases", "10", "-j", "1"}, folder.path()).code, 1);
+    }
+    const auto told = [&] { return std::set(reader.cases.begin(), reader.cases.end()).size(); };
+    EXPECT_TRUE(reader.until([&] { return std::cmp_equal(told() + 1, settled("a")); }));
+    EXPECT_EQ(removed.in_use(), 0);
+    server.process().signal(SIGINT);
+    EXPECT_EQ(server.process().wait().code, 0);
+    EXPECT_EQ(run_program({"status", "a.db"}, folder.path()).code, 0);
+    EXPECT_GT(removed.free(), 0) << "removals are seen";
+}
+
+// A process that closes another descriptor of the file loses its locks: the log must show what follows.
+TEST_F(ServedCampaign, ARemovalUnderAProcessWithoutLocksIsSeen) {
+    begin("a", 3, 0);
+    const RemovedLogs removed(folder.path());
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open((folder / "a.db").c_str(), &db), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(db, "SELECT count(*) FROM sim_case", nullptr, nullptr, nullptr), SQLITE_OK);
+    std::ifstream(folder / "a.db").get();
+    EXPECT_EQ(run_program({"status", "a.db"}, folder.path()).code, 0);
+    EXPECT_GT(removed.in_use(), 0);
+    sqlite3_close(db);
 }
 
 // Rounds of stop, kill, resume, status, verify and VACUUM beside an open page, from tests/bench/served_slow.cpp.

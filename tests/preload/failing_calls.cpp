@@ -3,11 +3,15 @@
 //
 //   GRAINSWEEP_FAILING_CALL="WHO CALL FILE NUMBER WHEN WHAT TOKEN"
 //     WHO     main (program) or worker
-//     CALL    open (to write), write, read, sync, truncate, rename, remove or exec (in the process that main has
-//     forked) FILE    the end of the file's name, of a rename the old one; pipe: any pipe NUMBER  at the so-many-th
-//     such call of the process WHEN    before the call or after it; after: it has succeeded WHAT    kill, the seconds
-//     it takes, or the errno it fails with, as -28 TOKEN   a file that goes when it happens, so that it happens once,
-//     in the process that comes first
+//     CALL    open (to write), write, read, sync, truncate, rename, remove, or exec (in the process that main forked)
+//     FILE    end of the file's name, of a rename the old one; pipe: any pipe
+//     NUMBER  at the so-many-th such call of the process
+//     WHEN    before the call, or after it has succeeded
+//     WHAT    kill, the seconds it takes, or the errno it fails with, as -28
+//     TOKEN   file that is removed when it happens, so that it happens once, in the process that comes first
+//
+//   GRAINSWEEP_REMOVED_LOGS=FILE  a line for each write-ahead log of SQLite, or its index, that the process removes:
+//     "in use" if another process has it open, else "free", and its name
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -22,7 +26,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 namespace {
 
@@ -111,6 +118,31 @@ int opened(const char* path, int flags, unsigned mode) {
     return static_cast<int>(to_write ? guarded("open", std::string_view(path), perform) : perform());
 }
 
+/// Returns whether a process other than this one has the file open.
+bool is_open_elsewhere(const char* file) {
+    namespace fs = std::filesystem;
+    std::error_code error, none;
+    const std::string self = std::to_string(getpid());
+    for (fs::directory_iterator process("/proc", error), end; !error && process != end; process.increment(error)) {
+        const std::string name = process->path().filename();
+        if (name == self || name.find_first_not_of("0123456789") != std::string::npos) continue;
+        for (fs::directory_iterator open(process->path() / "fd", none); !none && open != end; open.increment(none))
+            if (fs::equivalent(open->path(), file, none)) return true;
+    }
+    return false;
+}
+
+void note_removal(const char* path) {
+    static const char* const log = std::getenv("GRAINSWEEP_REMOVED_LOGS");
+    const std::string_view name(path);
+    if (log == nullptr || !(name.ends_with("-wal") || name.ends_with("-shm")) || access(path, F_OK) != 0) return;
+    const std::string line = (is_open_elsewhere(path) ? "in use " : "free ") + std::string(name) + "\n";
+    const int file =
+        static_cast<int>(syscall(SYS_openat, AT_FDCWD, log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
+    syscall(SYS_write, file, line.data(), line.size());
+    syscall(SYS_close, file);
+}
+
 unsigned mode_in(int flags, va_list& more) {
     return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, unsigned) : 0;
 }
@@ -165,6 +197,7 @@ int execve(const char* path, char* const arguments[], char* const environment[])
         guarded("exec", std::string_view(path), [&] { return syscall(SYS_execve, path, arguments, environment); }));
 }
 int unlink(const char* path) noexcept {
+    note_removal(path);
     return static_cast<int>(guarded("remove", std::string_view(path), [&] { return syscall(SYS_unlink, path); }));
 }
 int remove(const char* path) noexcept {

@@ -2,6 +2,7 @@
 
 #include "tests/support/places.hpp"
 
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -40,6 +41,23 @@ std::vector<std::string> command_with(const FailingCall& call, const std::filesy
 
 bool has_happened(const std::filesystem::path& token) {
     return !std::filesystem::exists(token);
+}
+
+RemovedLogs::RemovedLogs(const std::filesystem::path& folder) : file_(folder / "removed_logs") {
+    ::setenv("LD_PRELOAD", tests::failing_calls().c_str(), 1);
+    ::setenv("GRAINSWEEP_REMOVED_LOGS", file_.c_str(), 1);
+}
+
+RemovedLogs::~RemovedLogs() {
+    ::unsetenv("LD_PRELOAD");
+    ::unsetenv("GRAINSWEEP_REMOVED_LOGS");
+}
+
+int RemovedLogs::count(const std::string& word) const {
+    std::ifstream stream(file_);
+    int lines = 0;
+    for (std::string line; std::getline(stream, line);) lines += line.starts_with(word) ? 1 : 0;
+    return lines;
 }
 
 SmallCampaign::SmallCampaign() : SmallCampaign(saving_often) {}

@@ -27,6 +27,24 @@ struct FailingCall {
 /// Whether the call of that token has gone wrong.
 [[nodiscard]] bool has_happened(const std::filesystem::path& token);
 
+/// Log of the write-ahead logs that processes started during its life remove.
+class RemovedLogs {
+public:
+    explicit RemovedLogs(const std::filesystem::path& folder);
+    ~RemovedLogs();
+    RemovedLogs(const RemovedLogs&) = delete;
+    RemovedLogs& operator=(const RemovedLogs&) = delete;
+    /// Returns how many files were removed so far while another process had them open.
+    [[nodiscard]] int in_use() const { return count("in use "); }
+    /// Returns how many files were removed that nothing else had open.
+    [[nodiscard]] int free() const { return count("free "); }
+
+private:
+    [[nodiscard]] int count(const std::string& word) const;
+
+    std::filesystem::path file_;
+};
+
 /// A campaign of a few cases that save themselves after every slice, and what must hold of it after any misfortune.
 class SmallCampaign {
 public:

@@ -11,11 +11,11 @@
 namespace grainsweep::tests {
 
 struct ServedRounds {
-    int done = 0;  ///< rounds
+    int done = 0;    ///< rounds
+    int prompt = 0;  ///< of these, after which the page had what was stored within 2 s
     int stops = 0, kills = 0, vacuums = 0;
     std::int64_t settled = 0;  ///< cases stored at the end
     double slowest = 0;        ///< s, until the page had what was stored
-    int logs_lost = 0;         ///< write-ahead logs that were removed while the server had them open
     std::string complaint;     ///< of what did not hold; empty: all held
 };
 
