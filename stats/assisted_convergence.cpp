@@ -29,8 +29,10 @@ AssistedConvergence::AssistedConvergence(ConvergenceSettings settings, ModelSpac
     if (settings_.sequences < fewest_sequences)
         throw std::invalid_argument("the rule 'assisted' needs at least 4 random sequences, not " +
                                     std::to_string(settings_.sequences));
-    if (std::ranges::find(settings_.gates, Statistic::skewness) != settings_.gates.end())
+    if (std::ranges::find(settings_.gates, Gate{Statistic::skewness}) != settings_.gates.end())
         throw std::invalid_argument("Pearson's skewness has no model-assisted estimate");
+    if (std::ranges::any_of(settings_.gates, [](const Gate& g) { return std::holds_alternative<Level>(g); }))
+        throw std::invalid_argument("a quantile or probability has no model-assisted gate");
     if (space_.dimensions == 0) throw std::invalid_argument("a model of the response needs a feature");
     (void)Convergence(plain(settings_));  // the other settings
 }

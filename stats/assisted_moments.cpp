@@ -13,6 +13,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::stats {
 namespace {
@@ -112,7 +113,9 @@ struct Parts {
     std::vector<RawMoments> residuals;               ///< of each case: z^p - g_p
     std::vector<double> predicted;                   ///< m_s(x_i)
     response::BeyondCases beyond;
-    double error = 0;  ///< rms of z_i - m_s(x_i)
+    std::vector<std::vector<double>> spread;  ///< [sequence]: m_s at the integration points; empty: not wanted
+    std::vector<double> noise;                ///< [sequence]: sqrt(v)
+    double error = 0;                         ///< rms of z_i - m_s(x_i)
 };
 
 /// Everything for the sequences of one parity, with hyperparameters of the others.
@@ -144,6 +147,11 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
     for (std::size_t f = 0; f < folds.size(); ++f) {
         auto& integrals = parts.integrals[folds[f]];
         integrals.assign(scramblings, RawMoments{});
+        if (!settings.levels.empty()) {
+            const auto column = means.col(static_cast<Eigen::Index>(f));
+            parts.spread[folds[f]].assign(column.begin(), column.end());
+            parts.noise[folds[f]] = std::sqrt(v);
+        }
         for (std::size_t q = 0; q < each * scramblings; ++q) {
             const RawMoments g =
                 response::closure(means(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(f)), v);
@@ -296,6 +304,26 @@ void add_assisted(AssistedMoments& result, const Cases& c, const Parts& parts, d
     }
 }
 
+/// Levels in the unit of the response.
+void add_levels(AssistedMoments& result, const Cases& c, Parts parts, const AssistedSettings& settings) {
+    if (result.unforeseen || !(result.model_error < settings.refused_error)) return;
+    LeftOutPredictions model{.values = {c.z.begin(), c.z.end()},
+                             .predicted = std::move(parts.predicted),
+                             .sequences = c.sequence,
+                             .spread = std::move(parts.spread),
+                             .noise = std::move(parts.noise)};
+    for (const Level& level : settings.levels) {
+        if (const auto* beyond = std::get_if<Exceedance>(&level)) {
+            const double standardised = (beyond->threshold - c.offset) / c.scale;
+            const auto found = assisted_level_of(Exceedance{standardised, beyond->above}, model);
+            result.levels.push_back({level, found.value, found.error});
+        } else {
+            const auto found = assisted_level_of(level, model);
+            result.levels.push_back({level, c.offset + c.scale * found.value, c.scale * found.error});
+        }
+    }
+}
+
 /// Cases without a value make two populations, whose moments may differ without a contradiction.
 std::string reason_for_the_plain(const AssistedMoments& result) {
     if (result.excluded == 0) return " is withdrawn: it contradicts the plain ";
@@ -340,9 +368,12 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
 std::variant<AssistedMoments, Refusal> assisted_estimate(const AssistedInput& input, const AssistedSettings& settings) {
     const Cases c = gather(input, settings);
     if (const auto reason = reason_against_assisting(input, c)) return *reason;
-    Parts parts{std::vector<std::vector<RawMoments>>(c.sequences), std::vector<RawMoments>(c.sequence.size()),
+    Parts parts{std::vector<std::vector<RawMoments>>(c.sequences),
+                std::vector<RawMoments>(c.sequence.size()),
                 std::vector<double>(c.sequence.size()),
-                response::BeyondCases({c.z.data(), static_cast<std::size_t>(c.z.size())}, c.sequences)};
+                response::BeyondCases({c.z.data(), static_cast<std::size_t>(c.z.size())}, c.sequences),
+                std::vector<std::vector<double>>(c.sequences),
+                std::vector<double>(c.sequences, 0)};
     const Eigen::MatrixXd integration = in_box(input.integration, settings);
     for (const std::size_t parity : {std::size_t{0}, std::size_t{1}})
         if (!add_half(parts, c, integration, input.scramblings, settings, parity))
@@ -357,6 +388,7 @@ std::variant<AssistedMoments, Refusal> assisted_estimate(const AssistedInput& in
     add_assisted(result, c, parts, input.noise_variance_error);
     result.endless = parts.beyond.endless();
     if (parts.beyond.says_nothing()) result.unforeseen = parts.beyond.unforeseen();
+    if (!settings.levels.empty()) add_levels(result, c, std::move(parts), settings);
     return result;
 }
 

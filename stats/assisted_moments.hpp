@@ -48,6 +48,7 @@
 // is withdrawn; the plain one is taken because convergence is judged on the cases with a value.
 #pragma once
 
+#include "stats/levels.hpp"
 #include "stats/moments.hpp"
 #include "stats/response_model.hpp"
 
@@ -71,7 +72,8 @@ struct AssistedSettings {
     std::size_t cases_in_fit = 300;    ///< of each half, for the hyperparameters
     std::size_t most_training = 1500;  ///< cases the models rest on; all are used for the correction
     std::size_t starts = 4;
-    double refused_error = 0.6;  ///< of the model on left-out sequences, in sd: not assisted from there on
+    std::span<const Level> levels = {};  ///< of which estimates with the model are wanted
+    double refused_error = 0.6;          ///< of the model on left-out sequences, in sd: not assisted from there on
 };
 
 struct AssistedInput {
@@ -122,6 +124,7 @@ struct AssistedMoments {
     /// large for a model to say anything of the tail.
     std::optional<double> unforeseen = std::nullopt;
     std::array<AssistedStatistic, assisted_statistics.size()> statistics;
+    std::vector<LevelEstimate> levels;    ///< with the model, of single runs; none where the model is not taken
     std::array<ScatterBudget, 3> budget;  ///< variance, third, fourth central moment; NaN where the noise is unknown
     /// Why assisted estimates were withdrawn or not taken: one sentence for each, with semicolons; empty: none was.
     std::string remark;

@@ -78,8 +78,28 @@ bool median_is_unsound(double zero_share) {
     return std::abs(zero_share - 0.5) <= 0.05;
 }
 
-double measure_of(Statistic statistic, double error, double value) {
-    switch (statistic) {
+std::string to_string(const Gate& gate) {
+    if (const auto* statistic = std::get_if<Statistic>(&gate)) return std::string(to_string(*statistic));
+    return to_string(std::get<Level>(gate));
+}
+
+std::optional<Gate> gate_named(std::string_view word) {
+    if (const auto statistic = statistic_named(word)) return *statistic;
+    if (const auto level = level_named(word)) return *level;
+    return std::nullopt;
+}
+
+const Estimate& Checkpoint::of(const Gate& gate) const {
+    if (const auto* statistic = std::get_if<Statistic>(&gate)) return of(*statistic);
+    const auto found = std::ranges::find(levels, std::get<Level>(gate), &std::pair<Level, Estimate>::first);
+    if (found == levels.end()) throw std::invalid_argument("no check of " + to_string(gate));
+    return found->second;
+}
+
+double measure_of(const Gate& gate, double error, double value) {
+    if (const auto* level = std::get_if<Level>(&gate))
+        return std::holds_alternative<Quantile>(*level) ? error / std::abs(value) : error;
+    switch (std::get<Statistic>(gate)) {
         case Statistic::skewness:
             return error / 3;
         case Statistic::g1:
@@ -91,11 +111,11 @@ double measure_of(Statistic statistic, double error, double value) {
 
 void compare_with_tolerance(Checkpoint& now, const ConvergenceSettings& settings) {
     const bool any = settings.traits().one_gate;
-    const auto passes = [&](Statistic gate) { return now.of(gate).measure < settings.tolerance; };
+    const auto passes = [&](const Gate& gate) { return now.of(gate).measure < settings.tolerance; };
     now.passes = any ? std::ranges::any_of(settings.gates, passes) : std::ranges::all_of(settings.gates, passes);
     if (now.passes) return;
     // Where one gate is enough the nearest decides.
-    const auto distance = [&](Statistic gate) {
+    const auto distance = [&](const Gate& gate) {
         const double measure = now.of(gate).measure;
         return std::isnan(measure) ? std::numeric_limits<double>::infinity() : measure;
     };
@@ -107,7 +127,7 @@ double points_for_tolerance(const ConvergenceSettings& settings, std::span<const
                             const Checkpoint& now) {
     const bool any = settings.traits().one_gate;
     double needed = any ? std::numeric_limits<double>::infinity() : 0;
-    for (const Statistic gate : settings.gates) {
+    for (const Gate& gate : settings.gates) {
         std::vector<std::pair<double, double>> history;
         for (const auto& check : before) history.emplace_back(check.points, check.of(gate).measure);
         history.emplace_back(now.points, now.of(gate).measure);
@@ -170,7 +190,9 @@ void Convergence::add(std::int64_t point, double value, std::int64_t earlier) {
     }
     if (finite) pooled_.sample.add(value);
     if (sequences_.empty()) {
-        if (finite) stretches_.add(value);
+        if (!finite) return;
+        stretches_.add(value);
+        pooled_.values.push_back(value);
         return;
     }
     auto& sequence = sequences_[static_cast<std::size_t>(point % settings_.sequences)];
@@ -202,6 +224,7 @@ void Convergence::check() {
     for (std::size_t s = 0; s < statistics.size(); ++s) now.estimates[s].value = summary.of(statistics[s]);
     find_errors(now);
     widen_errors(now);
+    find_levels(now);
     find_measures(now);
     judge(now);
     checkpoints_.push_back(now);
@@ -230,6 +253,21 @@ void Convergence::find_errors(Checkpoint& now) {
     const auto tails = tails_of(pooled_.sample.sorted(), std::max<std::size_t>(1, sequences_.size()));
     judge_shape(now, summaries, !tails.empty());
     doubt_tails(now, tails);
+}
+
+void Convergence::find_levels(Checkpoint& now) const {
+    GroupedSample sample{.sorted = pooled_.sample.sorted(),
+                         .groups = {},
+                         .independent = !sequences_.empty(),
+                         .repeated = std::sqrt(excess_) / static_cast<double>(places_)};
+    for (const auto& sequence : sequences_) sample.groups.emplace_back(sequence.values);
+    if (sequences_.empty()) sample.groups = stretches_of(pooled_.values);
+    for (const Gate& gate : settings_.gates) {
+        const auto* level = std::get_if<Level>(&gate);
+        if (level == nullptr) continue;
+        const auto found = level_of(*level, sample);
+        now.levels.emplace_back(*level, Estimate{.value = found.value, .error = now.all_equal ? nan : found.error});
+    }
 }
 
 void Convergence::doubt_tails(Checkpoint& now, std::span<const Tail> tails) {
@@ -327,15 +365,17 @@ void Convergence::widen_errors(Checkpoint& now) const {
 }
 
 void Convergence::find_measures(Checkpoint& now) const {
-    for (const Statistic statistic : statistics) {
-        Estimate& estimate = now.estimates[static_cast<std::size_t>(statistic)];
+    const auto judge_one = [&](const Gate& gate, Estimate& estimate) {
         double error = estimate.error;
         if (!settings_.traits().of_sequences)
-            error = checkpoints_.empty() ? nan : std::abs(estimate.value - checkpoints_.back().of(statistic).value);
-        const bool unsound = statistic == Statistic::skewness && median_is_unsound(now.zero_share);
+            error = checkpoints_.empty() ? nan : std::abs(estimate.value - checkpoints_.back().of(gate).value);
+        const bool unsound = gate == Gate{Statistic::skewness} && median_is_unsound(now.zero_share);
         const bool unknown = now.all_equal || now.fresh == 0 || unsound;
-        estimate.measure = unknown ? nan : measure_of(statistic, error, estimate.value);
-    }
+        estimate.measure = unknown ? nan : measure_of(gate, error, estimate.value);
+    };
+    for (const Statistic statistic : statistics)
+        judge_one(statistic, now.estimates[static_cast<std::size_t>(statistic)]);
+    for (auto& [level, estimate] : now.levels) judge_one(level, estimate);
 }
 
 void Convergence::judge(Checkpoint& now) const {

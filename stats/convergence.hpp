@@ -3,7 +3,8 @@
 // The values of a design are added in the order of its points. A check at every multiple of `block` points computes the
 // statistics of all points so far, with their errors. For each gated statistic a measure is compared with the
 // tolerance:
-//   mean, sd, kurtosis   e/|value|        g1   e/max(1, |g1|)        skewness (Pearson's)   e/3, 3 being its bound
+//   mean, sd, kurtosis, a quantile   e/|value|        g1   e/max(1, |g1|)        skewness (Pearson's)   e/3, 3 being
+//   its bound        a probability   e
 // The rules differ in the error e and in the condition of convergence:
 //   replicates  e = Student-t 95 % half-width over the R values of R independently randomised sequences (point p
 //               belongs to sequence p mod R); every gate below the tolerance at two consecutive checks.
@@ -41,6 +42,7 @@
 #pragma once
 
 #include "stats/convergence_rule.hpp"
+#include "stats/levels.hpp"
 #include "stats/moments.hpp"
 #include "stats/stretches.hpp"
 #include "stats/tail.hpp"
@@ -51,13 +53,23 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::stats {
 
+/// What a rule judges.
+using Gate = std::variant<Statistic, Level>;
+
+[[nodiscard]] std::string to_string(const Gate& gate);
+/// Returns the gate of a word of the campaign file: the name of a statistic, or a level (levels.hpp).
+[[nodiscard]] std::optional<Gate> gate_named(std::string_view word);
+
 struct ConvergenceSettings {
     ConvergenceRule rule = ConvergenceRule::replicates;
-    std::vector<Statistic> gates = {Statistic::mean, Statistic::sd, Statistic::kurtosis, Statistic::g1};
+    std::vector<Gate> gates = {Statistic::mean, Statistic::sd, Statistic::kurtosis, Statistic::g1};
     double tolerance = 0.01;
     std::int64_t block = 400;    ///< points between two checks
     std::int64_t sequences = 1;  ///< R of the design
@@ -87,9 +99,10 @@ struct Checkpoint {
     bool all_equal = false;     ///< only one distinct value: the scatter is unknown
     double zero_share = std::numeric_limits<double>::quiet_NaN();
     std::array<Estimate, statistics.size()> estimates;
-    bool passes = false;                 ///< the gates are below the tolerance at this check
-    bool converged = false;              ///< passes, and for `replicates` also at the check before
-    std::optional<Statistic> held_back;  ///< if the check does not pass: the gate that decides
+    std::vector<std::pair<Level, Estimate>> levels;  ///< those among the gates
+    bool passes = false;                             ///< the gates are below the tolerance at this check
+    bool converged = false;                          ///< passes, and for `replicates` also at the check before
+    std::optional<Gate> held_back;                   ///< if the check does not pass: the gate that decides
     /// Number of points at which the campaign will probably converge, from the observed decay of the measures; empty if
     /// a gate is undefined.
     std::optional<std::int64_t> points_needed;
@@ -99,13 +112,14 @@ struct Checkpoint {
     [[nodiscard]] const Estimate& of(Statistic statistic) const {
         return estimates[static_cast<std::size_t>(statistic)];
     }
+    [[nodiscard]] const Estimate& of(const Gate& gate) const;
 };
 
 /// Returns whether the share of zeros makes the median jump, so that Pearson's skewness cannot be judged.
 [[nodiscard]] bool median_is_unsound(double zero_share);
 
 /// Returns the measure of an error that is given in the unit of the statistic.
-[[nodiscard]] double measure_of(Statistic statistic, double error, double value);
+[[nodiscard]] double measure_of(const Gate& gate, double error, double value);
 /// Sets whether every gate (any_change: one gate) is below the tolerance, and otherwise which gate decides. An
 /// undefined gate counts as infinitely far from the tolerance.
 void compare_with_tolerance(Checkpoint& now, const ConvergenceSettings& settings);
@@ -159,11 +173,12 @@ private:
     struct Sequence {
         Moments moments;
         SortedSample sample;
-        std::vector<double> values;  ///< finite ones, in their order
+        std::vector<double> values;  ///< finite ones, in their order; of all points only without sequences
     };
 
     void check();
     void find_errors(Checkpoint& now);
+    void find_levels(Checkpoint& now) const;
     void doubt_agreement(Checkpoint& now) const;
     static void doubt_tails(Checkpoint& now, std::span<const Tail> tails);
     void judge_shape(Checkpoint& now, std::span<const Summary> repetitions, bool endless) const;

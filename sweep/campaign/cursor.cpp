@@ -144,7 +144,12 @@ std::vector<std::string> Section::words(std::string_view key, const std::vector<
     const auto& allowed = row(key).words;
     std::vector<std::string> words;
     for (const auto& element : cursor->elements()) {
-        words.push_back(allowed.empty() ? element.text() : element.word(allowed));
+        const auto begins = [&](std::string_view word) {
+            return word.ends_with(':') && element.json().is_string() &&
+                   element.json().get_ref<const std::string&>().starts_with(word);
+        };
+        const bool free = allowed.empty() || std::ranges::any_of(allowed, begins);
+        words.push_back(free ? element.text() : element.word(allowed));
     }
     return words;
 }

@@ -21,7 +21,8 @@ constexpr std::array<std::string_view, 5> accuracy_words = {"survey", "fast", "b
 constexpr std::array<std::string_view, 2> goal_words = {"mean", "sd"};
 constexpr std::array<std::string_view, 2> scale_words = {"linear", "log"};
 constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
-constexpr std::array<std::string_view, 5> gate_words = {"mean", "sd", "skewness", "g1", "kurtosis"};
+constexpr std::array<std::string_view, 8> gate_words = {"mean",     "sd",        "skewness", "g1",
+                                                        "kurtosis", "quantile:", "above:",   "below:"};
 constexpr std::array<std::string_view, 1> thread_words = {"auto"};
 constexpr auto rule_words = [] {
     std::array<std::string_view, stats::convergence_rules.size()> words{};
@@ -217,7 +218,14 @@ std::span<const Key> convergence_keys() {
          "\"replicates\"",
          {},
          rule_words},
-        {"gates", Kind::words, "the statistics that are judged", R"(["mean", "sd", "kurtosis", "g1"])", {}, gate_words},
+        {"gates",
+         Kind::words,
+         "the statistics that are judged; \"quantile:0.9\" is a quantile, \"above:2\" and \"below:2\" the probability "
+         "to "
+         "lie beyond a threshold, in the unit of the observable",
+         R"(["mean", "sd", "kurtosis", "g1"])",
+         {},
+         gate_words},
         {"tolerance", Kind::number, "relative", "0.01", {0, 1, true, true}},
         {"block",
          Kind::whole,

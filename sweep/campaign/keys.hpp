@@ -19,7 +19,8 @@ struct Key {
     std::string_view meaning;
     std::string_view standard = {};  ///< JSON text of the default; empty: none
     Interval bounds = {};            ///< of whole and number
-    /// For word and words: the words; for whole: words that are also allowed.
+    /// For word and words: the words; for whole: words that are also allowed. Of words, one that ends with a colon is
+    /// the beginning of a text.
     std::span<const std::string_view> words = {};
     bool required = false;
 };

@@ -41,6 +41,19 @@ void add_bounds(OrderedJson& schema, const Interval& bounds) {
     if (std::isfinite(bounds.high)) schema[bounds.high_open ? "exclusiveMaximum" : "maximum"] = number_of(bounds.high);
 }
 
+/// A word that ends with a colon is the beginning of a text.
+OrderedJson items_of(const std::vector<std::string>& words) {
+    std::vector<std::string> whole, beginnings;
+    for (const auto& word : words) (word.ends_with(':') ? beginnings : whole).push_back(word);
+    OrderedJson items = {{"type", "string"}};
+    if (beginnings.empty()) {
+        items["enum"] = whole;
+        return items;
+    }
+    items["anyOf"] = {{{"enum", whole}}, {{"pattern", fmt::format("^({})", fmt::join(beginnings, "|"))}}};
+    return items;
+}
+
 OrderedJson schema_of(const Key& key) {
     const std::vector<std::string> words(key.words.begin(), key.words.end());
     OrderedJson schema = {{"description", std::string(key.meaning)}};
@@ -56,7 +69,7 @@ OrderedJson schema_of(const Key& key) {
         case Key::Kind::words:
             schema["type"] = "array";
             schema["items"] = {{"type", "string"}};
-            if (!words.empty()) schema["items"]["enum"] = words;
+            if (!words.empty()) schema["items"] = items_of(words);
             break;
         case Key::Kind::whole:
             if (words.empty()) {

@@ -1,6 +1,7 @@
 // "accuracy", "convergence", "model", "limits" and "execution".
 #include "sweep/campaign/sections.hpp"
 
+#include "stats/levels.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -28,6 +29,14 @@ std::vector<std::string> read_gates(const Section& section, const std::vector<st
     auto gates = section.words("gates", standard);
     if (gates.empty()) section.at("gates").refuse("at least one statistic must be judged");
     for (std::size_t k = 0; k < gates.size(); ++k) {
+        if (gates[k].find(':') != std::string::npos) {
+            const auto level = stats::level_named(gates[k]);
+            if (!level)
+                section.at("gates")[k].refuse(
+                    "must be a quantile with a probability between 0 and 1, such as \"quantile:0.9\", or \"above:\" or "
+                    "\"below:\" with a number");
+            gates[k] = stats::to_string(*level);
+        }
         const auto earlier = std::span(gates).first(k);
         if (std::ranges::find(earlier, gates[k]) != earlier.end())
             section.at("gates")[k].refuse("this statistic is there twice");
@@ -168,6 +177,8 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
             section.at("gates")[k].refuse(
                 "Pearson's skewness is made of a median, which has no model-assisted estimate: take g1, or the rule "
                 "\"replicates\"");
+        if (convergence.traits().of_model && convergence.gates[k].find(':') != std::string::npos)
+            section.at("gates")[k].refuse("the rule \"assisted\" judges moments: take the rule \"replicates\"");
     }
     if (!section.find("block")) convergence.block = block_by_default(convergence, campaign);
     return convergence;

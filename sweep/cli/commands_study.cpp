@@ -1,4 +1,5 @@
 // converge, sensitivity, report: results from stored answers.
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"
@@ -32,7 +33,8 @@ using study::Responses;
 /// Which campaign and which observable of a database.
 struct Subject {
     std::string database, campaign, observable;
-    bool check = false;  ///< of `converge`: the exit code says whether everything shown has converged
+    std::vector<std::string> levels;  ///< of `converge`
+    bool check = false;               ///< of `converge`: the exit code says whether everything shown has converged
 };
 
 /// Of every campaign the subject names; those whose scene has not the observable are passed over where no campaign is
@@ -53,12 +55,25 @@ std::vector<Document> study_each(const Store& store, const Subject& subject, Fou
     return documents;
 }
 
+std::vector<stats::Level> levels_of(std::span<const std::string> words) {
+    std::vector<stats::Level> levels;
+    for (const auto& word : words) {
+        const auto level = stats::level_named(word);
+        if (!level)
+            throw campaign::wrong_question(
+                "--level", word, "must be quantile:P with P between 0 and 1, above:T or below:T, such as quantile:0.9");
+        levels.push_back(*level);
+    }
+    return levels;
+}
+
 int converge(const Subject& subject, Format format) {
+    const auto levels = levels_of(subject.levels);
     const Store store(subject.database, Store::Mode::read);
     const auto found_by = [&](const Responses& responses) { return report::findings_document(store, responses); };
     const auto documents =
         study_each(store, subject, found_by, [&](const Responses& responses, const study::ResponseColumn& response) {
-            return report::convergence_document(store, responses, response, format);
+            return report::convergence_document(store, responses, response, format, levels);
         });
     report::write(std::cout, documents, format);
     return subject.check && !std::ranges::all_of(documents, &Document::converged) ? 1 : 0;
@@ -129,6 +144,9 @@ void declare_sensitivity(Parser& parser, Subject& subject) {
 
 void declare_converge(Parser& parser, Subject& subject) {
     declare_sensitivity(parser, subject);
+    parser.add_option("--level WORD", subject.levels,
+                      "quantile:P, or above:T or below:T: the probability to lie beyond T, in the unit of the "
+                      "observable; default: the quantiles 0.05, 0.25, 0.5, 0.75, 0.95");
     parser.add_flag("--check", subject.check,
                     "exit with 1 unless everything shown has converged by its campaign's rule; without a rule a "
                     "campaign has not");

@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace grainsweep::report {
 
@@ -20,7 +23,7 @@ using Cell = store::Table::Cell;
 constexpr std::size_t most_shown_checks = 20;
 
 bool is_gate(const History& history, stats::Statistic statistic) {
-    return std::ranges::find(history.settings.gates, statistic) != history.settings.gates.end();
+    return std::ranges::find(history.settings.gates, stats::Gate{statistic}) != history.settings.gates.end();
 }
 
 std::string percent(double share) {
@@ -111,6 +114,66 @@ store::Table statistics_table(const History& history) {
     return table;
 }
 
+/// P(name > threshold), or the quantile.
+std::string level_text(const stats::Level& level, std::string_view name) {
+    if (const auto* quantile = std::get_if<stats::Quantile>(&level))
+        return fmt::format("{:.6g} % quantile", 100 * quantile->probability);
+    const auto& beyond = std::get<stats::Exceedance>(level);
+    return fmt::format("P({} {} {:.6g})", name, beyond.above ? '>' : '<', beyond.threshold);
+}
+
+/// Limits of a probability over all cases, where those without a value may lie on either side; none: every case has
+/// one, or the level is a quantile.
+std::optional<std::pair<double, double>> counting_failures(const History& history, const stats::Level& level,
+                                                           double value) {
+    if (history.all.excluded == 0 || std::holds_alternative<stats::Quantile>(level)) return std::nullopt;
+    const auto values = static_cast<double>(history.all.count), failed = static_cast<double>(history.all.excluded);
+    return std::pair{value * values / (values + failed), (value * values + failed) / (values + failed)};
+}
+
+const stats::LevelEstimate* with_model(const Estimators* estimators, const stats::Level& level) {
+    if (estimators == nullptr || !estimators->assisted) return nullptr;
+    const auto& levels = estimators->assisted->levels;
+    const auto found = std::ranges::find(levels, level, &stats::LevelEstimate::level);
+    return found == levels.end() || !std::isfinite(found->error) ? nullptr : &*found;
+}
+
+/// Returns one row per level; with a column for estimates with a model where there are any.
+store::Table levels_table(const History& history, const ResponseColumn& response, const Estimators* estimators) {
+    store::Table table{{"level", "value", "error", "measure", "gate"}, {}};
+    const bool models = estimators != nullptr && estimators->assisted && !estimators->assisted->levels.empty();
+    if (models) table.columns.emplace_back("with a model");
+    for (const auto& [level, all] : history.all.levels) {
+        const bool gate = std::ranges::find(history.settings.gates, stats::Gate{level}) != history.settings.gates.end();
+        const auto measure =
+            gate && !history.checks.empty() ? history.checks.back().of(stats::Gate{level}).measure : all.measure;
+        std::vector<Cell> row = {level_text(level, response.name), value_cell(all.value, all.error), to_cell(all.error),
+                                 percent(measure),
+                                 !gate || history.checks.empty()        ? ""
+                                 : measure < history.settings.tolerance ? "within"
+                                                                        : "not within"};
+        if (const auto* one = with_model(estimators, level); models)
+            row.emplace_back(one == nullptr ? "-" : with_error(one->value, one->error));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json levels_json(const History& history, const Estimators* estimators) {
+    Json list = Json::array();
+    for (const auto& [level, all] : history.all.levels) {
+        const auto* one = with_model(estimators, level);
+        const auto limits = counting_failures(history, level, all.value);
+        list.push_back({{"level", stats::to_string(level)},
+                        {"value", all.value},
+                        {"error", all.error},
+                        {"measure", all.measure},
+                        {"model_assisted", one == nullptr ? Json() : estimate_json(one->value, one->error)},
+                        {"of_all_cases", limits ? Json(std::array{limits->first, limits->second}) : Json()}});
+    }
+    return list;
+}
+
 store::Table provisional_table(const History& history) {
     store::Table table{{"statistic", "value", "error"}, {}};
     if (!history.provisional) return table;
@@ -196,6 +259,16 @@ void say_history(Document& shown, const Responses& responses, const History& his
     shown.say(history.verdict).say_notes(history.warnings);
 }
 
+/// Adds quantiles and probabilities.
+void say_levels(Document& shown, const ResponseColumn& response, const History& history, const Estimators* estimators) {
+    if (history.all.count == 0) return;
+    shown.say().show(levels_table(history, response, estimators));
+    for (const auto& [level, all] : history.all.levels)
+        if (const auto limits = counting_failures(history, level, all.value))
+            shown.say(fmt::format("{}: {:.3g} to {:.3g} of all cases, wherever those without a value lie",
+                                  level_text(level, response.name), limits->first, limits->second));
+}
+
 /// Adds both estimates of the moments, if the design allows the second one.
 void say_estimators(Document& shown, const History& history, const Estimators& estimators) {
     shown.say();
@@ -229,7 +302,7 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
     const auto& held_back = judged_check(history).held_back;
     Json gates = Json::array(), statistics = Json::object();
     if (rule)
-        for (const auto gate : history.settings.gates) gates.push_back(stats::to_string(gate));
+        for (const auto& gate : history.settings.gates) gates.push_back(stats::to_string(gate));
     for (const auto statistic : stats::statistics) {
         const auto& all = history.all.of(statistic);
         statistics.add(
@@ -329,22 +402,29 @@ Json estimators_json(const History& history, const Estimators& estimators) {
 }
 
 Document convergence_document(const store::Store& store, const Responses& responses, const ResponseColumn& response,
-                              Format format) {
-    const auto history = history_of(responses, response);
+                              Format format, std::span<const stats::Level> wanted) {
+    const std::span<const stats::Level> levels =
+        wanted.empty() ? std::span<const stats::Level>(study::shown_levels) : wanted;
+    const auto history = history_of(responses, response, levels);
     const auto lattices = lattice_family(store, responses, response);
     Document shown{.rows = checks_rows(responses, response, history), .converged = history.converged.value_or(false)};
     for (auto& row : provisional_rows(responses, response, history).rows) shown.rows.rows.push_back(std::move(row));
     const auto corrected = study::corrected_of(store, responses.campaign);
     if (corrected) shown.converged = corrected->within;
     if (format == Format::json) {
+        const auto estimators = estimators_of(store, responses, response, levels);
         shown.value = to_json(responses, response, history, lattices)
-                          .add("estimators", estimators_json(history, estimators_of(store, responses, response)));
+                          .add("levels", levels_json(history, &estimators))
+                          .add("estimators", estimators_json(history, estimators));
         if (corrected) shown.value.add("corrected", corrected_json(*corrected));
     }
     if (format == Format::text) {
         shown.say(study_heading(responses, response)).say();
         say_history(shown, responses, history, lattices);
-        if (repeats(responses)) say_estimators(shown, history, estimators_of(store, responses, response));
+        const auto estimators =
+            repeats(responses) ? std::optional(estimators_of(store, responses, response, levels)) : std::nullopt;
+        say_levels(shown, response, history, estimators ? &*estimators : nullptr);
+        if (estimators) say_estimators(shown, history, *estimators);
         if (corrected) shown.say().show(corrected_table(*corrected)).say(corrected->verdict());
     }
     return shown;

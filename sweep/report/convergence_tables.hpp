@@ -31,8 +31,10 @@ namespace grainsweep::report {
 /// "third_moment", "fourth_moment"}, "note", "population"}
 [[nodiscard]] Json estimators_json(const study::History& history, const study::Estimators& estimators);
 
-/// Returns the output of `converge` for a campaign; computes only the parts that `format` needs.
+/// Returns the output of `converge` for a campaign; computes only the parts that `format` needs. `levels`: beside those
+/// among the gates; empty: study::shown_levels.
 [[nodiscard]] Document convergence_document(const store::Store& store, const study::Responses& responses,
-                                            const study::ResponseColumn& response, Format format);
+                                            const study::ResponseColumn& response, Format format,
+                                            std::span<const stats::Level> levels = {});
 
 }  // namespace grainsweep::report

@@ -69,7 +69,16 @@ Json page_json(const History& history) {
                  {"count", history.provisional->count},
                  {"statistics", known_statistics}};
     }
+    const auto level_row = [](const auto& one) {
+        const auto* quantile = std::get_if<stats::Quantile>(&one.first);
+        const auto title = quantile == nullptr ? stats::to_string(one.first)
+                                               : fmt::format("{:.6g} % quantile", 100 * quantile->probability);
+        return Json{{"title", title},
+                    {"has_unit", quantile != nullptr},
+                    {"text", with_error(one.second.value, one.second.error)}};
+    };
     return {{"verdict", history.verdict},
+            {"levels", Json::list(history.all.levels, level_row)},
             {"judged", history.has_rule},
             {"notes", notes},
             {"converged_at", history.has_rule && converged != history.checks.end() ? Json(converged->points) : Json()},
@@ -142,7 +151,7 @@ Json page_json(const Responses& responses, const ResponseColumn& response) {
         {"name", response.name},
         {"unit", response.unit},
         {"meaning", response.meaning},
-        {"history", page_json(history_of(responses, response))},
+        {"history", page_json(history_of(responses, response, study::shown_levels))},
         {"histogram", {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}}},
         {"effects", Json::list(responses.factors, effect)},
         {"whiskers", errors.says},

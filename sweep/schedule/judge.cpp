@@ -18,9 +18,9 @@ std::string percent(double share) {
 }
 
 /// Returns the name of the measure that the rule compares: "kurtosis" or "change of kurtosis".
-std::string measure_name(stats::Statistic statistic, const stats::ConvergenceSettings& settings) {
-    const auto name = stats::to_string(statistic);
-    return settings.traits().of_sequences ? std::string(name) : fmt::format("change of {}", name);
+std::string measure_name(const stats::Gate& gate, const stats::ConvergenceSettings& settings) {
+    auto name = stats::to_string(gate);
+    return settings.traits().of_sequences ? name : fmt::format("change of {}", name);
 }
 
 std::string points_left(const stats::Checkpoint& check, std::int64_t candidates) {
@@ -42,7 +42,7 @@ stats::ConvergenceSettings settings_of(const campaign::Convergence& wanted, std:
     settings.rule = wanted.traits().rule;
     settings.gates.clear();
     for (const auto& word : wanted.gates) {
-        const auto gate = stats::statistic_named(word);
+        const auto gate = stats::gate_named(word);
         if (!gate) throw std::invalid_argument("no statistic is called '" + word + "'");
         settings.gates.push_back(*gate);
     }
@@ -75,7 +75,7 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
                        std::int64_t candidates) {
     if (check.converged) {
         std::string text;
-        for (const auto gate : settings.gates) {
+        for (const auto& gate : settings.gates) {
             const double measure = check.of(gate).measure;
             if (!(measure < settings.tolerance)) continue;  // under any_change one is enough
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", measure_name(gate, settings), percent(measure));
@@ -109,7 +109,7 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
     if (check.fresh == 0)
         return fmt::format("no new value since the check before {} points: the {} different cases are known",
                            check.points, check.count);
-    if (*check.held_back == stats::Statistic::skewness && stats::median_is_unsound(check.zero_share)) {
+    if (*check.held_back == stats::Gate{stats::Statistic::skewness} && stats::median_is_unsound(check.zero_share)) {
         return fmt::format("skewness cannot be judged: {} of the values are zero, so the median jumps",
                            percent(check.zero_share));
     }

@@ -1,9 +1,13 @@
 #include "sweep/store/aggregates.hpp"
 
+#include "stats/convergence_rule.hpp"
+#include "stats/levels.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -111,6 +115,63 @@ std::optional<double> percentile(std::span<double> rows) {
     return quantile_of(rows, 100, "percentile(x, P): P is one number from 0 to 100");
 }
 
+/// Rows of value, level and sequence as a sample; the level is the same in every row.
+std::optional<double> level_error(std::span<const double> rows, const char* rule, const auto& level_at) {
+    std::map<double, std::vector<double>> by_sequence;
+    std::vector<double> values, sorted, levels;
+    for (std::size_t k = 0; k + 2 < rows.size(); k += 3) {
+        values.push_back(rows[k]);
+        levels.push_back(rows[k + 1]);
+        by_sequence[rows[k + 2]].push_back(rows[k]);
+    }
+    if (!all_equal(levels)) throw std::invalid_argument(rule);
+    const stats::Level level = level_at(levels.front());
+    sorted = values;
+    std::ranges::sort(sorted);
+    stats::GroupedSample sample{.sorted = sorted, .groups = {}, .independent = by_sequence.size() > 1};
+    for (const auto& [number, of_sequence] : by_sequence) sample.groups.emplace_back(of_sequence);
+    if (!sample.independent) sample.groups = stats::stretches_of(values);
+    if (sample.groups.size() < stats::fewest_sequences) return std::nullopt;
+    const double error = stats::level_of(level, sample).error;
+    return std::isfinite(error) ? std::optional(error) : std::nullopt;
+}
+
+std::optional<double> quantile_error(std::span<double> rows) {
+    constexpr auto rule = "quantile_error(x, p, sequence): p is one number between 0 and 1";
+    return level_error(rows, rule, [&](double p) {
+        if (!(p > 0 && p < 1)) throw std::invalid_argument(rule);
+        return stats::Quantile{p};
+    });
+}
+
+std::optional<double> share_beyond(std::span<const double> rows, const char* rule, bool above) {
+    const auto [x, thresholds] = transposed(rows);
+    if (!all_equal(thresholds)) throw std::invalid_argument(rule);
+    const double t = thresholds.front();
+    const auto beyond = std::ranges::count_if(x, [&](double value) { return above ? value > t : value < t; });
+    return static_cast<double>(beyond) / static_cast<double>(x.size());
+}
+
+std::optional<double> above(std::span<double> rows) {
+    return share_beyond(rows, "above(x, t): t is one number", true);
+}
+
+std::optional<double> below(std::span<double> rows) {
+    return share_beyond(rows, "below(x, t): t is one number", false);
+}
+
+std::optional<double> above_error(std::span<double> rows) {
+    return level_error(rows, "above_error(x, t, sequence): t is one number", [](double t) {
+        return stats::Exceedance{t, true};
+    });
+}
+
+std::optional<double> below_error(std::span<double> rows) {
+    return level_error(rows, "below_error(x, t, sequence): t is one number", [](double t) {
+        return stats::Exceedance{t, false};
+    });
+}
+
 double product_moment(std::span<const double> x, std::span<const double> y) {
     const double mx = mean(x), my = mean(y);
     double sum = 0;
@@ -154,6 +215,11 @@ constexpr std::array aggregates = {
     Aggregate{"median", 1, median},
     Aggregate{"quantile", 2, quantile},
     Aggregate{"percentile", 2, percentile},
+    Aggregate{"quantile_error", 3, quantile_error},
+    Aggregate{"above", 2, above},
+    Aggregate{"below", 2, below},
+    Aggregate{"above_error", 3, above_error},
+    Aggregate{"below_error", 3, below_error},
     Aggregate{"corr", 2, corr},
     Aggregate{"covar_pop", 2, covar_pop},
     Aggregate{"covar_samp", 2, covar_samp},

@@ -64,7 +64,8 @@ Noise noise_of(const Responses& responses, const ResponseColumn& response, std::
 
 }  // namespace
 
-Estimators estimators_of(const store::Store& store, const Responses& responses, const ResponseColumn& response) {
+Estimators estimators_of(const store::Store& store, const Responses& responses, const ResponseColumn& response,
+                         std::span<const stats::Level> levels) {
     Estimators found;
     const auto refuse = [&](std::string reason) {
         found.refused = "no model-assisted moments: " + std::move(reason);
@@ -98,6 +99,7 @@ Estimators estimators_of(const store::Store& store, const Responses& responses, 
     stats::AssistedSettings settings;
     settings.low = std::move(box.low);
     settings.high = std::move(box.high);
+    settings.levels = levels;
     auto answer = stats::assisted_moments({.points = {at_cases, width},
                                            .values = values,
                                            .sequences = sequences,

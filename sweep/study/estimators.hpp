@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct Estimators {
     std::string scatter_from;       ///< "replicates" or the observable that states it; empty: unknown
 };
 
-/// Returns both estimates. Throws WrongQuestion if a feature of the campaign file cannot be evaluated.
+/// Returns both estimates, and those of `levels` with the model. Throws WrongQuestion if a feature of the campaign file
+/// cannot be evaluated.
 [[nodiscard]] Estimators estimators_of(const store::Store& store, const Responses& responses,
-                                       const ResponseColumn& response);
+                                       const ResponseColumn& response, std::span<const stats::Level> levels = {});
 
 }  // namespace grainsweep::study

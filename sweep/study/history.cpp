@@ -108,16 +108,20 @@ Judged settled_of(const Responses& responses, const ResponseColumn& response) {
 
 /// Moments of all settled values, with errors where the design is a sample.
 stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn& response,
-                               stats::ConvergenceSettings settings) {
+                               stats::ConvergenceSettings settings, std::span<const stats::Level> levels) {
     settings = plain(std::move(settings));
+    for (const auto& level : levels)
+        if (std::ranges::find(settings.gates, stats::Gate{level}) == settings.gates.end())
+            settings.gates.emplace_back(level);
     settings.block = std::max<std::int64_t>(1, responses.settled_points);
     const auto checks = settled_of(responses, response).by(settings, responses.settled_points);
     if (checks.empty()) return {};
     stats::Checkpoint all = checks.front();
     all.points = responses.counted_points();
     if (!responses.ordered_sample()) {
-        for (auto& estimate : all.estimates)
-            estimate.error = estimate.measure = std::numeric_limits<double>::quiet_NaN();
+        constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+        for (auto& estimate : all.estimates) estimate.error = estimate.measure = unknown;
+        for (auto& [level, estimate] : all.levels) estimate.error = estimate.measure = unknown;
     }
     return all;
 }
@@ -282,18 +286,18 @@ std::string points_line(const Responses& responses) {
     return fmt::format("{}, {} places repeat one of them", line, responses.repeated.size());
 }
 
-History figures_of(const Responses& responses, const ResponseColumn& response) {
+History figures_of(const Responses& responses, const ResponseColumn& response, std::span<const stats::Level> levels) {
     History history;
     history.settings = settings_for(responses, response);
     history.has_rule = responses.campaign.convergence.has_value();
-    history.all = check_of_all(responses, response, history.settings);
+    history.all = check_of_all(responses, response, history.settings, levels);
     history.provisional = check_of_finished(responses, response, history.settings);
     warn(history, responses, response);
     return history;
 }
 
-History history_of(const Responses& responses, const ResponseColumn& response) {
-    History history = figures_of(responses, response);
+History history_of(const Responses& responses, const ResponseColumn& response, std::span<const stats::Level> levels) {
+    History history = figures_of(responses, response, levels);
     if (history.settings.traits().of_model) {
         history.checks = judged_in_the_run(responses, history.settings);
     } else if (responses.ordered_sample()) {

@@ -4,7 +4,9 @@
 #include "stats/convergence.hpp"
 #include "sweep/study/responses.hpp"
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,9 +38,16 @@ struct History {
 /// finished.
 [[nodiscard]] std::string points_line(const Responses& responses);
 
-[[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
+/// `levels`: estimated of all settled points, beside those among the gates.
+[[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response,
+                                 std::span<const stats::Level> levels = {});
 /// Returns the same without the intermediate checks and their verdict, which take most of the time.
-[[nodiscard]] History figures_of(const Responses& responses, const ResponseColumn& response);
+[[nodiscard]] History figures_of(const Responses& responses, const ResponseColumn& response,
+                                 std::span<const stats::Level> levels = {});
+
+/// The quantiles that are shown where no other levels are wanted: 5, 25, 50, 75, 95 %.
+inline constexpr std::array<stats::Level, 5> shown_levels = {
+    stats::Quantile{0.05}, stats::Quantile{0.25}, stats::Quantile{0.5}, stats::Quantile{0.75}, stats::Quantile{0.95}};
 
 /// Lattice of a family (same scene, factors and ranges) and the changes of its moments since the coarser one.
 struct LatticeStep {

@@ -97,7 +97,7 @@ const std::vector<Rule>& rules() {
           "solver/dem/time_step.hpp", "solver/scenes/kit/", "solver/scenes/values.hpp"}},
         {"sweep/campaign/",
          {"sweep/campaign/", "sweep/designs/", "sweep/files/", "stats/convergence_rule.hpp", "stats/distribution.hpp",
-          "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+          "stats/levels.hpp", "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
         {"sweep/designs/", {"sweep/designs/", "solver/plain_text.hpp", "solver/scenes/values.hpp", "stats/"}},
         {"sweep/schedule/",
          {"sweep/schedule/", "sweep/campaign/", "sweep/files/", "sweep/store/", "sweep/workers/crew.hpp", "stats/",

@@ -133,6 +133,99 @@ void count_assisted(const JudgedResponse& response, std::int64_t n) {
     remember_measured("assisted_moments", {"response", "cases", "mean", "sd", "g1", "kurtosis"}, {row}, 2);
 }
 
+/// Levels whose intervals are counted: two probabilities beyond a quantile of the truth, and quantiles.
+struct CountedLevel {
+    Level level;
+    double truth = 0;
+    std::string name;
+};
+
+std::vector<CountedLevel> counted_levels(const JudgedResponse& response) {
+    auto values = dense_values(response);
+    std::ranges::sort(values);
+    std::vector<CountedLevel> counted;
+    const auto at = [&](double q) { return values[static_cast<std::size_t>(q * static_cast<double>(values.size()))]; };
+    for (const double q : {0.05, 0.25, 0.5, 0.75, 0.95}) counted.push_back({Quantile{q}, at(q), fmt::format("{}", q)});
+    for (const double q : {0.5, 0.9}) {
+        const auto beyond = std::ranges::end(values) - std::ranges::upper_bound(values, at(q));
+        counted.push_back({Exceedance{at(q), true}, static_cast<double>(beyond) / static_cast<double>(values.size()),
+                           fmt::format("P(y > q{})", q)});
+    }
+    return counted;
+}
+
+void print_level(const Tally& tally, const JudgedResponse& response, std::int64_t n, const CountedLevel& one,
+                 const std::string& how) {
+    std::printf(
+        "{\"response\": \"%s\", \"cases\": %lld, \"how\": \"%s\", \"level\": \"%s\", \"given\": %.3f, \"held\": %.3f, "
+        "\"half_width\": %.4g, \"truth\": %.5g}\n",
+        response.name.c_str(), static_cast<long long>(n), how.c_str(), one.name.c_str(),
+        static_cast<double>(tally.given) / static_cast<double>(campaigns()),
+        tally.given == 0 ? NAN : static_cast<double>(tally.held) / static_cast<double>(tally.given),
+        tally.given == 0 ? NAN : tally.width / static_cast<double>(tally.given), one.truth);
+    std::fflush(stdout);
+    tally.expect(0.92, response.name + ' ' + how + ' ' + one.name + fmt::format(" at {} cases", n));
+}
+
+std::vector<std::string> level_columns(const std::vector<CountedLevel>& counted) {
+    std::vector<std::string> columns = {"response", "cases"};
+    for (const auto& one : counted) columns.push_back(one.name);
+    return columns;
+}
+
+void count_levels(const JudgedResponse& response, const std::string& design, std::int64_t n) {
+    const auto counted = counted_levels(response);
+    std::vector<Tally> tallies(counted.size());
+    ConvergenceSettings settings{.block = n, .sequences = 8};
+    for (const auto& one : counted) settings.gates.emplace_back(one.level);
+    std::vector<std::int64_t> points(static_cast<std::size_t>(n));
+    std::iota(points.begin(), points.end(), 0);
+    for (std::uint64_t seed = 1; seed <= campaigns(); ++seed) {
+        const auto check = judge_convergence(settings, points, ask_judged(response, design, n, seed).values, n).front();
+        for (std::size_t k = 0; k < counted.size(); ++k) {
+            const auto& estimate = check.of(Gate{counted[k].level});
+            tallies[k].add(estimate.value, estimate.error, counted[k].truth);
+        }
+    }
+    std::vector<std::string> row = {response.name, fmt::format("{}", n)};
+    for (std::size_t k = 0; k < counted.size(); ++k) {
+        print_level(tallies[k], response, n, counted[k], design);
+        row.push_back(tallies[k].text());
+    }
+    if (design == "halton") remember_measured("levels", level_columns(counted), {row}, 2);
+}
+
+void count_assisted_levels(const JudgedResponse& response, std::int64_t n) {
+    const auto integration = integration_of(response, 11, 4);
+    const auto counted = counted_levels(response);
+    std::vector<Level> levels;
+    for (const auto& one : counted) levels.push_back(one.level);
+    std::vector<Tally> tallies(counted.size());
+    for (std::uint64_t seed = 1; seed <= campaigns(); ++seed) {
+        const auto campaign = ask_judged(response, "halton", n, seed);
+        AssistedSettings settings;
+        settings.low = integration.low;
+        settings.high = integration.high;
+        settings.levels = levels;
+        const auto answer = assisted_moments({{campaign.features, response.dimensions},
+                                              campaign.values,
+                                              campaign.sequences,
+                                              {integration.features, response.dimensions},
+                                              4},
+                                             settings);
+        const auto* moments = std::get_if<AssistedMoments>(&answer);
+        if (moments == nullptr) continue;
+        for (std::size_t k = 0; k < moments->levels.size(); ++k)
+            tallies[k].add(moments->levels[k].value, moments->levels[k].error, counted[k].truth);
+    }
+    std::vector<std::string> row = {response.name, fmt::format("{}", n)};
+    for (std::size_t k = 0; k < counted.size(); ++k) {
+        print_level(tallies[k], response, n, counted[k], "model");
+        row.push_back(tallies[k].text());
+    }
+    remember_measured("assisted_levels", level_columns(counted), {row}, 2);
+}
+
 /// Share of campaigns that stop with a gate farther from the truth than the tolerance, and of those that stop at all.
 std::string count_stops(const JudgedResponse& response, std::int64_t block, double tolerance) {
     constexpr std::int64_t most = 4096;
@@ -147,8 +240,8 @@ std::string count_stops(const JudgedResponse& response, std::int64_t block, doub
         const auto end = std::ranges::find(checks, true, &Checkpoint::converged);
         if (end == checks.end()) continue;
         ++stopped;
-        const bool misses = std::ranges::any_of(settings.gates, [&](Statistic gate) {
-            const double truth = response.truth[static_cast<std::size_t>(gate)];
+        const bool misses = std::ranges::any_of(settings.gates, [&](const Gate& gate) {
+            const double truth = response.truth[static_cast<std::size_t>(std::get<Statistic>(gate))];
             return measure_of(gate, std::abs(end->of(gate).value - truth), truth) > tolerance;
         });
         wrong += misses ? 1 : 0;
@@ -171,6 +264,19 @@ TEST(SlowCoverage, OfPlainMoments) {
         for (const std::int64_t n : {128, 512, 2048, 2400}) count_plain(response, "halton", n);
         for (const std::int64_t n : {256, 2048}) count_plain(response, "sobol", n);
     }
+}
+
+TEST(SlowCoverage, OfLevels) {
+    for (const auto& response : judged_responses()) {
+        if (!chosen(response.name)) continue;
+        for (const std::int64_t n : {128, 512, 2048}) count_levels(response, "halton", n);
+        count_levels(response, "sobol", 256);
+    }
+}
+
+TEST(SlowCoverage, OfLevelsWithAModel) {
+    for (const auto& response : judged_responses())
+        if (chosen(response.name)) count_assisted_levels(response, 128);
 }
 
 TEST(SlowCoverage, OfMomentsWithAModel) {

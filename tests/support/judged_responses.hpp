@@ -87,8 +87,8 @@ inline JudgedIntegration integration_of(const JudgedResponse& response, unsigned
     return all;
 }
 
-/// Statistics over 2^20 Sobol points, with the scatter as a further factor.
-inline std::array<double, 5> dense_statistics(const JudgedResponse& response) {
+/// Values at 2^20 Sobol points, with the scatter as a further factor.
+inline std::vector<double> dense_values(const JudgedResponse& response) {
     const std::size_t d = response.dimensions + (response.noise > 0 ? 1 : 0);
     const auto set =
         ask_design("sobol", d, {{"points", std::int64_t{1} << 20}, {"scramble", std::string("random")}}, 5);
@@ -98,7 +98,11 @@ inline std::array<double, 5> dense_statistics(const JudgedResponse& response) {
         const double scatter = response.noise > 0 ? response.noise * stats::normal_quantile(u.back()) : 0;
         values.push_back(response.mean(response.features(u.first(response.dimensions))) + scatter);
     }
-    const auto summary = stats::summarise(values);
+    return values;
+}
+
+inline std::array<double, 5> dense_statistics(const JudgedResponse& response) {
+    const auto summary = stats::summarise(dense_values(response));
     return {summary.mean, summary.sd, summary.skewness, summary.g1, summary.kurtosis};
 }
 

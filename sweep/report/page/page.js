@@ -52,12 +52,14 @@ function distributionSection(response, sample, other) {
   const columns = [["statistic"], ["value", "number"]].concat(provisional ? [["provisional", "number provisional"]] : [], other ? [[campaignTitle(other.model.campaign), "number"]] : []);
   const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text].concat(provisional ? [provisional.statistics[name]] : [], other ? [other.response.history.statistics[name].text] : [])
     .map((text, k) => (k === 0 ? text : statisticOf(response, name).says(text))));
+  const levels = response.history.levels.map(({ title, has_unit, text }) => [title, has_unit ? statisticOf(response, "mean").says(text) : text]);
   const { title: named } = quantityOf(response), says = response.meaning ? `${named}: ${response.meaning}` : named;
   return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, response.histogram.counts.length > 0 ? histogram(response, other && other.response) : null,
     el("div", { class: "card" }, el("h3", {}, "Moments"),
       el("p", { class: "says" }, (response.history.count > 0 ? plural(response.history.count, "value") + (sample ? " with 95 % errors." : ".") : "No value counts yet.") +
         (response.history.excluded > 0 ? ` ${plural(response.history.excluded, "case")} without a value excluded.` : "")),
-      table(columns, rows))));
+      table(columns, rows)),
+    response.history.count > 0 ? el("div", { class: "card" }, el("h3", {}, "Quantiles"), table([["level"], ["value", "number"]], levels)) : null));
 }
 
 // Threshold crossings, of a design that seeks them.
