@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 namespace grainsweep::campaign {
 
@@ -12,7 +13,7 @@ namespace {
 
 using Ranges = std::variant<Between, stats::Distribution>;
 
-constexpr double most_cut = 0.05;
+constexpr double most_cut = 0.05, least_kept = 1e-6;
 
 /// Place of the figures of a distribution, and their parameter.
 struct Reading {
@@ -68,14 +69,27 @@ stats::Distribution::Form read_beta(const Reading& read) {
     return form;
 }
 
-/// Truncates to the bounds and checks that something varies.
-stats::Distribution within_bounds(stats::Distribution::Form form, const Reading& read) {
+/// Truncates to the bounds of the parameter, and to those of the user, who may cut off more; checks that something
+/// varies.
+stats::Distribution within_bounds(const stats::Distribution::Form& form, const Reading& read) {
     const auto& bounds = std::get<Interval>(read.parameter.bounds);
-    const stats::Distribution distribution(std::move(form), bounds.low, bounds.high);
-    if (!(distribution.cut() <= most_cut))
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const stats::Distribution untruncated(form);
+    const bool truncated = !untruncated.has_ends();
+    const bool low_given = truncated && read.section.find("low"), high_given = truncated && read.section.find("high");
+    const double beyond =
+        stats::Distribution(form, low_given ? -infinite : bounds.low, high_given ? infinite : bounds.high).cut();
+    if (!(beyond <= most_cut))
         read.section.place().refuse(fmt::format(
-            "{:.3g} % of the distribution lie where '{}' has no value, which is a number{}; at most {:.0f} % may",
-            100 * distribution.cut(), read.parameter.name, in_words(bounds), 100 * most_cut));
+            "{:.3g} % of the distribution lie where '{}' has no value, which is a number{}; at most {:.0f} % may, "
+            "unless \"low\" or \"high\" truncates the distribution there",
+            100 * beyond, read.parameter.name, in_words(bounds), 100 * most_cut));
+    const double from = low_given ? read.value("low") : bounds.low, to = high_given ? read.value("high") : bounds.high;
+    if (!(from < to)) read.section.place().refuse("low must be below high");
+    const stats::Distribution distribution(form, from, to);
+    if (!(distribution.cut() < 1 - least_kept))
+        read.section.place().refuse(
+            fmt::format("less than {:.2g} of the distribution lies between low and high", least_kept));
     const double low = distribution.quantile(0), high = distribution.quantile(1);
     if (!std::isfinite(high - low)) read.section.place().refuse("the range must be finite in double precision");
     if (!(distribution.quantile(0.25) < distribution.quantile(0.75)))

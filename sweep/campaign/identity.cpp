@@ -220,6 +220,7 @@ Identity identity_of(const Campaign& campaign) {
     for (const auto& [name, value] : campaign.request.options) {
         if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by their cases
         const auto* option = find_option(design, name);
+        if (option != nullptr && option->silent_by_default && value == option->default_value) continue;
         const bool extent = option != nullptr && option->extent;
         (extent ? identity.extent : identity.options) += fmt::format("{} = {}\n", name, text_of(value));
     }

@@ -24,6 +24,8 @@ constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
 constexpr std::array<std::string_view, 8> gate_words = {"mean",     "sd",        "skewness", "g1",
                                                         "kurtosis", "quantile:", "above:",   "below:"};
 constexpr std::array<std::string_view, 1> thread_words = {"auto"};
+constexpr Key truncated_low = {"low", Kind::value, "truncates: no smaller value; more than 5 % may be cut off"};
+constexpr Key truncated_high = {"high", Kind::value, "truncates: no larger value"};
 constexpr auto rule_words = [] {
     std::array<std::string_view, stats::convergence_rules.size()> words{};
     std::ranges::transform(stats::convergence_rules, words.begin(), &stats::RuleInfo::name);
@@ -150,6 +152,8 @@ std::span<const Key> normal_keys() {
     static constexpr auto keys = std::to_array<Key>({
         needed({"mean", Kind::value, "mean, a number or a text with a unit"}),
         needed({"sd", Kind::value, "standard deviation, above 0"}),
+        truncated_low,
+        truncated_high,
     });
     return keys;
 }
@@ -159,6 +163,8 @@ std::span<const Key> lognormal_keys() {
         needed({"median", Kind::value, "median, a number or a text with a unit, above 0"}),
         {"sigma", Kind::number, "standard deviation of the natural logarithm", {}, {0, 10, true}},
         {"ratio", Kind::number, "exp(sigma): 68 % lie between median/ratio and median*ratio", {}, {1, 20'000, true}},
+        truncated_low,
+        truncated_high,
     });
     return keys;
 }
@@ -167,6 +173,8 @@ std::span<const Key> weibull_keys() {
     static constexpr auto keys = std::to_array<Key>({
         needed({"scale", Kind::value, "63.2 % are smaller: a number or a text with a unit, above 0"}),
         needed({"shape", Kind::number, "exponent: P(value > x) = exp(-(x/scale)^shape)", {}, {0, 1000, true}}),
+        truncated_low,
+        truncated_high,
     });
     return keys;
 }
@@ -175,6 +183,8 @@ std::span<const Key> gumbel_keys() {
     static constexpr auto keys = std::to_array<Key>({
         needed({"location", Kind::value, "likeliest value, a number or a text with a unit; 36.8 % are smaller"}),
         needed({"scale", Kind::value, "width, above 0: sd times sqrt(6)/pi"}),
+        truncated_low,
+        truncated_high,
     });
     return keys;
 }

@@ -174,6 +174,10 @@ const Entries& functions_of_query() {
         {"sd(x), stddev_pop(x), var_pop(x)", "Standard deviation and variance, dividing by N."},
         {"stddev(x), stddev_samp(x), variance(x), var_samp(x)", "The same, dividing by N - 1."},
         {"median(x), quantile(x, p), percentile(x, P)", "p from 0 to 1, P from 0 to 100; linear between values."},
+        {"above(x, t), below(x, t)", "Share of the values beyond t."},
+        {"quantile_error(x, p, sequence), above_error(x, t, sequence), below_error(x, t, sequence)",
+         "95 % half-widths of these, over the independent sequences of the design; a view of a campaign has the column "
+         "sequence. NULL: too few values."},
         {"corr(x, y), covar_pop(x, y), covar_samp(x, y)", "Pearson's correlation, covariances."},
         {"pearson_skewness(x), g1(x), kurtosis(x)",
          "3 (mean - median) / sd, the moment skewness, the kurtosis (3 for a "

@@ -42,6 +42,9 @@ struct OptionSpec {
     /// design is extensible.
     bool extent = false;
     Interval bounds = {};  ///< of a number
+    /// The identity of a campaign states the option only where it differs from its default: campaigns that are older
+    /// than the option stay the same.
+    bool silent_by_default = false;
 };
 
 /// Data of a factor for a design.

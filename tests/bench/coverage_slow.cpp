@@ -145,7 +145,7 @@ std::vector<CountedLevel> counted_levels(const JudgedResponse& response) {
     std::ranges::sort(values);
     std::vector<CountedLevel> counted;
     const auto at = [&](double q) { return values[static_cast<std::size_t>(q * static_cast<double>(values.size()))]; };
-    for (const double q : {0.05, 0.25, 0.5, 0.75, 0.95}) counted.push_back({Quantile{q}, at(q), fmt::format("{}", q)});
+    for (const double q : {0.05, 0.5, 0.95}) counted.push_back({Quantile{q}, at(q), fmt::format("{}", q)});
     for (const double q : {0.5, 0.9}) {
         const auto beyond = std::ranges::end(values) - std::ranges::upper_bound(values, at(q));
         counted.push_back({Exceedance{at(q), true}, static_cast<double>(beyond) / static_cast<double>(values.size()),

@@ -96,8 +96,24 @@ TEST_F(Distributions, WrongOnesAreRefusedAndNothingIsWritten) {
     folder.write("c.json", wrong.dump());
     const auto ended = ask({"run", "c.json"});
     EXPECT_EQ(ended.code, 2);
-    EXPECT_THAT(ended.err, HasSubstr("at most 5 % may."));
+    EXPECT_THAT(ended.err, HasSubstr("at most 5 % may, unless \"low\" or \"high\" truncates the distribution there."));
+    wrong["factors"][0]["normal"].update({{"low", 0.9}, {"high", 0.1}});
+    folder.write("c.json", wrong.dump());
+    EXPECT_THAT(ask({"run", "c.json"}).err, HasSubstr("low must be below high"));
     EXPECT_FALSE(std::filesystem::exists(folder / "c.db"));
+}
+
+TEST_F(Distributions, MayBeTruncatedAsFarAsTheUserStates) {
+    auto wide = campaign_of(two);
+    wide["factors"][0]["normal"] = {{"mean", 0.5}, {"sd", 2}, {"low", 0.4}, {"high", 0.6}};
+    folder.write("c.json", wide.dump());
+    const auto plan = json::parse(out({"plan", "c.json", "--format", "json"}));
+    // 1 - (Phi(0.05) - Phi(-0.05))
+    EXPECT_NEAR(plan["distributions"][0]["cut %"].get<double>(), 96.01223886, 1e-6);
+    out({"run", "c.json", "--quiet"});
+    EXPECT_EQ(out({"query", "c.db", "SELECT min(x1) >= 0.4 AND max(x1) <= 0.6 AS within FROM c", "--format", "csv"}),
+              "within\n1\n");
+    EXPECT_EQ(ask({"run", "c.json", "--quiet"}).code, 0);
 }
 
 TEST_F(Distributions, ACalibrationTakesThemForItsPrior) {

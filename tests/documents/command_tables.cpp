@@ -56,7 +56,7 @@ std::string command_table(const std::string& command) {
 }
 
 std::string manual_table(const std::string& section) {
-    static const std::regex mark(R"(\\f[BR]|\\&)"), dash(R"(\\-)");
+    static const std::regex mark(R"(\\f[BR]|\\&)"), dash(R"(\\-)"), quote(R"(\\\(aq)");
     std::istringstream manual(answer_of({"manual"}));
     std::string table = head({section == "EXIT STATUS" ? "code" : "function", "meaning"});
     std::string tag;
@@ -64,7 +64,8 @@ std::string manual_table(const std::string& section) {
     for (std::string line; std::getline(manual, line);) {
         if (line.starts_with(".SH ")) inside = line == ".SH " + section;
         if (!inside || line.starts_with(".SH ")) continue;
-        const std::string text = std::regex_replace(std::regex_replace(line, mark, ""), dash, "-");
+        const std::string text =
+            std::regex_replace(std::regex_replace(std::regex_replace(line, mark, ""), dash, "-"), quote, "'");
         if (line == ".TP")
             tagged = false;
         else if (!tagged)

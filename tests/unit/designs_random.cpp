@@ -39,6 +39,33 @@ TEST(LatinHypercube, VisitsEveryCellOfEveryFactorOnce) {
     }
 }
 
+double nearest_two(const designs::PointSet& set) {
+    double least = 1e300;
+    for (std::size_t p = 0; p < set.size(); ++p)
+        for (std::size_t q = 0; q < p; ++q) {
+            double square = 0;
+            for (std::size_t j = 0; j < set.dimensions; ++j) square += std::pow(set.point(p)[j] - set.point(q)[j], 2);
+            least = std::min(least, std::sqrt(square));
+        }
+    return least;
+}
+
+TEST(LatinHypercube, TakesTheCandidateWhosePointsAreFarthestApart) {
+    const auto asked = [](std::int64_t candidates) {
+        return ask_design("latin_hypercube", 2, {{"points", std::int64_t{20}}, {"candidates", candidates}}, 11);
+    };
+    const auto first = asked(1), best = asked(200);
+    EXPECT_EQ(first.coordinates, ask_design("latin_hypercube", 2, {{"points", std::int64_t{20}}}, 11).coordinates);
+    EXPECT_GT(nearest_two(best), 2 * nearest_two(first));
+    EXPECT_GE(nearest_two(asked(400)), nearest_two(best));
+    std::set<std::size_t> cells;
+    for (std::size_t p = 0; p < 20; ++p) cells.insert(static_cast<std::size_t>(best.point(p)[1] * 20));
+    EXPECT_EQ(cells.size(), 20U);
+    EXPECT_THROW(
+        (void)ask_design("latin_hypercube", 2, {{"points", std::int64_t{100'000}}, {"candidates", std::int64_t{2}}}),
+        std::invalid_argument);
+}
+
 TEST(ListDesign, TakesRowsAsTheyAre) {
     const designs::Rows rows = {{0.5, std::string("sjkr")}, {std::int64_t{3}, std::string("sjkr2")}};
     const auto set = ask_design("list", 2, {{"rows", rows}});

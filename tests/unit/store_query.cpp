@@ -286,6 +286,17 @@ TEST_F(StoreQuery, StatisticsAreTheirDefinitions) {
     EXPECT_DOUBLE_EQ(of("quantile(column1, 0.5)"), of("median(column1)"));
     EXPECT_DOUBLE_EQ(of("quantile(column1, 1)"), 10);
     EXPECT_DOUBLE_EQ(of("percentile(column1, 90)"), of("quantile(column1, 0.9)"));
+    EXPECT_DOUBLE_EQ(of("above(column1, 3)"), 0.4);
+    EXPECT_DOUBLE_EQ(of("below(column1, 3)"), 0.4);
+    EXPECT_EQ(only_cell(store, "SELECT quantile_error(column1, 0.5, 0)" + rows), "NULL") << "too few values";
+    // 400 values in 4 sequences, of which none lies above: Clopper & Pearson, 1 - 0.025^(1/400).
+    const std::string many =
+        " FROM (WITH RECURSIVE k(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM k WHERE i < 399) "
+        "SELECT i FROM k)";
+    EXPECT_NEAR(std::stod(only_cell(store, "SELECT above_error(i, 400, i % 4)" + many)), 0.009180, 1e-6);
+    EXPECT_NEAR(std::stod(only_cell(store, "SELECT above_error(i, 199, i % 4)" + many)), 0.005, 0.005);
+    EXPECT_GT(std::stod(only_cell(store, "SELECT quantile_error(i, 0.9, i % 4)" + many)), 0);
+    EXPECT_THAT(refusal("SELECT quantile_error(column1, 1, 0)" + rows), HasSubstr("p is one number between 0 and 1"));
     EXPECT_DOUBLE_EQ(of("covar_samp(column1, column2)"), 7.5);
     EXPECT_DOUBLE_EQ(of("covar_pop(column1, column2)"), 6);
     EXPECT_NEAR(of("corr(column1, column2)"), 0.92144, 1e-5);
