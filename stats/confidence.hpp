@@ -1,6 +1,7 @@
 // 95 % half-widths of estimates, from repetitions or from leaving out parts.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -8,6 +9,11 @@ namespace grainsweep::stats {
 
 /// Half-width of a 95 % interval in standard errors of a normal estimate.
 inline constexpr double normal_95 = 1.959963984540054;
+
+/// Factor by which errors of even points fall at the steepest where their number doubles, 2^(-3/2), and the halvings of
+/// a sequence that are compared by it (convergence.hpp).
+inline constexpr double steepest_fall = 0.35355339059327376;
+inline constexpr std::size_t most_halvings = 3;
 
 /// Returns t_{freedom, 0.975}, the half-width in standard errors. NaN below one degree of freedom.
 [[nodiscard]] double student_factor(std::int64_t freedom);

@@ -13,9 +13,7 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
-constexpr std::size_t most_halvings = 3;
 constexpr double most_widened = 3;
-constexpr double steepest_fall = 0.35355339059327376;  // 2^(-3/2)
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns whether repetitions of a statistic differ by more than rounding; only then can an error be estimated from

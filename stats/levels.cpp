@@ -13,14 +13,12 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t stretches = 8, fewest_in_group = 4, fewest_beyond = 10, most_halvings = 3;
-constexpr double steepest_fall = 0.35355339059327376;  // 2^(-3/2)
+constexpr std::size_t groups_of_stretches = 8, fewest_in_group = 4, fewest_beyond = 10;
 constexpr double tail_of_interval = 0.025;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// How far a share may lie below and above its estimate.
 struct Arms {
-    double below = nan, above = nan;
+    double below = 0, above = 0;
 };
 
 using Binomial = boost::math::binomial_distribution<double>;
@@ -31,7 +29,7 @@ double share_below(std::span<const double> values, double threshold) {
 }
 
 /// Student half-width over the shares of the groups' beginnings.
-double half_width_of(std::span<const std::span<const double>> groups, std::size_t halvings, const auto& share) {
+double half_width_at(std::span<const std::span<const double>> groups, std::size_t halvings, const auto& share) {
     std::vector<double> shares;
     for (std::size_t g = 0; g < groups.size(); ++g) shares.push_back(share(g, groups[g].size() >> halvings));
     return student_half_width(shares);
@@ -44,11 +42,11 @@ std::size_t shortest(std::span<const std::span<const double>> groups) {
 /// e of the header but for few values; `share`: of the first n values of a group.
 double share_error(const GroupedSample& sample, const auto& share) {
     const std::size_t least = shortest(sample.groups);
-    if (least < fewest_in_group) return nan;
-    double error = half_width_of(sample.groups, 0, share), fall = 1;
+    if (least < fewest_in_group) return std::numeric_limits<double>::quiet_NaN();
+    double error = half_width_at(sample.groups, 0, share), fall = 1;
     for (std::size_t k = 1; sample.independent && k <= most_halvings && (least >> k) >= fewest_in_group; ++k) {
         fall *= steepest_fall;
-        error = std::max(error, fall * half_width_of(sample.groups, k, share));
+        error = std::max(error, fall * half_width_at(sample.groups, k, share));
     }
     const double rounded = static_cast<double>(least) * std::sqrt(12 * static_cast<double>(sample.groups.size()));
     return std::max(error, normal_95 / rounded);
@@ -90,7 +88,7 @@ std::optional<double> quantile_of(std::span<const double> sorted, double q) {
     return std::lerp(sorted[low], sorted[std::min(low + 1, sorted.size() - 1)], at - static_cast<double>(low));
 }
 
-LevelEstimate estimate_of(const Quantile& wanted, const GroupedSample& sample) {
+LevelEstimate level_estimate(const Quantile& wanted, const GroupedSample& sample) {
     const double q = wanted.probability;
     LevelEstimate found{wanted, *quantile_of(sample.sorted, q)};
     const Arms arms = arms_of_probability(q, sample.sorted.size(), share_error_at(sample, found.value));
@@ -99,7 +97,7 @@ LevelEstimate estimate_of(const Quantile& wanted, const GroupedSample& sample) {
     return found;
 }
 
-LevelEstimate estimate_of(const Exceedance& wanted, const GroupedSample& sample) {
+LevelEstimate level_estimate(const Exceedance& wanted, const GroupedSample& sample) {
     const auto above = static_cast<std::size_t>(std::ranges::end(sample.sorted) -
                                                 std::ranges::upper_bound(sample.sorted, wanted.threshold));
     const auto below = static_cast<std::size_t>(std::ranges::lower_bound(sample.sorted, wanted.threshold) -
@@ -116,6 +114,10 @@ class ModelDistribution {
 public:
     explicit ModelDistribution(const LeftOutPredictions& model) : model_(model), sizes_(model.spread.size(), 0) {
         for (const std::size_t s : model.sequences) ++sizes_[s];
+        double squares = 0;
+        for (std::size_t i = 0; i < model.values.size(); ++i)
+            squares += std::pow(model.values[i] - model.predicted[i], 2);
+        error_ = std::sqrt(squares / static_cast<double>(model.values.size()));
     }
 
     [[nodiscard]] double at(double threshold) const {
@@ -123,19 +125,26 @@ public:
         return std::accumulate(each.begin(), each.end(), 0.0) / static_cast<double>(each.size());
     }
 
-    /// (a) over the sequences, (b) over the cases, as of the mean.
+    /// (a), (b) and (c) of the header.
     [[nodiscard]] double error_at(double threshold) const {
-        double squares = 0, sum = 0;
+        double squares = 0, sum = 0, expected = 0;
         for (std::size_t i = 0; i < model_.values.size(); ++i) {
-            const double r = left_over(i, threshold);
+            const double r = residual(i, threshold);
             squares += r * r;
             sum += r;
+            const double p = below(model_.predicted[i], error_, threshold);
+            expected += p * (1 - p);
         }
         const auto n = static_cast<double>(model_.values.size());
         const double variance = (squares - sum * sum / n) / (n * (n - 1));
-        const auto each = by_sequence(threshold);
-        return std::max({student_half_width(each), normal_95 * std::sqrt(std::max(variance, 0.0)),
-                         normal_95 / (n / std::sqrt(static_cast<double>(each.size())) * std::sqrt(12.0))});
+        const double error =
+            std::max({student_half_width(by_sequence(threshold)), normal_95 * std::sqrt(std::max(variance, 0.0)),
+                      normal_95 * std::sqrt(expected) / n});
+        std::vector<double> integrals(model_.scramblings, 0);
+        for (std::size_t s = 0; s < sizes_.size(); ++s)
+            for (std::size_t k = 0; k < model_.scramblings; ++k)
+                integrals[k] += integral(s, k, threshold) / static_cast<double>(sizes_.size());
+        return model_.scramblings > 1 ? std::hypot(error, student_half_width(integrals)) : error;
     }
 
 private:
@@ -143,23 +152,31 @@ private:
         if (noise > 0) return normal_cdf((threshold - mean) / noise);
         return mean < threshold ? 1 : 0;
     }
-    [[nodiscard]] double left_over(std::size_t i, double threshold) const {
+    [[nodiscard]] double residual(std::size_t i, double threshold) const {
         return (model_.values[i] < threshold ? 1 : 0) -
                below(model_.predicted[i], model_.noise[model_.sequences[i]], threshold);
     }
+    /// Mean over one scrambling of the integration points.
+    [[nodiscard]] double integral(std::size_t sequence, std::size_t scrambling, double threshold) const {
+        const std::span<const double> all = model_.spread[sequence];
+        const auto size = all.size() / model_.scramblings;
+        double sum = 0;
+        for (const double m : all.subspan(scrambling * size, size)) sum += below(m, model_.noise[sequence], threshold);
+        return sum / static_cast<double>(size);
+    }
     [[nodiscard]] std::vector<double> by_sequence(double threshold) const {
         std::vector<double> each(sizes_.size(), 0);
-        for (std::size_t s = 0; s < each.size(); ++s) {
-            for (const double m : model_.spread[s]) each[s] += below(m, model_.noise[s], threshold);
-            each[s] /= static_cast<double>(model_.spread[s].size());
-        }
+        for (std::size_t s = 0; s < each.size(); ++s)
+            for (std::size_t k = 0; k < model_.scramblings; ++k)
+                each[s] += integral(s, k, threshold) / static_cast<double>(model_.scramblings);
         for (std::size_t i = 0; i < model_.values.size(); ++i)
-            each[model_.sequences[i]] += left_over(i, threshold) / sizes_[model_.sequences[i]];
+            each[model_.sequences[i]] += residual(i, threshold) / sizes_[model_.sequences[i]];
         return each;
     }
 
     const LeftOutPredictions& model_;
     std::vector<double> sizes_;
+    double error_ = 0;  ///< rms on left-out sequences
 };
 
 /// The threshold of a probability, by bisection; none: it lies outside of the values.
@@ -201,14 +218,16 @@ std::optional<Level> level_named(std::string_view word) {
 std::vector<std::span<const double>> stretches_of(std::span<const double> values) {
     std::vector<std::span<const double>> groups;
     const std::size_t n = values.size();
-    for (std::size_t g = 0; g < stretches; ++g)
-        groups.push_back(values.subspan(n * g / stretches, n * (g + 1) / stretches - n * g / stretches));
+    for (std::size_t g = 0; g < groups_of_stretches; ++g) {
+        const std::size_t from = n * g / groups_of_stretches, to = n * (g + 1) / groups_of_stretches;
+        groups.push_back(values.subspan(from, to - from));
+    }
     return groups;
 }
 
 LevelEstimate level_of(const Level& level, const GroupedSample& sample) {
     if (sample.sorted.empty()) return {level};
-    return std::visit([&](const auto& wanted) { return estimate_of(wanted, sample); }, level);
+    return std::visit([&](const auto& wanted) { return level_estimate(wanted, sample); }, level);
 }
 
 LevelEstimate assisted_level_of(const Level& level, const LeftOutPredictions& model) {

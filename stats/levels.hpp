@@ -17,7 +17,9 @@
 //   F(t) = mean over s of [ mean over Q of P(m_s + noise < t) + mean over i in s of (1(z_i < t) - P(m_s(x_i) + noise
 //   < t)) ]
 //
-// by the same errors, from the differences; the interval of a quantile by bisection.
+// with the largest of (a) Student t over the sequences, (b) the scatter of the differences over the cases, (c) what
+// normal residuals of the model's size would scatter, and in quadrature Student t over the scramblings of Q; the
+// interval of a quantile by bisection.
 #pragma once
 
 #include "stats/moments.hpp"
@@ -77,6 +79,7 @@ struct LeftOutPredictions {
     std::vector<double> values;               ///< responses of the cases
     std::vector<double> predicted;            ///< of the cases
     std::vector<std::size_t> sequences;       ///< of the cases, 0 ... S - 1
+    std::size_t scramblings = 1;              ///< equal parts of the integration points
     std::vector<std::vector<double>> spread;  ///< [sequence]: predictions at the integration points
     std::vector<double> noise;                ///< [sequence]: standard deviation of the noise
 };

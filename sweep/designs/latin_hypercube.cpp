@@ -15,7 +15,7 @@
 namespace grainsweep::designs {
 namespace {
 
-constexpr std::int64_t most_candidates = 10'000;
+constexpr std::int64_t most_hypercubes = 10'000;
 constexpr double most_pairs = 1e10;
 
 PointSet hypercube(const DesignRequest& request, std::uint64_t candidate) {
@@ -80,7 +80,7 @@ DesignInfo latin_hypercube_design() {
                         {.name = "candidates",
                          .meaning = "hypercubes drawn; the one whose nearest two points are farthest apart is taken",
                          .default_value = std::int64_t{1},
-                         .maximum = most_candidates,
+                         .maximum = most_hypercubes,
                          .silent_by_default = true}},
             .size = points_asked,
             .sample = latin_hypercube_points};

@@ -21,7 +21,7 @@ constexpr double shortest_pause = 1, longest_pause = 1800;  // s
 constexpr double rest = 20, alone = 2;                      // times the processor time of the last page
 // Processor time beside a run, s: at once, and of each second. A short run is followed closely, a long one costs
 // little.
-constexpr double at_once = 0.25, of_a_second = 1.0 / 400;
+constexpr double at_once = 1, of_a_second = 1.0 / 400;
 constexpr double retry_pause = 2;     // s, after an error
 constexpr double most_reading = 120;  // of processor time in the statements of one database
 constexpr auto longest_renewal = std::chrono::seconds(2);

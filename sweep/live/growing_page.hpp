@@ -1,7 +1,7 @@
 // Data of the report for growing databases, renewed by a thread, database by database.
 //
 // Figures of a campaign (moments, indices, models) take longer than the interval between results. They are computed
-// again after commits; while a run computes, only for a quarter of a second plus a four-hundredth of the time. A
+// again after commits; while a run computes, only for a second plus a four-hundredth of the time. A
 // database that cannot be read keeps its last figures, and is tried again.
 #pragma once
 

@@ -115,7 +115,7 @@ store::Table statistics_table(const History& history) {
 }
 
 /// P(name > threshold), or the quantile.
-std::string level_text(const stats::Level& level, std::string_view name) {
+std::string name_of_level(const stats::Level& level, std::string_view name) {
     if (const auto* quantile = std::get_if<stats::Quantile>(&level))
         return fmt::format("{:.6g} % quantile", 100 * quantile->probability);
     const auto& beyond = std::get<stats::Exceedance>(level);
@@ -147,8 +147,8 @@ store::Table levels_table(const History& history, const ResponseColumn& response
         const bool gate = std::ranges::find(history.settings.gates, stats::Gate{level}) != history.settings.gates.end();
         const auto measure =
             gate && !history.checks.empty() ? history.checks.back().of(stats::Gate{level}).measure : all.measure;
-        std::vector<Cell> row = {level_text(level, response.name), value_cell(all.value, all.error), to_cell(all.error),
-                                 percent(measure),
+        std::vector<Cell> row = {name_of_level(level, response.name), value_cell(all.value, all.error),
+                                 to_cell(all.error), percent(measure),
                                  !gate || history.checks.empty()        ? ""
                                  : measure < history.settings.tolerance ? "within"
                                                                         : "not within"};
@@ -266,7 +266,7 @@ void say_levels(Document& shown, const ResponseColumn& response, const History& 
     for (const auto& [level, all] : history.all.levels)
         if (const auto limits = counting_failures(history, level, all.value))
             shown.say(fmt::format("{}: {:.3g} to {:.3g} of all cases, wherever those without a value lie",
-                                  level_text(level, response.name), limits->first, limits->second));
+                                  name_of_level(level, response.name), limits->first, limits->second));
 }
 
 /// Adds both estimates of the moments, if the design allows the second one.
@@ -409,10 +409,12 @@ Document convergence_document(const store::Store& store, const Responses& respon
     const auto lattices = lattice_family(store, responses, response);
     Document shown{.rows = checks_rows(responses, response, history), .converged = history.converged.value_or(false)};
     for (auto& row : provisional_rows(responses, response, history).rows) shown.rows.rows.push_back(std::move(row));
+    std::vector<stats::Level> estimated;
+    for (const auto& [level, estimate] : history.all.levels) estimated.push_back(level);
     const auto corrected = study::corrected_of(store, responses.campaign);
     if (corrected) shown.converged = corrected->within;
     if (format == Format::json) {
-        const auto estimators = estimators_of(store, responses, response, levels);
+        const auto estimators = estimators_of(store, responses, response, estimated);
         shown.value = to_json(responses, response, history, lattices)
                           .add("levels", levels_json(history, &estimators))
                           .add("estimators", estimators_json(history, estimators));
@@ -422,7 +424,7 @@ Document convergence_document(const store::Store& store, const Responses& respon
         shown.say(study_heading(responses, response)).say();
         say_history(shown, responses, history, lattices);
         const auto estimators =
-            repeats(responses) ? std::optional(estimators_of(store, responses, response, levels)) : std::nullopt;
+            repeats(responses) ? std::optional(estimators_of(store, responses, response, estimated)) : std::nullopt;
         say_levels(shown, response, history, estimators ? &*estimators : nullptr);
         if (estimators) say_estimators(shown, history, *estimators);
         if (corrected) shown.say().show(corrected_table(*corrected)).say(corrected->verdict());

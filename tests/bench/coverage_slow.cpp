@@ -167,14 +167,14 @@ void print_level(const Tally& tally, const JudgedResponse& response, std::int64_
     tally.expect(0.92, response.name + ' ' + how + ' ' + one.name + fmt::format(" at {} cases", n));
 }
 
-std::vector<std::string> level_columns(const std::vector<CountedLevel>& counted) {
+std::vector<std::string> level_columns(std::span<const CountedLevel> counted) {
     std::vector<std::string> columns = {"response", "cases"};
     for (const auto& one : counted) columns.push_back(one.name);
     return columns;
 }
 
-void count_levels(const JudgedResponse& response, const std::string& design, std::int64_t n) {
-    const auto counted = counted_levels(response);
+void count_levels(const JudgedResponse& response, std::span<const CountedLevel> counted, const std::string& design,
+                  std::int64_t n) {
     std::vector<Tally> tallies(counted.size());
     ConvergenceSettings settings{.block = n, .sequences = 8};
     for (const auto& one : counted) settings.gates.emplace_back(one.level);
@@ -269,8 +269,9 @@ TEST(SlowCoverage, OfPlainMoments) {
 TEST(SlowCoverage, OfLevels) {
     for (const auto& response : judged_responses()) {
         if (!chosen(response.name)) continue;
-        for (const std::int64_t n : {128, 512, 2048}) count_levels(response, "halton", n);
-        count_levels(response, "sobol", 256);
+        const auto counted = counted_levels(response);
+        for (const std::int64_t n : {128, 512, 2048}) count_levels(response, counted, "halton", n);
+        count_levels(response, counted, "sobol", 256);
     }
 }
 

@@ -111,7 +111,7 @@ TEST(ConvergenceReference, ReplicatesStopWhereTheStudyStopped) {
             for (const std::string tolerance : {"0.02", "0.01"}) {
                 const Expected expected = from_study(gate, model, tolerance);
                 const Stops got = stops({.rule = ConvergenceRule::replicates,
-                                         .gates = gates,
+                                         .gates = {gates.begin(), gates.end()},
                                          .tolerance = std::stod(tolerance),
                                          .block = 400,
                                          .sequences = 8},
@@ -132,9 +132,12 @@ TEST(ConvergenceReference, ReplicatesStopWhereTheStudyStopped) {
 TEST(ConvergenceReference, PearsonsSkewnessTakesLonger) {
     const std::vector<Statistic> gates = {Statistic::mean, Statistic::sd, Statistic::kurtosis, Statistic::skewness};
     const Expected expected = from_study("mean+sd+kurt+pearson2/3", "A", "0.02");
-    const Stops got =
-        stops({.rule = ConvergenceRule::replicates, .gates = gates, .tolerance = 0.02, .block = 400, .sequences = 8},
-              responses(1.0, 8, 8000), truth(1.0), gates);
+    const Stops got = stops({.rule = ConvergenceRule::replicates,
+                             .gates = {gates.begin(), gates.end()},
+                             .tolerance = 0.02,
+                             .block = 400,
+                             .sequences = 8},
+                            responses(1.0, 8, 8000), truth(1.0), gates);
     // The stops scatter widely (95 % at 6000): their median is known to two blocks or so.
     EXPECT_NEAR(got.median, expected.median, 800);
     EXPECT_NEAR(got.late, expected.late, 1200);
@@ -149,8 +152,11 @@ TEST(ConvergenceReference, HalfWidthsCoverTheTruthAsOftenAsTheyClaim) {
     for (int randomisation = 0; randomisation < tries; ++randomisation) {
         const auto set = ask_design("halton", 4, {{"points", 2400}, {"sequences", 8}},
                                     static_cast<std::uint64_t>(20'000 + randomisation));
-        Convergence convergence(
-            {.rule = ConvergenceRule::replicates, .gates = four, .tolerance = 0.01, .block = 2400, .sequences = 8});
+        Convergence convergence({.rule = ConvergenceRule::replicates,
+                                 .gates = {four.begin(), four.end()},
+                                 .tolerance = 0.01,
+                                 .block = 2400,
+                                 .sequences = 8});
         for (std::size_t p = 0; p < set.size(); ++p)
             convergence.add(static_cast<std::int64_t>(p), spreading_response(set.point(p)));
         convergence.settle(2400);
@@ -170,9 +176,12 @@ TEST(ConvergenceReference, HalfWidthsCoverTheTruthAsOftenAsTheyClaim) {
 TEST(ConvergenceReference, TheThesisRuleStopsAtOnceAndOftenTooEarly) {
     // Study: stops at 800, the first possible check, with 54-56 % false stops over 200 runs (standard error 3.5 %).
     const std::vector<Statistic> thesis = {Statistic::mean, Statistic::sd, Statistic::skewness, Statistic::kurtosis};
-    const Stops got =
-        stops({.rule = ConvergenceRule::any_change, .gates = thesis, .tolerance = 0.01, .block = 400, .sequences = 1},
-              responses(1.0, 1, 2400), truth(1.0), thesis);
+    const Stops got = stops({.rule = ConvergenceRule::any_change,
+                             .gates = {thesis.begin(), thesis.end()},
+                             .tolerance = 0.01,
+                             .block = 400,
+                             .sequences = 1},
+                            responses(1.0, 1, 2400), truth(1.0), thesis);
     std::cout << "any_change: median " << got.median << ", false " << got.false_share << "\n";
     EXPECT_EQ(got.median, 800);
     EXPECT_NEAR(got.false_share, 0.555, 0.14);
@@ -185,8 +194,11 @@ TEST(ConvergenceReference, PredictionsMadeEarlyAreOfTheRightSize) {
     for (int randomisation = 0; randomisation < 100; ++randomisation) {
         const auto set = ask_design("halton", 4, {{"points", 8000}, {"sequences", 8}},
                                     static_cast<std::uint64_t>(9000 + randomisation));
-        Convergence convergence(
-            {.rule = ConvergenceRule::replicates, .gates = four, .tolerance = 0.01, .block = 400, .sequences = 8});
+        Convergence convergence({.rule = ConvergenceRule::replicates,
+                                 .gates = {four.begin(), four.end()},
+                                 .tolerance = 0.01,
+                                 .block = 400,
+                                 .sequences = 8});
         for (std::size_t p = 0; p < set.size(); ++p)
             convergence.add(static_cast<std::int64_t>(p), spreading_response(set.point(p)));
         convergence.settle(8000);

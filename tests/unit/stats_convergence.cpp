@@ -31,7 +31,7 @@ std::vector<std::int64_t> numbers(std::size_t n) {
     return points;
 }
 
-ConvergenceSettings replicates(std::vector<Statistic> gates, double tolerance, std::int64_t block = 400) {
+ConvergenceSettings replicates(std::vector<Gate> gates, double tolerance, std::int64_t block = 400) {
     return {.rule = ConvergenceRule::replicates,
             .gates = std::move(gates),
             .tolerance = tolerance,
@@ -160,7 +160,7 @@ TEST(Convergence, UndefinedNeverPasses) {
     const std::vector<double> constant(1600, 2.5);
     const auto flat = judge_convergence(replicates({Statistic::kurtosis}, 0.5), numbers(1600), constant, 1600);
     EXPECT_FALSE(flat.back().passes);
-    EXPECT_EQ(flat.back().held_back, Statistic::kurtosis);
+    EXPECT_EQ(flat.back().held_back, Gate{Statistic::kurtosis});
     EXPECT_FALSE(flat.back().points_needed);
     EXPECT_FALSE(judge_convergence(replicates({Statistic::mean}, 0.5), numbers(1600), constant, 1600).back().converged);
     const std::vector<double> failed(1600, missing);
@@ -271,7 +271,7 @@ TEST(Convergence, PearsonIsRefusedWhereHalfTheValuesAreZero) {
     const auto checks = judge_convergence(replicates({Statistic::skewness}, 0.9), numbers(8000), values, 8000);
     EXPECT_NEAR(checks.back().zero_share, 0.5, 0.02);
     EXPECT_FALSE(checks.back().passes);
-    EXPECT_EQ(checks.back().held_back, Statistic::skewness);
+    EXPECT_EQ(checks.back().held_back, Gate{Statistic::skewness});
     EXPECT_FALSE(std::isnan(checks.back().of(Statistic::skewness).error));  // shown all the same
     EXPECT_TRUE(judge_convergence(replicates({Statistic::skewness}, 0.9), numbers(8000), uniform(8000, 4), 8000)
                     .back()
@@ -295,7 +295,7 @@ TEST(Convergence, ChangeRulesCompareWithTheCheckBefore) {
     settings.rule = ConvergenceRule::all_change;
     const auto all = judge_convergence(settings, numbers(200), values, 200);
     EXPECT_FALSE(all[1].passes);
-    EXPECT_EQ(all[1].held_back, Statistic::sd);
+    EXPECT_EQ(all[1].held_back, Gate{Statistic::sd});
 }
 
 TEST(Convergence, JackknifeErrorsOfOneSequenceAreHonestForIndependentPoints) {
