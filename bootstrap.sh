@@ -166,15 +166,15 @@ bench)
     shift
     if [ $# -eq 0 ]; then
         for program in "$here"/build/tests/bench_*; do set -- "$@" "${program##*/bench_}"; done
-        set -- "$@" overhead
+        set -- "$@" overhead scene_cost
     fi
     for name in "$@"; do
-        if [ "$name" = overhead ]; then
-            "$here/tests/bench/overhead.sh"
+        if [ -x "$here/tests/bench/$name.sh" ]; then
+            "$here/tests/bench/$name.sh"
         elif [ -x "$here/build/tests/bench_$name" ]; then
             "$here/build/tests/bench_$name"
         else
-            echo "no benchmark '$name': there are $(cd "$here/build/tests" && echo bench_* | sed 's/bench_//g') overhead" >&2
+            echo "no benchmark '$name': there are $(cd "$here/build/tests" && echo bench_* | sed 's/bench_//g') overhead scene_cost" >&2
             exit 2
         fi
     done

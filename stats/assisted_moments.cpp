@@ -307,7 +307,7 @@ void add_assisted(AssistedMoments& result, const Cases& c, const Parts& parts, d
 /// Levels in the unit of the response.
 void add_levels(AssistedMoments& result, const Cases& c, Parts parts, const AssistedSettings& settings) {
     const std::size_t scramblings = parts.integrals.front().size();
-    if (result.unforeseen || !(result.model_error < settings.refused_error)) return;
+    if (result.endless || result.unforeseen || !(result.model_error < settings.refused_error)) return;
     LeftOutPredictions model{.values = {c.z.begin(), c.z.end()},
                              .predicted = std::move(parts.predicted),
                              .sequences = c.sequence,

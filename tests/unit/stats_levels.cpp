@@ -78,6 +78,9 @@ TEST(Levels, RareOnesHaveTheBinomialInterval) {
     // Clopper & Pearson of 0 in 400, one side: 1 - 0.025^(1/400).
     EXPECT_NEAR(none.error, 1 - std::pow(0.025, 1.0 / 400), 1e-12);
     EXPECT_TRUE(std::isnan(level_of(Quantile{0.999}, sample).error));
+    std::vector<std::vector<double>> sequences(8);
+    for (std::size_t i = 0; i < 400; ++i) sequences[i % 8].push_back(campaign.values[i]);
+    sample.groups.assign(sequences.begin(), sequences.end());
     const auto rare = level_of(Quantile{0.98}, sample);  // 8 values lie above: the order statistics 2 to 14 enclose it
     EXPECT_GE(rare.error, rare.value - sorted[400 - 14]);
     sample.groups = {std::span(campaign.values).first(2), std::span(campaign.values).subspan(2)};
