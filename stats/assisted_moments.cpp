@@ -19,8 +19,9 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t least_sequences = 4, least_rare = 30, least_scramblings = 4;
-constexpr std::size_t first_of_shape = 2;  // g1, in the order of the statistics
-constexpr double contradiction = 2;        // in joint half-widths
+constexpr std::size_t first_of_shape = 2;       // g1, in the order of the statistics
+constexpr std::size_t points_of_levels = 2048;  // of each scrambling
+constexpr double contradiction = 2;             // in joint half-widths
 constexpr std::int64_t least_freedom = 2;
 // Cases from which on, and error of the models (in sd) below which, two estimates of one variance are averaged.
 constexpr std::size_t fewest_averaged = 200;
@@ -149,7 +150,12 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
         integrals.assign(scramblings, RawMoments{});
         if (!settings.levels.empty()) {
             const auto column = means.col(static_cast<Eigen::Index>(f));
-            parts.spread[folds[f]].assign(column.begin(), column.end());
+            auto& spread = parts.spread[folds[f]];
+            spread.clear();
+            for (std::size_t k = 0; k < scramblings; ++k) {
+                const auto from = column.begin() + static_cast<Eigen::Index>(k * each);
+                spread.insert(spread.end(), from, from + static_cast<Eigen::Index>(std::min(each, points_of_levels)));
+            }
             parts.noise[folds[f]] = std::sqrt(v);
         }
         for (std::size_t q = 0; q < each * scramblings; ++q) {

@@ -3,11 +3,13 @@
 #include "stats/confidence.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace grainsweep::stats {
@@ -179,15 +181,18 @@ private:
     double error_ = 0;  ///< rms on left-out sequences
 };
 
-/// The threshold of a probability, by bisection; none: it lies outside of the values.
+/// The threshold of a probability; none: it lies outside of the values.
 std::optional<double> threshold_of(const ModelDistribution& model, double q, double low, double high) {
-    constexpr int halvings = 40;
+    constexpr int bits = 24;
     if (!(q > 0 && q < 1)) return std::nullopt;
-    for (int k = 0; k < halvings; ++k) {
-        const double middle = std::midpoint(low, high);
-        (model.at(middle) < q ? low : high) = middle;
-    }
-    return std::midpoint(low, high);
+    const auto beyond = [&](double threshold) { return model.at(threshold) - q; };
+    const double at_low = beyond(low), at_high = beyond(high);
+    if (!(at_low < 0)) return low;
+    if (!(at_high > 0)) return high;
+    std::uintmax_t evaluations = 60;
+    const auto [from, to] = boost::math::tools::toms748_solve(
+        beyond, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(bits), evaluations);
+    return std::midpoint(from, to);
 }
 
 }  // namespace

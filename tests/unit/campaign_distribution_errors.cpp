@@ -50,7 +50,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"({"name": "x1", "normal": {"mean": 0.5}})",
               "$.factors[0].normal: key 'sd' is missing: standard deviation, above 0."},
         Wrong{R"({"name": "x1", "normal": {"mean": 0.5, "std": 0.1}})",
-              "$.factors[0].normal.std: unknown key; $.factors[0].normal has 'mean', 'sd' or 'notes'. Did you mean "
+              "$.factors[0].normal.std: unknown key; $.factors[0].normal has 'mean', 'sd', 'low', 'high' or 'notes'. "
+              "Did you mean "
               "'sd'?"},
         Wrong{R"({"name": "x1", "normal": {"mean": 0.5, "sd": 0}})",
               "$.factors[0].normal.sd: got 0; 'sd' must be a number above 0."},
@@ -62,11 +63,13 @@ INSTANTIATE_TEST_SUITE_P(
               "$.factors[0].normal.mean: got null; 'mean' must be a number."},
         Wrong{R"({"name": "x1", "normal": {"mean": 0.5, "sd": 0.5}})",
               "$.factors[0].normal: got {\"mean\":0.5,\"sd\":0.5}; 31.7 % of the distribution lie where 'x1' has no "
-              "value, which is a number from 0 to 1; at most 5 % may."},
+              "value, which is a number from 0 to 1; at most 5 % may, unless \"low\" or \"high\" truncates the "
+              "distribution there."},
         Wrong{
             R"({"name": "x1", "normal": {"mean": 7, "sd": 0.5}})",
             "$.factors[0].normal: got {\"mean\":7,\"sd\":0.5}; 100 % of the distribution lie where 'x1' has no value, "
-            "which is a number from 0 to 1; at most 5 % may."},
+            "which is a number from 0 to 1; at most 5 % may, unless \"low\" or \"high\" truncates the distribution "
+            "there."},
         Wrong{R"({"name": "x1", "normal": {"mean": 0.5, "sd": 1e-18}})",
               "$.factors[0].normal: got {\"mean\":0.5,\"sd\":1e-18}; the width is lost in double precision."},
         Wrong{R"({"name": "x1", "lognormal": {"median": 0.2}})",
@@ -83,7 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
               "$.factors[0].lognormal.sigma: got \"10 %\"; must be a number above 0 and up to 10."},
         Wrong{R"({"name": "x1", "lognormal": {"median": 0.8, "sigma": 1}})",
               "$.factors[0].lognormal: got {\"median\":0.8,\"sigma\":1}; 41.2 % of the distribution lie where 'x1' has "
-              "no value, which is a number from 0 to 1; at most 5 % may."},
+              "no value, which is a number from 0 to 1; at most 5 % may, unless \"low\" or \"high\" truncates the "
+              "distribution there."},
         Wrong{R"({"name": "x1", "triangular": {"low": 0.5, "mode": 0.5, "high": 0.5}})",
               "$.factors[0].triangular: got {\"high\":0.5,\"low\":0.5,\"mode\":0.5}; low must be below high."},
         Wrong{R"({"name": "x1", "triangular": {"low": 0.2, "mode": 0.1, "high": 0.5}})",

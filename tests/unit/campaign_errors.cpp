@@ -223,7 +223,8 @@ INSTANTIATE_TEST_SUITE_P(
               "Did you mean "
               "'replicates'?"},
         Wrong{R"([{"op": "add", "path": "/convergence/gates", "value": ["mean", "sdd"]}])",
-              "$.convergence.gates[1]: got \"sdd\"; must be 'mean', 'sd', 'skewness', 'g1' or 'kurtosis'. Did you mean "
+              "$.convergence.gates[1]: got \"sdd\"; must be 'mean', 'sd', 'skewness', 'g1', 'kurtosis', 'quantile:', "
+              "'above:' or 'below:'. Did you mean "
               "'sd'?"},
         Wrong{R"([{"op": "add", "path": "/convergence/gates", "value": []}])",
               "$.convergence.gates: got []; at least one statistic must be judged."},
