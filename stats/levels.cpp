@@ -120,6 +120,9 @@ public:
         for (std::size_t i = 0; i < model.values.size(); ++i)
             squares += std::pow(model.values[i] - model.predicted[i], 2);
         error_ = std::sqrt(squares / static_cast<double>(model.values.size()));
+        double noise = 0;
+        for (const double sd : model.noise) noise += sd * sd / static_cast<double>(model.noise.size());
+        misfit_ = std::sqrt(std::max(error_ * error_ - noise, 0.0));
     }
 
     [[nodiscard]] double at(double threshold) const {
@@ -127,7 +130,7 @@ public:
         return std::accumulate(each.begin(), each.end(), 0.0) / static_cast<double>(each.size());
     }
 
-    /// (a), (b) and (c) of the header.
+    /// (a) to (d) of the header.
     [[nodiscard]] double error_at(double threshold) const {
         double squares = 0, sum = 0, expected = 0;
         for (std::size_t i = 0; i < model_.values.size(); ++i) {
@@ -141,7 +144,7 @@ public:
         const double variance = (squares - sum * sum / n) / (n * (n - 1));
         const double error =
             std::max({student_half_width(by_sequence(threshold)), normal_95 * std::sqrt(std::max(variance, 0.0)),
-                      normal_95 * std::sqrt(expected) / n});
+                      normal_95 * std::sqrt(expected) / n, (at(threshold + misfit_) - at(threshold - misfit_)) / 2});
         std::vector<double> integrals(model_.scramblings, 0);
         for (std::size_t s = 0; s < sizes_.size(); ++s)
             for (std::size_t k = 0; k < model_.scramblings; ++k)
@@ -178,7 +181,8 @@ private:
 
     const LeftOutPredictions& model_;
     std::vector<double> sizes_;
-    double error_ = 0;  ///< rms on left-out sequences
+    double error_ = 0;   ///< rms on left-out sequences
+    double misfit_ = 0;  ///< the part of it that is no noise
 };
 
 /// The threshold of a probability; none: it lies outside of the values.

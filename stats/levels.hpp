@@ -18,8 +18,8 @@
 //   < t)) ]
 //
 // with the largest of (a) Student t over the sequences, (b) the scatter of the differences over the cases, (c) what
-// normal residuals of the model's size would scatter, and in quadrature Student t over the scramblings of Q; the
-// interval of a quantile by root finding.
+// normal residuals of the model's size would scatter, (d) how far F moves if the threshold moves by the misfit of the
+// model, and in quadrature Student t over the scramblings of Q; the interval of a quantile by root finding.
 #pragma once
 
 #include "stats/moments.hpp"
