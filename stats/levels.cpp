@@ -84,10 +84,7 @@ Arms arms_of_probability(double q, std::size_t all, double error) {
 
 /// none: outside of the sample.
 std::optional<double> quantile_of(std::span<const double> sorted, double q) {
-    const double at = static_cast<double>(sorted.size() - 1) * q;
-    if (!(q > 0 && q < 1)) return std::nullopt;
-    const auto low = static_cast<std::size_t>(at);
-    return std::lerp(sorted[low], sorted[std::min(low + 1, sorted.size() - 1)], at - static_cast<double>(low));
+    return q > 0 && q < 1 ? std::optional(quantile_of_sorted(sorted, q)) : std::nullopt;
 }
 
 LevelEstimate level_estimate(const Quantile& wanted, const GroupedSample& sample) {
@@ -226,6 +223,12 @@ std::optional<Level> level_named(std::string_view word) {
     if (kind == "quantile" && x > 0 && x < 1) return Quantile{x};
     if (kind == "above" || kind == "below") return Exceedance{x, kind == "above"};
     return std::nullopt;
+}
+
+double quantile_of_sorted(std::span<const double> sorted, double q) {
+    const double at = static_cast<double>(sorted.size() - 1) * q;
+    const auto low = std::min(static_cast<std::size_t>(at), sorted.size() - 1);
+    return std::lerp(sorted[low], sorted[std::min(low + 1, sorted.size() - 1)], at - static_cast<double>(low));
 }
 
 std::vector<std::span<const double>> stretches_of(std::span<const double> values) {

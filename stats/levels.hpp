@@ -68,6 +68,10 @@ struct GroupedSample {
     double repeated = 0;                          ///< sqrt(sum over runs of (w^2 - w/N)), Convergence::add
 };
 
+/// Returns the q-quantile of ascending values, at (N - 1) q and linear between them (type 7 of Hyndman & Fan 1996, Am.
+/// Stat. 50, 361); q from 0 to 1, at least one value.
+[[nodiscard]] double quantile_of_sorted(std::span<const double> sorted, double q);
+
 /// Returns the consecutive stretches that stand for groups where there are no independent sequences.
 [[nodiscard]] std::vector<std::span<const double>> stretches_of(std::span<const double> values);
 

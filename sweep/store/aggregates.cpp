@@ -100,11 +100,7 @@ std::optional<double> quantile_of(std::span<const double> rows, double whole, co
     const double p = shares.front() / whole;
     if (!(p >= 0 && p <= 1) || !all_equal(shares)) throw std::invalid_argument(rule);
     std::ranges::sort(x);
-    const double place = p * static_cast<double>(x.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    if (below + 1 >= x.size()) return x.back();
-    const double weight = place - static_cast<double>(below);
-    return weight == 0 ? x[below] : x[below] + weight * (x[below + 1] - x[below]);
+    return stats::quantile_of_sorted(x, p);
 }
 
 std::optional<double> quantile(std::span<double> rows) {
