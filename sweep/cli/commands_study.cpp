@@ -61,7 +61,8 @@ std::vector<stats::Level> levels_of(std::span<const std::string> words) {
         const auto level = stats::level_named(word);
         if (!level)
             throw campaign::wrong_question(
-                "--level", word, "must be quantile:P with P between 0 and 1, above:T or below:T, such as quantile:0.9");
+                "--statistic", word,
+                "must be quantile:P with P between 0 and 1, above:T or below:T, such as quantile:0.9");
         levels.push_back(*level);
     }
     return levels;
@@ -144,7 +145,7 @@ void declare_sensitivity(Parser& parser, Subject& subject) {
 
 void declare_converge(Parser& parser, Subject& subject) {
     declare_sensitivity(parser, subject);
-    parser.add_option("--level WORD", subject.levels,
+    parser.add_option("--statistic WORD", subject.levels,
                       "quantile:P, or above:T or below:T: the probability to lie beyond T, in the unit of the "
                       "observable; default: the quantiles 0.05, 0.25, 0.5, 0.75, 0.95");
     parser.add_flag("--check", subject.check,

@@ -140,7 +140,7 @@ const stats::LevelEstimate* with_model(const Estimators* estimators, const stats
 
 /// Returns one row per level; with a column for estimates with a model where there are any.
 store::Table levels_table(const History& history, const ResponseColumn& response, const Estimators* estimators) {
-    store::Table table{{"level", "value", "error", "measure", "gate"}, {}};
+    store::Table table{{"statistic", "value", "error", "measure", "gate"}, {}};
     const bool models = estimators != nullptr && estimators->assisted && !estimators->assisted->levels.empty();
     if (models) table.columns.emplace_back("with a model");
     for (const auto& [level, all] : history.all.levels) {
@@ -164,7 +164,7 @@ Json levels_json(const History& history, const Estimators* estimators) {
     for (const auto& [level, all] : history.all.levels) {
         const auto* one = with_model(estimators, level);
         const auto limits = counting_failures(history, level, all.value);
-        list.push_back({{"level", stats::to_string(level)},
+        list.push_back({{"statistic", stats::to_string(level)},
                         {"value", all.value},
                         {"error", all.error},
                         {"measure", all.measure},
@@ -416,7 +416,7 @@ Document convergence_document(const store::Store& store, const Responses& respon
     if (format == Format::json) {
         const auto estimators = estimators_of(store, responses, response, estimated);
         shown.value = to_json(responses, response, history, lattices)
-                          .add("levels", levels_json(history, &estimators))
+                          .add("distribution", levels_json(history, &estimators))
                           .add("estimators", estimators_json(history, estimators));
         if (corrected) shown.value.add("corrected", corrected_json(*corrected));
     }

@@ -33,12 +33,12 @@ TEST_F(Levels, AreShownWithTheirErrorsInEveryForm) {
     EXPECT_THAT(text, HasSubstr("90 % quantile"));
     EXPECT_THAT(text, HasSubstr("P(y > 8)"));
     EXPECT_THAT(text, HasSubstr("5 % quantile"));
-    const auto found =
-        json::parse(out({"converge", "c.db", "--level", "below:7.6", "--level", "quantile:0.25", "--format", "json"}));
-    const auto& levels = found.at(0).at("levels");
+    const auto found = json::parse(
+        out({"converge", "c.db", "--statistic", "below:7.6", "--statistic", "quantile:0.25", "--format", "json"}));
+    const auto& levels = found.at(0).at("distribution");
     ASSERT_EQ(levels.size(), 4U);  // the gates, and those that were wanted
     const auto near = [&](std::size_t k, const std::string& name, double truth) {
-        EXPECT_EQ(levels[k]["level"], name);
+        EXPECT_EQ(levels[k]["statistic"], name);
         const double error = levels[k]["error"].get<double>();
         EXPECT_GT(error, 0);
         EXPECT_NEAR(levels[k]["value"].get<double>(), truth, error) << name;
@@ -87,7 +87,7 @@ TEST_F(Levels, WrongOnesAreRefused) {
     EXPECT_THAT(refusal({"above:8"}, "assisted"), HasSubstr("judges moments"));
     folder.write("c.json", campaign_of(64, {"mean"}).dump());
     out({"run", "c.json", "--quiet"});
-    const auto ended = ask({"converge", "c.db", "--level", "q90"});
+    const auto ended = ask({"converge", "c.db", "--statistic", "q90"});
     EXPECT_EQ(ended.code, 2);
     EXPECT_THAT(ended.err, HasSubstr("quantile:P"));
 }
