@@ -105,7 +105,7 @@ void take_back_to_schema(int version, const std::filesystem::path& file) {
         "cpu_seconds, particle_steps, phases FROM attempt;"
         "DROP TABLE attempt; ALTER TABLE attempt_1 RENAME TO attempt; DROP TABLE attempt_computer");
     for (const char* column : {"candidates", "asked_candidates", "asked_replicates"})  // 3
-        db.execute("ALTER TABLE campaign DROP COLUMN " + std::string(column));
+        if (version < 3) db.execute("ALTER TABLE campaign DROP COLUMN " + std::string(column));
     if (version < 2) db.execute("DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process");
     db.execute("PRAGMA user_version = " + std::to_string(version));
 }
