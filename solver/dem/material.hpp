@@ -10,7 +10,10 @@
 // (1 - nu)^2: a misprint. Gupta, eq. 11, drops the sign of beta, which is negative for e < 1.)
 #pragma once
 
+#include "solver/field.hpp"
+
 #include <optional>
+#include <span>
 
 namespace grainsweep::dem {
 
@@ -93,6 +96,13 @@ struct Material {
 
     bool operator==(const Material&) const = default;
 };
+
+/// Returns the members that every pair of materials may state. Defaults: those of standard_contact().
+[[nodiscard]] std::span<const Field> contact_fields();
+/// Returns the laws, one for all pairs, as fields.
+[[nodiscard]] std::span<const Field> law_fields();
+/// Returns the contact that a file which states nothing has.
+[[nodiscard]] const Material& standard_contact();
 
 [[nodiscard]] double effective_modulus(const Material& material);        ///< E*, Pa
 [[nodiscard]] double effective_shear_modulus(const Material& material);  ///< G*, Pa

@@ -50,9 +50,6 @@ struct Bar {
     double front = 0, thickness = 0, bottom = 0, top = 0;  ///< m
     double edge_radius = 0;                                ///< m, at most half the thickness and the height
 
-    static void fields(auto& s, auto&& visit) {
-        visit(s.front), visit(s.thickness), visit(s.bottom), visit(s.top), visit(s.edge_radius);
-    }
     [[nodiscard]] double rear() const { return front - thickness; }
     /// Returns the exact closest point; on the medial axis inside the solid, the point on the front face.
     [[nodiscard]] Closest closest(const Vec3& x) const;

@@ -9,6 +9,63 @@
 namespace grainsweep::geometry {
 namespace {
 
+constexpr std::array rotation_fields = {
+    needed(fields::direction<&Rotation::axis>("axis", "direction")),
+    fields::vector<&Rotation::point>("through", "m", "a point on the axis"),
+    needed(fields::quantity<&Rotation::speed>("speed", "rad/s", "right hand")),
+};
+constexpr std::array translation_fields = {needed(fields::vector<&Translation::velocity>("velocity", "m/s", ""))};
+constexpr std::array vibration_fields = {
+    needed(fields::vector<&Vibration::amplitude>("amplitude", "m", "")),
+    needed(fields::quantity<&Vibration::frequency>("frequency", "Hz", "", no_negative_number)),
+    fields::quantity<&Vibration::phase>("phase", "rad", ""),
+};
+constexpr std::array press_fields = {
+    needed(
+        fields::direction<&Press::along>("along", "direction of the force, the only one in which the wall can move")),
+    needed(fields::quantity<&Press::force>("force", "N", "that acts on the wall, with its weight")),
+    needed(fields::quantity<&Press::mass>("mass", "kg", "of the wall", positive_number)),
+    needed(fields::quantity<&Press::fastest>("speed_at_most", "m/s",
+                                             "it never moves faster; the time step follows from it", positive_number)),
+};
+constexpr std::array drive_fields = {
+    needed(fields::direction<&Drive::axis>("axis", "direction")),
+    fields::vector<&Drive::point>("through", "m", "a point on the axis"),
+    needed(fields::quantity<&Drive::moment>("torque", "N m", "that acts on the wall, right hand")),
+    needed(fields::quantity<&Drive::inertia>("inertia", "kg m2", "moment of inertia of the wall about the axis",
+                                             positive_number)),
+    needed(fields::quantity<&Drive::fastest>("speed_at_most", "rad/s",
+                                             "it never turns faster; the time step follows from it", positive_number)),
+};
+constexpr std::array flight_fields = {
+    needed(fields::quantity<&Flight::mass>("mass", "kg", "of the wall; its weight acts on it", positive_number)),
+    Field{"centre", Field::Kind::vector, "of mass; default: of an evenly filled mesh", {}, {}, {}, false, "m"},
+    Field{"inertia",
+          Field::Kind::vector,
+          "moments of inertia about the centre, along x, y and z; default: of an evenly filled mesh",
+          {},
+          {},
+          {},
+          false,
+          "kg m2"},
+    Field{"held", Field::Kind::vector, "along x, y and z a value: not 0 holds its centre along this axis", "[0, 0, 0]"},
+    fields::vector<&Flight::force>("force", "N", "that acts on the centre besides the weight"),
+    fields::vector<&Flight::moment>("torque", "N m", "that acts on the wall"),
+    needed(fields::quantity<&Flight::fastest>(
+        "speed_at_most", "m/s",
+        "its centre never moves faster, nor its farthest corner by turning; the time step follows from it",
+        positive_number)),
+};
+constexpr std::array motion_rows = {
+    fields::alternative<Motion, Rotation>("rotate", "about an axis", rotation_fields),
+    fields::alternative<Motion, Translation>("shift", "at a velocity", translation_fields),
+    fields::alternative<Motion, Vibration>("vibrate", "to and fro", vibration_fields),
+    fields::alternative<Motion, Press>("press", "a force acts, and the powder resists", press_fields),
+    fields::alternative<Motion, Drive>("drive", "a torque acts, and the powder resists", drive_fields),
+    fields::alternative<Motion, Flight>(
+        "free", "its weight acts, and the powder resists: it falls, floats and turns as it must", flight_fields),
+};
+
 double elapsed(const auto& motion, double t) {
     return std::min(std::max(t, motion.start), motion.end) - motion.start;
 }
@@ -143,6 +200,10 @@ Pose rotated(const Pose& pose, const std::array<Vec3, 3>& rows, const Vec3& poin
 }
 
 }  // namespace
+
+std::span<const Type> motion_types() {
+    return motion_rows;
+}
 
 Pose pose_at(std::span<const Motion> motions, double time) {
     Pose pose;

@@ -18,6 +18,7 @@
 // or a flight, so that their axes and centres are the actual ones.
 #pragma once
 
+#include "solver/field.hpp"
 #include "solver/geometry/vector.hpp"
 
 #include <limits>
@@ -30,8 +31,6 @@ namespace grainsweep::geometry {
 struct Translation {
     Vec3 velocity{};                                                  ///< m/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
-
-    static void fields(auto& m, auto&& visit) { visit(m.velocity), visit(m.start), visit(m.end); }
 };
 
 struct Vibration {
@@ -39,10 +38,6 @@ struct Vibration {
     double frequency = 0;                                             ///< Hz
     double phase = 0;                                                 ///< rad
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s; after the end the body stays
-
-    static void fields(auto& m, auto&& visit) {
-        visit(m.amplitude), visit(m.frequency), visit(m.phase), visit(m.start), visit(m.end);
-    }
 };
 
 struct Rotation {
@@ -50,10 +45,6 @@ struct Rotation {
     Vec3 axis{0, 0, 1};                                               ///< unit
     double speed = 0;                                                 ///< rad/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
-
-    static void fields(auto& m, auto&& visit) {
-        visit(m.point), visit(m.axis), visit(m.speed), visit(m.start), visit(m.end);
-    }
 };
 
 /// Press: a force moves the body along one direction between `start` and `end`; at other times the body is held.
@@ -65,11 +56,6 @@ struct Press {
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
     double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< m, m/s
-
-    static void fields(auto& m, auto&& visit) {
-        visit(m.along), visit(m.force), visit(m.mass), visit(m.fastest), visit(m.start), visit(m.end);
-        visit(m.number), visit(m.way), visit(m.speed);
-    }
 };
 
 /// Drive: a moment rotates the body about an axis.
@@ -82,11 +68,6 @@ struct Drive {
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
     double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< rad, rad/s
-
-    static void fields(auto& m, auto&& visit) {
-        visit(m.point), visit(m.axis), visit(m.moment), visit(m.inertia), visit(m.fastest), visit(m.start);
-        visit(m.end), visit(m.number), visit(m.way), visit(m.speed);
-    }
 };
 
 /// Flight: the body rotates about its centre of mass and moves along the free axes, between `start` and `end`; at other
@@ -105,17 +86,12 @@ struct Flight {
     Vec3 way{}, velocity{};                                           ///< of the centre, m, m/s
     std::array<double, 4> turned{1, 0, 0, 0};                         ///< unit quaternion
     Vec3 angular_momentum{};                                          ///< about the centre, kg m2/s
-
-    static void fields(auto& m, auto&& visit) {
-        visit(m.centre), visit(m.mass);
-        for (auto& axis : m.axes) visit(axis);
-        visit(m.inertia), visit(m.freedom), visit(m.force), visit(m.moment), visit(m.fastest), visit(m.fastest_turn),
-            visit(m.start);
-        visit(m.end), visit(m.number), visit(m.way), visit(m.velocity), visit(m.turned), visit(m.angular_momentum);
-    }
 };
 
 using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flight>;
+/// Returns the alternatives of a Motion with the fields that a file sets. Centre, inertia and held axes of a flight
+/// have no place in it: the reader derives them from the shape.
+[[nodiscard]] std::span<const Type> motion_types();
 
 /// Returns whether an engine advances the motion: Press, Drive and Flight.
 [[nodiscard]] bool is_free(const Motion& motion);

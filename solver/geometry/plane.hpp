@@ -26,7 +26,6 @@ struct Plane {
     Vec3 point{};
     Vec3 normal{0, 0, 1};  ///< unit; points to the side of the particles
 
-    static void fields(auto& s, auto&& visit) { visit(s.point), visit(s.normal); }
     [[nodiscard]] Closest closest(const Vec3& x) const { return {dot(x - point, normal), normal}; }
     [[nodiscard]] Plane moved(const Vec3& by) const { return {point + by, normal}; }
     [[nodiscard]] bool unchanged_by_shift(const Vec3& direction) const { return perpendicular(normal, direction); }

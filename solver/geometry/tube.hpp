@@ -52,9 +52,6 @@ struct Tube {
     double inner = 0, outer = 0;  ///< radii, m
     double length = 0;            ///< m
 
-    static void fields(auto& s, auto&& visit) {
-        visit(s.base), visit(s.axis), visit(s.inner), visit(s.outer), visit(s.length);
-    }
     [[nodiscard]] Closest closest(const Vec3& x) const;
     [[nodiscard]] Tube moved(const Vec3& by) const { return {base + by, axis, inner, outer, length}; }
     [[nodiscard]] bool unchanged_by_shift(const Vec3&) const { return false; }

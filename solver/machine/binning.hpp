@@ -23,8 +23,8 @@ struct Bins {
 };
 
 inline constexpr double default_bins = 20;
-inline constexpr OptionSpec bins_option{"bins",  OptionSpec::Kind::number, "1", "number of bins; default: 20", false,
-                                        {1, 1e5}};
+inline constexpr Field bins_option =
+    option("bins", Field::Kind::quantity, "1", "number of bins; default: 20", false, {1, 1e5});
 
 [[nodiscard]] inline std::size_t bins_in(const Options& options) {
     return static_cast<std::size_t>(options.number("bins", default_bins));

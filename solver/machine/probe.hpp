@@ -5,6 +5,7 @@
 
 #include "solver/bytes.hpp"
 #include "solver/dem/engine.hpp"
+#include "solver/field.hpp"
 #include "solver/machine/region.hpp"
 #include "solver/scenes/values.hpp"
 
@@ -93,17 +94,12 @@ private:
     std::map<std::string, OptionValue, std::less<>> values_;
 };
 
-/// Option of a probe in a machine file.
-struct OptionSpec {
-    enum class Kind { number, vector, direction, region, species, walls, word };
-    std::string_view name;
-    Kind kind = Kind::number;
-    std::string_view unit;
-    std::string_view meaning;
-    bool required = false;
-    Interval bounds = {};
-    std::span<const std::string_view> words = {};
-};
+/// Returns the row of an option of a probe in a machine file.
+[[nodiscard]] constexpr Field option(std::string_view name, Field::Kind kind, std::string_view unit,
+                                     std::string_view meaning, bool required = false, Interval bounds = {},
+                                     std::span<const std::string_view> words = {}) {
+    return {name, kind, meaning, {}, bounds, words, required, unit};
+}
 
 class Probe {
 public:
@@ -131,6 +127,12 @@ public:
     virtual void restore(ByteReader&) {}
 };
 
+/// Returns a probe with these options.
+template <class P>
+std::unique_ptr<Probe> make_probe(const Options& options) {
+    return std::make_unique<P>(options);
+}
+
 /// From what a probe has its values, and so which of them depend on frames.
 enum class Source {
     frames,    ///< the particles at a frame
@@ -142,7 +144,7 @@ enum class Source {
 
 struct ProbeInfo {
     std::string_view name, unit, meaning;
-    std::span<const OptionSpec> options;
+    std::span<const Field> options;
     std::unique_ptr<Probe> (*make)(const Options&);
     bool contacts = false;       ///< reads contacts
     std::string_view over = {};  ///< of a profile: its coordinate with unit

@@ -15,6 +15,36 @@ using geometry::operator*;
 
 namespace {
 
+constexpr std::array box_fields_of_region = {
+    needed(fields::vector<&BoxRegion::low>("low", "m", "lower corner")),
+    needed(fields::vector<&BoxRegion::high>("high", "m", "upper corner")),
+};
+constexpr std::array round_fields = {
+    needed(fields::vector<&RoundRegion::base>("base", "m", "centre of the first end")),
+    fields::direction<&RoundRegion::axis>("axis", "direction to the second end"),
+    needed(fields::quantity<&RoundRegion::radius>("radius", "m", "")),
+    fields::quantity<&RoundRegion::inner>("inner", "m", "radius of a hollow"),
+    needed(fields::quantity<&RoundRegion::length>("length", "m", "")),
+};
+constexpr std::array ball_fields = {
+    needed(fields::vector<&BallRegion::centre>("centre", "m", "")),
+    needed(fields::quantity<&BallRegion::radius>("radius", "m", "")),
+};
+constexpr std::array half_fields = {
+    fields::vector<&HalfRegion::point>("point", "m", "on the plane"),
+    needed(fields::direction<&HalfRegion::normal>("normal", "direction, into the region")),
+};
+using AnyKind = decltype(Region::is);
+constexpr std::array region_rows = {
+    fields::alternative<AnyKind, BoxRegion>("box", "a box", box_fields_of_region),
+    fields::alternative<AnyKind, RoundRegion>("cylinder", "a cylinder, hollow or not", round_fields),
+    fields::alternative<AnyKind, BallRegion>("ball", "a ball", ball_fields),
+    fields::alternative<AnyKind, HalfRegion>("half_space", "one side of a plane", half_fields),
+    fields::alternative<AnyKind, AllRegions>("all", "a list of regions: where all of them are"),
+    fields::alternative<AnyKind, AnyRegion>("any", "a list of regions: where one of them is"),
+    fields::alternative<AnyKind, NotRegion>("not", "a region: outside of it"),
+};
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Bounds everywhere{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
 
@@ -146,6 +176,10 @@ const char* flaw_of(const Combined& combined) {
 }
 
 }  // namespace
+
+std::span<const Type> region_types() {
+    return region_rows;
+}
 
 double Region::depth(const Vec3& x) const {
     return std::visit([&](const auto& region) { return depth_in(region, x); }, is);

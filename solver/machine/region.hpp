@@ -4,6 +4,7 @@
 // lies in the region if the depth of its centre is at least r.
 #pragma once
 
+#include "solver/field.hpp"
 #include "solver/geometry/vector.hpp"
 
 #include <optional>
@@ -71,5 +72,9 @@ struct Region {
     /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] const char* flaw() const;
 };
+
+/// Returns the alternatives of Region::is with the fields that a file sets. Combinations have none: they are made of
+/// regions.
+[[nodiscard]] std::span<const Type> region_types();
 
 }  // namespace grainsweep::machine

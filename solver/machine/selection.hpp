@@ -9,9 +9,9 @@
 
 namespace grainsweep::machine {
 
-inline constexpr OptionSpec of_option{"of", OptionSpec::Kind::species, "", "the species that count; default: all"};
-inline constexpr OptionSpec in_option{"in", OptionSpec::Kind::region, "",
-                                      "the region in which centres count; default: everywhere"};
+inline constexpr Field of_option = option("of", Field::Kind::species, "", "the species that count; default: all");
+inline constexpr Field in_option =
+    option("in", Field::Kind::region, "", "the region in which centres count; default: everywhere");
 
 class Selection {
 public:

@@ -1,12 +1,15 @@
 // Shapes of a machine made of triangles, in their place: discs, rectangles, boxes and STL files.
 #pragma once
 
+#include "solver/field.hpp"
 #include "solver/geometry/shapes.hpp"
 #include "solver/geometry/solid.hpp"
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::machine {
@@ -20,13 +23,37 @@ struct Placement {
     geometry::Vec3 at{};
 };
 
-/// Returns two triangles, the parallelogram from a corner.
-[[nodiscard]] Triangles rectangle(const geometry::Vec3& corner, const geometry::Vec3& along,
-                                  const geometry::Vec3& across);
-/// Returns a disc, or a ring, of 64 facets with the area of the circle.
-[[nodiscard]] Triangles disc(const geometry::Vec3& centre, const geometry::Vec3& normal, double radius, double inner);
-/// Returns the faces of a box that are not open, in the order -x, +x, -y, +y, -z, +z.
-[[nodiscard]] Triangles box(const geometry::Vec3& low, const geometry::Vec3& high, const std::array<bool, 6>& open);
+// Flat shapes: bodies of triangles.
+struct Rectangle {
+    geometry::Vec3 corner{}, along{}, across{};  ///< m; two sides from a corner
+};
+struct Disc {
+    geometry::Vec3 centre{};         ///< m
+    geometry::Vec3 normal{0, 0, 1};  ///< unit
+    double radius = 0, inner = 0;    ///< m
+};
+struct Box {
+    geometry::Vec3 low{}, high{};  ///< m
+    std::array<bool, 6> open{};    ///< faces that are left out: -x, +x, -y, +y, -z, +z
+};
+
+/// Shape as a machine file states it.
+using StatedShape = std::variant<geometry::Plane, Rectangle, Disc, Box, geometry::Cylinder, geometry::Cone,
+                                 geometry::Tube, geometry::Bar>;
+/// Returns the alternatives of a StatedShape with the fields that a file sets.
+[[nodiscard]] std::span<const Type> shape_types();
+[[nodiscard]] std::span<const Field> placement_fields();
+
+/// Returns two triangles.
+[[nodiscard]] Triangles triangles_of(const Rectangle& rectangle);
+/// Returns 64 facets with the area of the circle.
+[[nodiscard]] Triangles triangles_of(const Disc& disc);
+/// Returns the faces that are not open, in the order -x, +x, -y, +y, -z, +z.
+[[nodiscard]] Triangles triangles_of(const Box& box);
+template <class S>
+inline constexpr bool is_flat = requires(const S& shape) {
+    triangles_of(shape);
+};
 /// Makes a mesh. Throws std::invalid_argument with one sentence for triangles without area and invalid numbers.
 [[nodiscard]] geometry::Mesh mesh_of(Triangles triangles, double facet_angle, const Placement& placement);
 /// Makes a mesh from the contents of an STL file. `scale`: length of its unit, m.

@@ -7,9 +7,9 @@
 
 namespace grainsweep::machine {
 
-inline constexpr OptionSpec from_option{"from", OptionSpec::Kind::vector, "m",
-                                        "the point from which it counts; default: the origin"};
-inline constexpr OptionSpec along_option{"along", OptionSpec::Kind::direction, "", "upwards; default: against gravity"};
+inline constexpr Field from_option =
+    option("from", Field::Kind::vector, "m", "the point from which it counts; default: the origin");
+inline constexpr Field along_option = option("along", Field::Kind::direction, "", "upwards; default: against gravity");
 
 /// Returns the option "along"; by default the direction against gravity, or z without gravity.
 [[nodiscard]] inline Vec3 up_of(const Sight& sight, const std::optional<Vec3>& along) {

@@ -1,8 +1,10 @@
-// Plain values that campaigns and scenes exchange; standard library only.
+// Plain values that campaigns and scenes exchange.
 //
 // A scene declares its parameters (ParameterSpec) and its observables (ObservableSpec). A case is a map from parameter
 // names to values (Inputs). All values are in SI units unless a unit is named.
 #pragma once
+
+#include "solver/field.hpp"
 
 #include <array>
 #include <cstddef>
@@ -23,18 +25,6 @@ using Value = std::variant<double, std::int64_t, std::string>;
 
 /// Inputs of a case: parameter name -> value, sorted by name, SI.
 using Inputs = std::map<std::string, Value, std::less<>>;
-
-/// Allowed numbers: low <= x <= high, without an open end.
-struct Interval {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    bool low_open = false;
-    bool high_open = false;
-
-    [[nodiscard]] bool contains(double x) const {
-        return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
-    }
-};
 
 /// Allowed words of a parameter. With `file_allowed`, any other word is the name of a file beside the campaign file;
 /// its contents (not its name) are part of the question.

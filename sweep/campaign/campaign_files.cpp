@@ -20,8 +20,8 @@ constexpr std::size_t longest_file_name = 1024;
 constexpr std::size_t largest_kept = 512ULL << 20U;  // a value of SQLite holds 10^9 bytes
 /// Keys below which no text is the name of a file that the campaign keeps.
 constexpr auto elsewhere = std::to_array<std::string_view>(
-    {notes_key, "campaign", "scene", "program", "machine", "execution", "model", "where", "accuracy", "convergence",
-     "name", "kind", "observable", "factor", "of", "common_random_numbers"});
+    {notes_key, schema_key, "campaign", "scene", "program", "machine", "execution", "model", "where", "accuracy",
+     "convergence", "name", "kind", "observable", "factor", "of", "common_random_numbers"});
 
 std::vector<CampaignFile> file_at(const std::string& place, const std::string& name, const fs::path& path) {
     std::error_code error;

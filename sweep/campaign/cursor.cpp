@@ -1,5 +1,7 @@
 #include "sweep/campaign/cursor.hpp"
 
+#include "sweep/campaign/field_text.hpp"
+
 #include "sweep/campaign/case.hpp"
 
 #include <fmt/format.h>
@@ -62,6 +64,7 @@ std::vector<std::pair<std::string, Cursor>> Cursor::members(std::string_view rul
     if (!value_->is_object()) refuse(rule);
     std::vector<std::pair<std::string, Cursor>> members;
     for (const auto& [name, value] : value_->items()) {
+        if (name == schema_key) continue;
         const Cursor here(value, path_of(path_, name));
         const bool texts = value.is_array() && std::ranges::all_of(value, [](const Json& x) { return x.is_string(); });
         if (name != notes_key)
@@ -72,17 +75,18 @@ std::vector<std::pair<std::string, Cursor>> Cursor::members(std::string_view rul
     return members;
 }
 
-Section::Section(Cursor place, std::span<const Key> keys) : place_(std::move(place)), keys_(keys) {
+Section::Section(Cursor place, std::span<const Field> keys) : place_(std::move(place)), keys_(keys) {
     for (const auto& [name, here] : place_.members("must be an object")) {
-        if (std::ranges::find(keys_, name, &Key::name) != keys_.end()) continue;
-        WordList known(std::views::transform(keys_, &Key::name));
+        if (std::ranges::find(keys_, name, &Field::name) != keys_.end()) continue;
+        WordList known(std::views::transform(keys_, &Field::name));
         known.push_back(notes_key);
         throw wrong_question(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
                              nearest_word(name, known));
     }
     for (const auto& key : keys_) {
         if (key.required && !find(key.name)) {
-            throw wrong_question(place_.path(), "", fmt::format("key '{}' is missing: {}", key.name, key.meaning));
+            throw wrong_question(place_.path(), "",
+                                 fmt::format("key '{}' is missing: {}", key.name, meaning_text(key)));
         }
     }
 }
@@ -96,8 +100,8 @@ Cursor Section::at(std::string_view key) const {
     return place_[key];
 }
 
-const Key& Section::row(std::string_view key) const {
-    return *std::ranges::find(keys_, key, &Key::name);
+const Field& Section::row(std::string_view key) const {
+    return *std::ranges::find(keys_, key, &Field::name);
 }
 
 double Section::number(std::string_view key, double standard) const {
@@ -113,7 +117,7 @@ std::int64_t Section::whole(std::string_view key, std::int64_t standard) const {
 std::int64_t Section::whole_or_word(std::string_view key, std::int64_t standard, std::int64_t of_word) const {
     const auto cursor = find(key);
     if (!cursor) return standard;
-    const Key& known = row(key);
+    const Field& known = row(key);
     const auto& value = cursor->json();
     const std::string rule =
         fmt::format("must be {} or a whole number{}", in_words(known.words), in_words(known.bounds));

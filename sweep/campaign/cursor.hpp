@@ -52,7 +52,7 @@ private:
 class Section {
 public:
     /// Refuses a value that is no object, unknown keys, and missing required keys.
-    Section(Cursor place, std::span<const Key> keys);
+    Section(Cursor place, std::span<const Field> keys);
 
     [[nodiscard]] const Cursor& place() const { return place_; }
     [[nodiscard]] std::optional<Cursor> find(std::string_view key) const;
@@ -69,10 +69,10 @@ public:
     [[nodiscard]] std::vector<std::string> words(std::string_view key, const std::vector<std::string>& standard) const;
 
 private:
-    [[nodiscard]] const Key& row(std::string_view key) const;
+    [[nodiscard]] const Field& row(std::string_view key) const;
 
     Cursor place_;
-    std::span<const Key> keys_;
+    std::span<const Field> keys_;
 };
 
 /// Returns the interval in words, such as "a number from 0 to 1" or "a number above 0".

@@ -103,11 +103,11 @@ std::variant<Between, stats::Distribution> read_distribution(const Section& fact
                                                              const ParameterSpec& parameter,
                                                              const std::filesystem::path& folder) {
     const Cursor place = factor.at(key);
-    const auto with = [&](std::span<const Key> keys, auto read) {
+    const auto with = [&](std::span<const Field> keys, auto read) {
         const Section section(place, keys);
         return read(Reading{section, parameter, folder});
     };
-    const auto shaped = [&](std::span<const Key> keys, auto read) -> Ranges {
+    const auto shaped = [&](std::span<const Field> keys, auto read) -> Ranges {
         return with(keys, [&](const Reading& reading) { return within_bounds(read(reading), reading); });
     };
     if (key == "uniform") return with(uniform_keys(), read_uniform);

@@ -10,7 +10,7 @@ namespace grainsweep::campaign {
 
 namespace {
 
-using Kind = Key::Kind;
+using Kind = Field::Kind;
 
 constexpr double largest_seed = 9223372036854774784.0;  // the last double below 2^63
 constexpr Interval not_negative{0, std::numeric_limits<double>::infinity(), false, true};
@@ -24,8 +24,8 @@ constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
 constexpr std::array<std::string_view, 8> gate_words = {"mean",     "sd",        "skewness", "g1",
                                                         "kurtosis", "quantile:", "above:",   "below:"};
 constexpr std::array<std::string_view, 1> thread_words = {"auto"};
-constexpr Key truncated_low = {"low", Kind::value, "truncates: no smaller value; more than 5 % may be cut off"};
-constexpr Key truncated_high = {"high", Kind::value, "truncates: no larger value"};
+constexpr Field truncated_low = {"low", Kind::value, "truncates: no smaller value; more than 5 % may be cut off"};
+constexpr Field truncated_high = {"high", Kind::value, "truncates: no larger value"};
 constexpr auto rule_words = [] {
     std::array<std::string_view, stats::convergence_rules.size()> words{};
     std::ranges::transform(stats::convergence_rules, words.begin(), &stats::RuleInfo::name);
@@ -33,9 +33,9 @@ constexpr auto rule_words = [] {
 }();
 
 /// Without its default.
-Key key_of(const designs::OptionSpec& option) {
+Field key_of(const designs::OptionSpec& option) {
     using OptionKind = designs::OptionSpec::Kind;
-    Key key{option.name, Kind::whole, option.meaning};
+    Field key{option.name, Kind::whole, option.meaning};
     key.required = !option.default_value && option.kind != OptionKind::rows;
     key.bounds = {static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
     switch (option.kind) {
@@ -66,8 +66,8 @@ Key key_of(const designs::OptionSpec& option) {
 
 }  // namespace
 
-std::span<const Key> campaign_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> campaign_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"campaign", Kind::text, "name of the campaign and of its view in the database"}),
         {"scene", Kind::word, "the experiment every case runs; needed unless a calibration has several"},
         needed({"factors", Kind::array, "what varies; their order fixes the dimensions of the design"}),
@@ -100,8 +100,8 @@ std::span<const Key> campaign_keys() {
     return keys;
 }
 
-std::span<const Key> factor_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> factor_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"name", Kind::word, "a parameter of the scene"}),
         {"between", Kind::array, "[low, high] of a real parameter, numbers or texts with a unit"},
         {"levels", Kind::array, "the values it takes, numbers, texts with a unit, or words"},
@@ -140,16 +140,16 @@ std::span<const std::string_view> range_keys() {
     return keys;
 }
 
-std::span<const Key> uniform_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> uniform_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
         needed({"high", Kind::value, "largest value"}),
     });
     return keys;
 }
 
-std::span<const Key> normal_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> normal_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"mean", Kind::value, "mean, a number or a text with a unit"}),
         needed({"sd", Kind::value, "standard deviation, above 0"}),
         truncated_low,
@@ -158,8 +158,8 @@ std::span<const Key> normal_keys() {
     return keys;
 }
 
-std::span<const Key> lognormal_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> lognormal_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"median", Kind::value, "median, a number or a text with a unit, above 0"}),
         {"sigma", Kind::number, "standard deviation of the natural logarithm", {}, {0, 10, true}},
         {"ratio", Kind::number, "exp(sigma): 68 % lie between median/ratio and median*ratio", {}, {1, 20'000, true}},
@@ -169,8 +169,8 @@ std::span<const Key> lognormal_keys() {
     return keys;
 }
 
-std::span<const Key> weibull_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> weibull_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"scale", Kind::value, "63.2 % are smaller: a number or a text with a unit, above 0"}),
         needed({"shape", Kind::number, "exponent: P(value > x) = exp(-(x/scale)^shape)", {}, {0, 1000, true}}),
         truncated_low,
@@ -179,8 +179,8 @@ std::span<const Key> weibull_keys() {
     return keys;
 }
 
-std::span<const Key> gumbel_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> gumbel_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"location", Kind::value, "likeliest value, a number or a text with a unit; 36.8 % are smaller"}),
         needed({"scale", Kind::value, "width, above 0: sd times sqrt(6)/pi"}),
         truncated_low,
@@ -189,8 +189,8 @@ std::span<const Key> gumbel_keys() {
     return keys;
 }
 
-std::span<const Key> triangular_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> triangular_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
         needed({"mode", Kind::value, "likeliest value, from low to high"}),
         needed({"high", Kind::value, "largest value"}),
@@ -198,8 +198,8 @@ std::span<const Key> triangular_keys() {
     return keys;
 }
 
-std::span<const Key> beta_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> beta_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
         needed({"high", Kind::value, "largest value"}),
         needed({"a", Kind::number, "first shape parameter: the density grows as (x - low)^(a-1)", {}, shapes_of_beta}),
@@ -208,8 +208,8 @@ std::span<const Key> beta_keys() {
     return keys;
 }
 
-std::span<const Key> sample_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> sample_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"file", Kind::text, "CSV file beside the campaign file, a row per draw"},
         {"powder", Kind::text, "or a powder file beside it, whose \"posterior\" is such a CSV file"},
         {"column", Kind::text, "its column; without it the name of the factor"},
@@ -217,8 +217,8 @@ std::span<const Key> sample_keys() {
     return keys;
 }
 
-std::span<const Key> convergence_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> convergence_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"observable", Kind::word, "a scalar observable of the scene"}),
         {"rule",
          Kind::word,
@@ -248,8 +248,8 @@ std::span<const Key> convergence_keys() {
     return keys;
 }
 
-std::span<const Key> accuracy_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> accuracy_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"observable", Kind::word, "a scalar observable of the scene"}),
         {"gates", Kind::words, "the statistics that are judged", R"(["mean", "sd"])", {}, goal_words},
         {"tolerance",
@@ -267,8 +267,8 @@ std::span<const Key> accuracy_keys() {
     return keys;
 }
 
-std::span<const Key> model_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> model_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"features", Kind::words,
                 "what a response model sees of a case: SQL expressions over factors, e.g. log(diameter), gap/diameter; "
                 "without it every factor, its logarithm where the range spans a factor of 2.5 or more"}),
@@ -276,8 +276,8 @@ std::span<const Key> model_keys() {
     return keys;
 }
 
-std::span<const Key> calibration_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> calibration_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"experiments", Kind::object,
          "several experiments with the same factors, each a scene or machine with its fixed values"},
         needed({"targets", Kind::array, "what was measured, one entry each"}),
@@ -292,8 +292,8 @@ std::span<const Key> calibration_keys() {
     return keys;
 }
 
-std::span<const Key> experiment_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> experiment_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"scene", Kind::word, "the scene; not needed with a machine or a program"},
         {"machine", Kind::value, "a machine file beside the campaign file, an installed machine, or its object"},
         {"program", Kind::object, "the command that answers a case"},
@@ -302,8 +302,8 @@ std::span<const Key> experiment_keys() {
     return keys;
 }
 
-std::span<const Key> target_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> target_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"of", Kind::word, "the experiment in which it was measured, where there are several"},
         needed({"observable", Kind::word, "an observable of the scene"}),
         {"value",
@@ -324,8 +324,8 @@ std::span<const Key> target_keys() {
     return keys;
 }
 
-std::span<const Key> stop_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> stop_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"shrink",
          Kind::number,
          "a wave that rules out less than this share of what was kept is the last",
@@ -335,16 +335,16 @@ std::span<const Key> stop_keys() {
     return keys;
 }
 
-std::span<const Key> limits_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> limits_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"wall_seconds", Kind::number, "time an attempt may take, s; at least 0.1, or 0: no limit", "0", not_negative},
         {"attempts", Kind::whole, "tries of a case that crashes or runs out of time", "3", {1, 1000}},
     });
     return keys;
 }
 
-std::span<const Key> execution_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> execution_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"workers", Kind::whole, "worker processes; 0: one per core of the job", "0", {0, 100'000}},
         {"launcher", Kind::words,
          "argument vector put before a worker, or before a host, e.g. srun -N1 -n1 --exact; {host} in a word is the "
@@ -382,8 +382,8 @@ std::span<const Key> execution_keys() {
     return keys;
 }
 
-std::vector<Key> design_keys(const designs::DesignInfo& design) {
-    std::vector<Key> keys = {needed({"kind", Kind::word, design.summary})};
+std::vector<Field> design_keys(const designs::DesignInfo& design) {
+    std::vector<Field> keys = {needed({"kind", Kind::word, design.summary})};
     for (const auto& option : design.options) {
         keys.push_back(key_of(option));
         if (option.kind == designs::OptionSpec::Kind::rows)

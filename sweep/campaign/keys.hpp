@@ -2,6 +2,7 @@
 // so both have the same keys.
 #pragma once
 
+#include "solver/field.hpp"
 #include "solver/scenes/values.hpp"
 #include "sweep/designs/design.hpp"
 
@@ -12,50 +13,34 @@
 
 namespace grainsweep::campaign {
 
-struct Key {
-    enum class Kind { text, word, words, whole, number, flag, value, object, array };
-    std::string_view name;
-    Kind kind = Kind::text;
-    std::string_view meaning;
-    std::string_view standard = {};  ///< JSON text of the default; empty: none
-    Interval bounds = {};            ///< of whole and number
-    /// For word and words: the words; for whole: words that are also allowed. Of words, one that ends with a colon is
-    /// the beginning of a text.
-    std::span<const std::string_view> words = {};
-    bool required = false;
-};
-
-[[nodiscard]] constexpr Key needed(Key key) {
-    key.required = true;
-    return key;
-}
-
 /// Key allowed in every object and ignored: a text or a list of texts.
 inline constexpr std::string_view notes_key = "notes";
+/// Key ignored in every object: where an editor finds the schema of the file.
+inline constexpr std::string_view schema_key = "$schema";
 
-[[nodiscard]] std::span<const Key> campaign_keys();
-[[nodiscard]] std::span<const Key> factor_keys();
+[[nodiscard]] std::span<const Field> campaign_keys();
+[[nodiscard]] std::span<const Field> factor_keys();
 /// Returns those of factor_keys() that define the values of a factor; a factor has exactly one.
 [[nodiscard]] std::span<const std::string_view> range_keys();
-[[nodiscard]] std::span<const Key> uniform_keys();
-[[nodiscard]] std::span<const Key> normal_keys();
-[[nodiscard]] std::span<const Key> lognormal_keys();
-[[nodiscard]] std::span<const Key> weibull_keys();
-[[nodiscard]] std::span<const Key> gumbel_keys();
-[[nodiscard]] std::span<const Key> triangular_keys();
-[[nodiscard]] std::span<const Key> beta_keys();
-[[nodiscard]] std::span<const Key> sample_keys();
-[[nodiscard]] std::span<const Key> convergence_keys();
-[[nodiscard]] std::span<const Key> accuracy_keys();
-[[nodiscard]] std::span<const Key> model_keys();
-[[nodiscard]] std::span<const Key> calibration_keys();
-[[nodiscard]] std::span<const Key> experiment_keys();
-[[nodiscard]] std::span<const Key> target_keys();
-[[nodiscard]] std::span<const Key> stop_keys();
-[[nodiscard]] std::span<const Key> limits_keys();
-[[nodiscard]] std::span<const Key> execution_keys();
+[[nodiscard]] std::span<const Field> uniform_keys();
+[[nodiscard]] std::span<const Field> normal_keys();
+[[nodiscard]] std::span<const Field> lognormal_keys();
+[[nodiscard]] std::span<const Field> weibull_keys();
+[[nodiscard]] std::span<const Field> gumbel_keys();
+[[nodiscard]] std::span<const Field> triangular_keys();
+[[nodiscard]] std::span<const Field> beta_keys();
+[[nodiscard]] std::span<const Field> sample_keys();
+[[nodiscard]] std::span<const Field> convergence_keys();
+[[nodiscard]] std::span<const Field> accuracy_keys();
+[[nodiscard]] std::span<const Field> model_keys();
+[[nodiscard]] std::span<const Field> calibration_keys();
+[[nodiscard]] std::span<const Field> experiment_keys();
+[[nodiscard]] std::span<const Field> target_keys();
+[[nodiscard]] std::span<const Field> stop_keys();
+[[nodiscard]] std::span<const Field> limits_keys();
+[[nodiscard]] std::span<const Field> execution_keys();
 /// Returns "kind", the design's options without their defaults and, if it has rows, "file".
-[[nodiscard]] std::vector<Key> design_keys(const designs::DesignInfo& design);
+[[nodiscard]] std::vector<Field> design_keys(const designs::DesignInfo& design);
 
 /// Shortest limits of time, s; shorter ones would end every worker before it can answer.
 inline constexpr double shortest_limit = 0.1;

@@ -76,14 +76,14 @@ std::vector<std::string> expansions(const std::string& text, const std::vector<P
     return all;
 }
 
-/// Without "notes", wherever a section has them; no name is "notes".
+/// Without "notes" and "$schema", wherever a section has them; no name is "notes".
 Json without_notes(const Json& value) {
     if (!value.is_structured()) return value;
     Json all = value.is_array() ? Json::array() : Json::object();
     for (const auto& [name, inner] : value.items()) {
         if (value.is_array())
             all.push_back(without_notes(inner));
-        else if (name != notes_key)
+        else if (name != notes_key && name != schema_key)
             all[name] = without_notes(inner);
     }
     return all;

@@ -31,33 +31,6 @@ std::pair<std::size_t, std::size_t> materials_of_pair(const Cursor& place, const
                          nearest_word(name, pairs));
 }
 
-void read_values(const Section& section, const MachineScope& scope, dem::Material& contact) {
-    contact.restitution = scope.number(section, "restitution", "1", contact.restitution, {0, 1, true, false});
-    contact.friction = scope.number(section, "friction", "1", contact.friction, {0, 10});
-    contact.rolling_friction = scope.number(section, "rolling_friction", "1", contact.rolling_friction, {0, 1});
-    contact.rolling_damping = scope.number(section, "rolling_damping", "1", contact.rolling_damping, {0, 1});
-    contact.stiffness = scope.number(section, "stiffness", "N/m", contact.stiffness, positive_number);
-    contact.tangential_ratio =
-        scope.number(section, "tangential_ratio", "1", contact.tangential_ratio, {0, 1, true, false});
-    contact.cohesion = scope.number(section, "cohesion", "J/m3", contact.cohesion, {0, 1e9});
-    contact.surface_energy = scope.number(section, "surface_energy", "J/m2", contact.surface_energy, {0, 100});
-    contact.surface_tension = scope.number(section, "surface_tension", "N/m", contact.surface_tension, {0, 10});
-    contact.contact_angle =
-        scope.number(section, "contact_angle", "rad", contact.contact_angle, {0, std::numbers::pi / 2, false, true});
-    contact.bridge_volume =
-        scope.number(section, "bridge_volume", "1", contact.bridge_volume, {0, dem::largest_bridge, true, false});
-}
-
-template <class Enum>
-Enum law_of(const Section& section, const MachineScope& scope, std::string_view key, Enum standard) {
-    const auto place = section.find(key);
-    if (!place) return standard;
-    const auto table = machine_keys::contacts();
-    const auto words = std::ranges::find(table, key, &Key::name)->words;
-    const auto chosen = scope.word(*place, words);
-    return static_cast<Enum>(std::ranges::find(words, chosen) - words.begin());
-}
-
 /// Returns the default material of walls: the only material, or the only one without particles.
 std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading) {
     std::vector<std::size_t> free;
@@ -98,26 +71,20 @@ void read_materials(const Section& top, MachineReading& reading) {
         require_name(place, name);
         const Section section(place, machine_keys::material());
         reading.materials.push_back(name);
-        const double modulus = reading.scope.number(section.at("youngs_modulus"), "Pa", {1e3, 1e13});
-        reading.elasticities.push_back(
-            {modulus * reading.stiffness_scale, reading.scope.number(section, "poisson_ratio", "1", 0.3, {0, 0.49})});
+        auto& elasticity = reading.elasticities.emplace_back();
+        reading.scope.read(section, machine_keys::material(), &elasticity);
+        elasticity.youngs_modulus *= reading.stiffness_scale;
         reading.densities.push_back(reading.scope.number(section, "density", "kg/m3", 0, positive_number));
     }
 }
 
 void read_contacts(const Section& top, MachineReading& reading) {
-    dem::Material standard;
-    standard.friction = 0.5;
+    dem::Material standard = dem::standard_contact();
     std::vector<std::vector<std::optional<Cursor>>> own(reading.materials.size(),
                                                         std::vector<std::optional<Cursor>>(reading.materials.size()));
     if (const auto place = top.find("contacts")) {
         const Section section(*place, machine_keys::contacts());
-        read_values(section, reading.scope, standard);
-        standard.rolling_law = law_of(section, reading.scope, "rolling_law", standard.rolling_law);
-        standard.cohesion_law = law_of(section, reading.scope, "cohesion_law", standard.cohesion_law);
-        standard.normal_law = law_of(section, reading.scope, "normal_law", standard.normal_law);
-        standard.friction_limit = law_of(section, reading.scope, "friction_limit", standard.friction_limit);
-        standard.tangential_limit = law_of(section, reading.scope, "tangential_limit", standard.tangential_limit);
+        reading.scope.read(section, machine_keys::contacts(), &standard);
         if (const auto pairs = section.find("pairs")) {
             if (!pairs->json().is_object()) pairs->refuse("must be an object of pairs: \"glass steel\"");
             for (const auto& [name, value] : pairs->json().items()) {
@@ -133,7 +100,8 @@ void read_contacts(const Section& top, MachineReading& reading) {
     for (std::size_t a = 0; a < count; ++a)
         for (std::size_t b = 0; b < count; ++b) {
             dem::Material contact = standard;
-            if (own[a][b]) read_values(Section(*own[a][b], machine_keys::pair()), reading.scope, contact);
+            if (own[a][b])
+                reading.scope.read(Section(*own[a][b], dem::contact_fields()), dem::contact_fields(), &contact);
             const bool linear = contact.normal_law == dem::NormalLaw::linear;
             if (linear != (contact.stiffness > 0))
                 throw wrong_question(top.find("contacts")->path(), "",
@@ -194,110 +162,58 @@ void read_walls(const Section& top, MachineReading& reading) {
 
 geometry::Shape read_shape(const Section& wall, const MachineReading& reading) {
     const auto& scope = reading.scope;
-    const auto forms = machine_keys::shapes();
+    const auto types = machine::shape_types();
     const Json& json = wall.place().json();
-    const int meshes = static_cast<int>(json.contains("stl")) + static_cast<int>(json.contains("triangles"));
-    const auto form = form_of(json, forms);
-    const bool several =
-        !form && std::ranges::any_of(forms, [&](const auto& f) { return json.contains(std::string(f.name)); });
-    if (several || meshes + static_cast<int>(form.has_value()) != 1) {
+    const auto stl = wall.find("stl"), listed = wall.find("triangles");
+    const Type* type = named_in(json, types);
+    const auto stated = std::ranges::count_if(types, [&](const Type& t) { return json.contains(std::string(t.name)); });
+    if (stated + (stl ? 1 : 0) + (listed ? 1 : 0) != 1) {
         std::vector<std::string_view> words{"stl", "triangles"};
-        for (const auto& f : forms) words.push_back(f.name);
+        for (const Type& t : types) words.push_back(t.name);
         throw wrong_question(wall.place().path(), "",
                              fmt::format("a wall has one shape: {}", in_words(WordList(words))));
     }
-    const bool flat =
-        meshes == 1 ||
-        (form && (forms[*form].name == "rectangle" || forms[*form].name == "disc" || forms[*form].name == "box"));
+    const Cursor place = stl ? *stl : listed ? *listed : wall.at(type->name);
+    machine::StatedShape shape;
+    if (type != nullptr) scope.read(Section(place, type->fields), type->fields, type->make(&shape));
+    const bool placed = type == nullptr || std::visit([]<class S>(const S&) { return machine::is_flat<S>; }, shape);
     for (const char* key : {"turned", "at"})
-        if (const auto place = wall.find(key); place && !flat)
-            place->refuse("only stl, triangles, rectangle, disc and box are placed; other shapes say where they are");
-    if (const auto scale = wall.find("scale"); scale && !wall.find("stl"))
-        scale->refuse("only an stl file has a scale");
-    if (const auto angle = wall.find("facet_angle"); angle && meshes == 0)
+        if (const auto given = wall.find(key); given && !placed)
+            given->refuse("only stl, triangles, rectangle, disc and box are placed; other shapes say where they are");
+    if (const auto scale = wall.find("scale"); scale && !stl) scale->refuse("only an stl file has a scale");
+    if (const auto angle = wall.find("facet_angle"); angle && type != nullptr)
         angle->refuse("only stl and triangles have facets of a curved surface");
 
-    if (flat) {
-        machine::Placement placement{.at = scope.vector(wall, "at", "m")};
-        if (const auto turned = wall.find("turned")) {
-            const Section of(*turned, machine_keys::turned());
-            placement.axis = scope.direction(of.at("axis"));
-            placement.angle = scope.number(of.at("angle"), "rad");
-            placement.through = scope.vector(of, "through", "m");
-        }
-        const double facets = scope.number(wall, "facet_angle", "rad", 0, {0, 0.76});
-        const Cursor place =
-            meshes == 1 ? (wall.find("stl") ? wall.at("stl") : wall.at("triangles")) : wall.at(forms[*form].name);
-        try {
-            if (wall.find("stl"))
-                return machine::stl_mesh(reading.contents(place), scope.number(wall, "scale", "m", 1, positive_number),
-                                         facets, placement);
-            std::vector<std::array<Vec3, 3>> triangles;
-            if (meshes == 1) {
-                for (const auto& one : place.elements()) {
-                    if (!one.json().is_array() || one.json().size() != 3) one.refuse("a triangle has three corners");
-                    triangles.push_back(
-                        {scope.vector(one[std::size_t{0}], "m"), scope.vector(one[1], "m"), scope.vector(one[2], "m")});
-                }
-            } else {
-                const Section of(place, forms[*form].keys);
-                if (forms[*form].name == "rectangle")
-                    triangles =
-                        machine::rectangle(scope.vector(of.at("corner"), "m"), scope.vector(of.at("along"), "m"),
-                                           scope.vector(of.at("across"), "m"));
-                if (forms[*form].name == "disc")
-                    triangles = machine::disc(scope.vector(of, "centre", "m"), scope.direction(of, "normal", {0, 0, 1}),
-                                              scope.number(of.at("radius"), "m", positive_number),
-                                              scope.number(of, "inner", "m", 0, no_negative_number));
-                if (forms[*form].name == "box") {
-                    constexpr std::array<std::string_view, 6> faces = {"-x", "+x", "-y", "+y", "-z", "+z"};
-                    std::array<bool, 6> open{};
-                    if (const auto list = of.find("open"))
-                        for (const auto& face : list->elements())
-                            open[static_cast<std::size_t>(std::ranges::find(faces, scope.word(face, faces)) -
-                                                          faces.begin())] = true;
-                    triangles = machine::box(scope.vector(of.at("low"), "m"), scope.vector(of.at("high"), "m"), open);
-                }
+    machine::Placement placement{.at = scope.vector(wall, "at", "m")};
+    if (const auto turned = wall.find("turned"))
+        scope.read(Section(*turned, machine::placement_fields()), machine::placement_fields(), &placement);
+    const double facets = scope.number(wall, "facet_angle", "rad", 0, {0, 0.76});
+    try {
+        if (stl)
+            return machine::stl_mesh(reading.contents(place), scope.number(wall, "scale", "m", 1, positive_number),
+                                     facets, placement);
+        if (listed) {
+            machine::Triangles triangles;
+            for (const auto& one : place.elements()) {
+                if (!one.json().is_array() || one.json().size() != 3) one.refuse("a triangle has three corners");
+                triangles.push_back(
+                    {scope.vector(one[std::size_t{0}], "m"), scope.vector(one[1], "m"), scope.vector(one[2], "m")});
             }
             return machine::mesh_of(triangles, facets, placement);
-        } catch (const std::invalid_argument& why) {
-            place.refuse(why.what());
         }
+        return std::visit(
+            [&]<class S>(const S& s) -> geometry::Shape {
+                if constexpr (machine::is_flat<S>)
+                    return machine::mesh_of(machine::triangles_of(s), facets, placement);
+                else if (const auto flaw = std::string(s.flaw()); !flaw.empty())
+                    place.refuse(flaw);
+                else
+                    return s;
+            },
+            shape);
+    } catch (const std::invalid_argument& why) {
+        place.refuse(why.what());
     }
-
-    const std::string_view name = forms[*form].name;
-    const Cursor place = wall.at(name);
-    const Section of(place, forms[*form].keys);
-    const auto length = [&](std::string_view key) { return scope.number(of.at(key), "m"); };
-    const auto side = [&] {
-        return scope.word(of, "side", std::array<std::string_view, 2>{"inside", "outside"}, "inside") == "inside"
-                   ? geometry::Side::inside
-                   : geometry::Side::outside;
-    };
-    geometry::Shape shape;
-    if (name == "plane") shape = geometry::Plane{scope.vector(of, "point", "m"), scope.direction(of.at("normal"))};
-    if (name == "cylinder")
-        shape = geometry::Cylinder{scope.vector(of, "point", "m"), scope.direction(of, "axis", {0, 0, 1}),
-                                   length("radius"), side(), scope.number(of, "length", "m", endless, positive_number)};
-    if (name == "cone")
-        shape = geometry::Cone{scope.vector(of.at("base"), "m"),
-                               scope.direction(of, "axis", {0, 0, 1}),
-                               length("base_radius"),
-                               length("end_radius"),
-                               length("length"),
-                               side()};
-    if (name == "tube")
-        shape = geometry::Tube{scope.vector(of.at("base"), "m"), scope.direction(of, "axis", {0, 0, 1}),
-                               length("inner"), length("outer"), length("length")};
-    if (name == "bar")
-        shape = geometry::Bar{.front = length("front"),
-                              .thickness = length("thickness"),
-                              .bottom = length("bottom"),
-                              .top = length("top"),
-                              .edge_radius = scope.number(of, "edge_radius", "m", 0)};
-    const std::string flaw = std::visit([](const auto& s) { return std::string(s.flaw()); }, shape);
-    if (!flaw.empty()) place.refuse(flaw);
-    return shape;
 }
 
 }  // namespace grainsweep::campaign

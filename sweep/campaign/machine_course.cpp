@@ -35,7 +35,7 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
     std::string unknown;
     for (const auto& [key, here] : place.members("must be an object with a probe")) {
         const auto own = machine_keys::measure();
-        if (std::ranges::find(own, key, &Key::name) != own.end()) continue;
+        if (std::ranges::find(own, key, &Field::name) != own.end()) continue;
         const auto* probe = machine::find_probe(key);
         if (probe == nullptr) {
             unknown = key;
@@ -48,7 +48,7 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
     const WordList probes = names_of(machine::probe_catalogue());
     if (!unknown.empty()) {
         WordList known = probes;
-        for (const Key& key : machine_keys::measure()) known.push_back(key.name);
+        for (const Field& key : machine_keys::measure()) known.push_back(key.name);
         throw wrong_question(path_of(place.path(), unknown), "", "there is no such probe",
                              nearest_word(unknown, known));
     }
@@ -67,29 +67,27 @@ const machine::ReductionInfo& reduction_of(const Cursor& place, const machine::P
     return *machine::find_reduction(place["as"].word(words));
 }
 
-machine::OptionValue option_value(const Cursor& place, const machine::OptionSpec& option,
-                                  const MachineReading& reading) {
+machine::OptionValue option_value(const Cursor& place, const Field& option, const MachineReading& reading) {
     switch (option.kind) {
-        case machine::OptionSpec::Kind::number:
+        case Field::Kind::quantity:
             return reading.scope.number(place, option.unit, option.bounds);
-        case machine::OptionSpec::Kind::vector:
+        case Field::Kind::vector:
             return reading.scope.vector(place, option.unit);
-        case machine::OptionSpec::Kind::direction:
+        case Field::Kind::direction:
             return reading.scope.direction(place);
-        case machine::OptionSpec::Kind::region:
+        case Field::Kind::region:
             return reading.scope.region(place);
-        case machine::OptionSpec::Kind::species:
+        case Field::Kind::species:
             return reading.scope.places_in(place, reading.species, "species");
-        case machine::OptionSpec::Kind::walls: {
+        case Field::Kind::walls: {
             std::vector<std::size_t> walls;
             for (const std::size_t named : reading.scope.places_in(place, reading.walls, "wall"))
                 for (const std::size_t one : reading.repeats[named]) walls.push_back(one);
             return walls;
         }
-        case machine::OptionSpec::Kind::word:
-            break;
+        default:
+            return reading.scope.word(place, option.words);
     }
-    return reading.scope.word(place, option.words);
 }
 
 machine::Options read_options(const Cursor& place, const machine::ProbeInfo& probe, const MachineReading& reading) {
@@ -97,7 +95,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
     const WordList known = names_of(probe.options);
     for (const auto& [key, here] :
          place.members(fmt::format("must be an object with the options of '{}'", probe.name))) {
-        const auto option = std::ranges::find(probe.options, key, &machine::OptionSpec::name);
+        const auto option = std::ranges::find(probe.options, key, &Field::name);
         if (option == probe.options.end())
             throw wrong_question(
                 here.path(), "",
@@ -105,7 +103,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
                 nearest_word(key, known));
         options.set(key, option_value(here, *option, reading));
     }
-    for (const machine::OptionSpec& option : probe.options)
+    for (const Field& option : probe.options)
         if (option.required && !options.has(option.name))
             throw wrong_question(place.path(), "", fmt::format("key '{}' is missing: {}", option.name, option.meaning));
     if (probe.flaw != nullptr)
@@ -155,9 +153,9 @@ machine::Until read_until(const Cursor& place, const MachineReading& reading) {
     }
     if (empty) return machine::Empty{reading.scope.region(*empty)};
     if (stops) {
-        const Section of(*stops, machine_keys::flow_stops());
-        return machine::FlowStops{reading.scope.region(of.at("in")),
-                                  reading.scope.number(of.at("quiet"), "s", positive_number)};
+        machine::FlowStops condition;
+        reading.scope.read(Section(*stops, machine_keys::flow_stops()), machine_keys::flow_stops(), &condition);
+        return condition;
     }
     const std::size_t number = measure_named(*measure, reading);
     const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
@@ -204,11 +202,8 @@ void read_phases(const Section& top, MachineReading& reading) {
         if (until && until->json().is_array())
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
         if (until && phase.until.empty()) until->refuse("must name a condition");
-        if (const auto expected = section.find("expected")) {
-            if (!until) expected->refuse("it belongs to \"until\"");
-            phase.expected = reading.scope.number(*expected, "s", no_negative_number);
-        }
-        phase.ends_at_frames = section.flag("ends_at_frames", false);
+        reading.scope.read(section, machine_keys::phase(), &phase);
+        if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");
         if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
         reading.spec.phases.push_back(std::move(phase));

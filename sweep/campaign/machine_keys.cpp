@@ -1,54 +1,30 @@
 #include "sweep/campaign/machine_keys.hpp"
 
+#include "solver/machine/shapes.hpp"
+#include "solver/machine/spec.hpp"
+
 #include <array>
+#include <vector>
 
 namespace grainsweep::campaign::machine_keys {
 namespace {
 
-using MachineKey = Key::Kind;
+using MachineKey = Field::Kind;
 
 constexpr std::array<std::string_view, 6> spread_words = {"monodisperse", "uniform",        "lognormal",
                                                           "weibull_wide", "weibull_narrow", "file"};
 constexpr std::array<std::string_view, 2> file_words = {"sizes", "stl"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
 constexpr std::array<std::string_view, 4> as_words = {"lattice", "random", "rain", "packed"};
-constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggghts", "cdt"};
-constexpr std::array<std::string_view, 6> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt", "capillary"};
-constexpr std::array<std::string_view, 2> normal_words = {"hertz", "linear"};
-constexpr std::array<std::string_view, 2> limit_words = {"contact", "net"};
-constexpr std::array<std::string_view, 2> tangential_words = {"sum", "spring"};
 
-constexpr auto top_keys = std::to_array<Key>({
-    needed({"name", MachineKey::text, "the name shown everywhere: letters, digits and _"}),
-    {"summary", MachineKey::text, "what it is, in one line"},
-    {"parameters", MachineKey::object, "by name: what factors and fixed values of a campaign may set", "{}"},
-    {"let", MachineKey::object,
-     "by name: expressions that other expressions may use; those that use numbers of species are known from \"walls\" "
-     "on",
-     "{}"},
-    {"checks", MachineKey::array, "what a case is refused for, or warned of", "[]"},
-    {"gravity", MachineKey::value, "[x, y, z] in m/s2, or size, tilt and azimuth", "[0, 0, -9.81]"},
-    {"domain", MachineKey::object,
-     "the box outside of which particles are gone; default: around walls, fillings and feeds at all times", "{}"},
-    needed({"materials", MachineKey::object, "by name: density and stiffness"}),
-    {"contacts", MachineKey::object, "how bodies of these materials touch", "{}"},
-    needed({"species", MachineKey::object, "by name: kinds of particles"}),
-    {"walls", MachineKey::object, "by name: shape, material, motion", "{}"},
-    {"fill", MachineKey::array, "particles at the start", "[]"},
-    {"feed", MachineKey::array, "particles added while it runs", "[]"},
-    needed({"phases", MachineKey::array, "what happens, one after the other"}),
-    needed({"measure", MachineKey::object, "by name: what a case answers"}),
-    {"main", MachineKey::text, "the measurement that reports and tables show first; default: the first by name"},
-});
-
-constexpr auto parameter_keys = std::to_array<Key>({
+constexpr auto parameter_keys = std::to_array<Field>({
     {"unit", MachineKey::text,
      "unit of its values; in expressions NAME is the value in SI units and NAME_UNIT the one "
      "in this unit",
      "\"1\""},
     needed({"default", MachineKey::value, "value where a campaign does not set it"}),
     {"bounds", MachineKey::array, "[low, high], null: open"},
-    {"above", MachineKey::value, "a lower bound that is no value itself, in its unit"},
+    {"above", MachineKey::quantity, "a lower bound that is no value itself, in its unit"},
     {"meaning", MachineKey::text, "in words"},
     {"whole", MachineKey::flag, "true: whole numbers only", "false"},
     {"words", MachineKey::words,
@@ -64,74 +40,26 @@ constexpr auto parameter_keys = std::to_array<Key>({
      "where it has an effect: by the name of another parameter 0, \"set\" (not 0), a word or a list of words"},
 });
 
-constexpr auto gravity_keys = std::to_array<Key>({
-    needed({"size", MachineKey::value, "m/s2"}),
-    {"tilt", MachineKey::value, "angle from -z, rad", "0"},
-    {"azimuth", MachineKey::value, "direction of the tilt in the xy plane, from x towards y, rad", "0"},
+constexpr auto gravity_keys = std::to_array<Field>({
+    needed({"size", MachineKey::quantity, "m/s2"}),
+    {"tilt", MachineKey::quantity, "angle from -z, rad", "0"},
+    {"azimuth", MachineKey::quantity, "direction of the tilt in the xy plane, from x towards y, rad", "0"},
 });
 
-constexpr auto domain_keys = std::to_array<Key>({
+constexpr auto domain_keys = std::to_array<Field>({
     {"low", MachineKey::array, "lower corner, m; null along an axis: around the walls"},
     {"high", MachineKey::array, "upper corner, m; null along an axis: around the walls"},
     {"sides", MachineKey::words, "along x, y and z: 'open' or 'periodic'", "[\"open\", \"open\", \"open\"]"},
-    {"periodic", MachineKey::array, "or along x, y and z a value: 0 is open", "[0, 0, 0]"},
+    {"periodic", MachineKey::vector, "or along x, y and z a value: 0 is open", "[0, 0, 0]"},
 });
 
-constexpr auto material_keys = std::to_array<Key>({
-    {"density", MachineKey::value, "kg/m3; of materials of particles"},
-    needed({"youngs_modulus", MachineKey::value, "Pa"}),
-    {"poisson_ratio", MachineKey::value, "Poisson's ratio", "0.3"},
-});
+constexpr std::array material_keys = {
+    Field{"density", MachineKey::quantity, "kg/m3; of materials of particles"},
+    needed(fields::quantity<&dem::Elasticity::youngs_modulus>("youngs_modulus", "Pa", "", {1e3, 1e13})),
+    fields::quantity<&dem::Elasticity::poisson_ratio>("poisson_ratio", "1", "Poisson's ratio", {0, 0.49}),
+};
 
-constexpr auto contact_keys = std::to_array<Key>({
-    {"restitution", MachineKey::value, "coefficient of restitution", "0.5"},
-    {"friction", MachineKey::value, "Coulomb friction", "0.5"},
-    {"rolling_friction", MachineKey::value, "tangent of the steepest slope a sphere stands on", "0"},
-    {"rolling_damping", MachineKey::value, "damping of the rolling spring divided by the critical one", "0.3"},
-    {"stiffness", MachineKey::value, "of the linear law, N/m"},
-    {"tangential_ratio", MachineKey::value, "of the linear law: stiffness of the tangential spring over the normal one",
-     "2/7"},
-    {"cohesion", MachineKey::value, "cohesion energy density of sjkr, sjkr2, paper, J/m3", "0"},
-    {"surface_energy", MachineKey::value, "work of adhesion of jkr and dmt, J/m2", "0"},
-    {"surface_tension", MachineKey::value, "of the liquid of capillary, N/m", "0"},
-    {"contact_angle", MachineKey::value, "of the liquid of capillary, rad", "0"},
-    {"bridge_volume", MachineKey::value,
-     "of capillary: volume of a liquid bridge divided by that of a sphere of the mean radius 2 R1 R2/(R1 + R2), at a "
-     "wall of the sphere",
-     "0.0002"},
-    {"rolling_law", MachineKey::word, "how rolling is resisted", "\"epsd\"", {}, rolling_words},
-    {"cohesion_law", MachineKey::word, "how bodies attract each other", "\"sjkr\"", {}, cohesion_words},
-    {"friction_limit",
-     MachineKey::word,
-     "contact: friction of the contact force without cohesion; net: of the net force",
-     "\"contact\"",
-     {},
-     limit_words},
-    {"tangential_limit",
-     MachineKey::word,
-     "sum: friction limits the sum of tangential spring and dashpot; spring: the spring alone, as in LIGGGHTS",
-     "\"sum\"",
-     {},
-     tangential_words},
-    {"normal_law",
-     MachineKey::word,
-     "hertz; linear: spring and dashpot of a given stiffness",
-     "\"hertz\"",
-     {},
-     normal_words},
-    {"pairs", MachineKey::object, "\"MATERIAL MATERIAL\": what differs between these two", "{}"},
-});
-
-constexpr auto species_keys = std::to_array<Key>({
-    {"material", MachineKey::text, "one of the materials; default: the only one, or the only one with a density"},
-    {"diameter", MachineKey::value, "m; of unequal sizes the unit D; with a file of sizes their mean by default"},
-    {"sizes", MachineKey::object, "how diameters are distributed; default: all equal"},
-    {"powder", MachineKey::text,
-     "a powder file beside the machine file: gives material, diameter, sizes and contacts as far as the machine does "
-     "not"},
-});
-
-constexpr auto size_keys = std::to_array<Key>({
+constexpr auto size_keys = std::to_array<Field>({
     {"spread",
      MachineKey::word,
      "monodisperse: all equal; uniform: between (1 - half_width) D and (1 + half_width) D; lognormal: sigma; "
@@ -139,121 +67,107 @@ constexpr auto size_keys = std::to_array<Key>({
      {},
      {},
      spread_words},
-    {"half_width", MachineKey::value, "of uniform: half of the range divided by D", "0.1"},
-    {"sigma", MachineKey::value, "of lognormal: standard deviation of ln d", "0.2"},
+    {"half_width", MachineKey::quantity, "of uniform: half of the range divided by D", "0.1"},
+    {"sigma", MachineKey::quantity, "of lognormal: standard deviation of ln d", "0.2"},
     {"file", MachineKey::text, "a CSV file with measured sizes, as size_file of the scenes"},
 });
 
-constexpr auto wall_keys = std::to_array<Key>({
-    {"plane", MachineKey::object, "a shape"},
-    {"rectangle", MachineKey::object, "a shape"},
-    {"disc", MachineKey::object, "a shape"},
-    {"box", MachineKey::object, "a shape"},
-    {"cylinder", MachineKey::object, "a shape"},
-    {"cone", MachineKey::object, "a shape"},
-    {"tube", MachineKey::object, "a shape"},
-    {"bar", MachineKey::object, "a shape"},
-    {"triangles", MachineKey::array, "a shape: a list of triangles [[x, y, z], [x, y, z], [x, y, z]], m"},
-    {"stl", MachineKey::text, "a shape: an STL file beside the machine file"},
-    {"scale", MachineKey::value, "of stl: length of the file's unit, m", "1"},
-    {"facet_angle", MachineKey::value,
-     "of stl and triangles: facets that meet at less than this angle stand for a curved surface, rad", "0"},
-    {"turned", MachineKey::object, "of stl, triangles, rectangle, disc, box: turned before it is placed"},
-    {"at", MachineKey::array, "of the same: where its origin is placed, m", "[0, 0, 0]"},
-    {"material", MachineKey::text, "one of the materials; default: the only one that no particles are of"},
-    {"motion", MachineKey::array, "motions, which add up", "[]"},
-    {"during", MachineKey::words, "phases in which it is there; default: all"},
-    {"when", MachineKey::value, "0: it is not there at all", "1"},
-    {"repeat", MachineKey::value, "so many of them", "1"},
-    {"as", MachineKey::text, "name that counts the repeated ones in expressions, from 0"},
+constexpr auto species_keys = std::to_array<Field>({
+    {"material", MachineKey::text, "one of the materials; default: the only one, or the only one with a density"},
+    {"diameter", MachineKey::quantity, "m; of unequal sizes the unit D; with a file of sizes their mean by default"},
+    holding({"sizes", MachineKey::object, "how diameters are distributed; default: all equal"}, size_keys),
+    {"powder", MachineKey::text,
+     "a powder file beside the machine file: gives material, diameter, sizes and contacts as far as the machine does "
+     "not"},
 });
 
-constexpr auto turned_keys = std::to_array<Key>({
-    needed({"axis", MachineKey::array, "direction"}),
-    needed({"angle", MachineKey::value, "right hand, rad"}),
-    {"through", MachineKey::array, "a point on the axis, m", "[0, 0, 0]"},
-});
+using machine::Fill;
+constexpr std::array fill_keys = {
+    Field{"species", MachineKey::text, "the species; or a mix"},
+    Field{"mix", MachineKey::object, "shares by species"},
+    Field{"by", MachineKey::word, "what the shares of a mix are of", "\"mass\"", {}, by_words},
+    Field{"count", MachineKey::quantity, "number of particles, rounded"},
+    Field{"mass", MachineKey::quantity, "or their mass, kg"},
+    Field{"volume", MachineKey::quantity, "or their solid volume, m3"},
+    fields::region<&Fill::in>("in", "the region they lie in"),
+    fields::choice<&Fill::as>(
+        "as",
+        "lattice: 1.15 diameters apart, shaken by a twentieth, from the bottom up; random: at random places; rain: "
+        "layer above layer at random places, to fall one after the other; packed: cut from a random close packing, "
+        "touching",
+        as_words, "\"lattice\""),
+    fields::vector<&Fill::velocity>("velocity", "m/s", ""),
+    fields::quantity<&Fill::shaken>("shaken", "m/s", "random velocity in each direction, up to this",
+                                    no_negative_number),
+    fields::flag<&Fill::glued>("glued", "true: they never move, and are touched as a wall is"),
+    Field{"spheres", MachineKey::value,
+          "spheres one by one: a list, or a CSV file with the header x,y,z and diameter, vx,vy,vz, wx,wy,wz as far as "
+          "known"},
+    Field{"when", MachineKey::quantity, "0: it is left out", "1"},
+};
 
-constexpr auto fill_keys = std::to_array<Key>({
-    {"species", MachineKey::text, "the species; or a mix"},
-    {"mix", MachineKey::object, "shares by species"},
-    {"by", MachineKey::word, "what the shares of a mix are of", "\"mass\"", {}, by_words},
-    {"count", MachineKey::value, "number of particles, rounded"},
-    {"mass", MachineKey::value, "or their mass, kg"},
-    {"volume", MachineKey::value, "or their solid volume, m3"},
-    {"in", MachineKey::object, "the region they lie in"},
-    {"as",
-     MachineKey::word,
-     "lattice: 1.15 diameters apart, shaken by a twentieth, from the bottom up; random: at random places; rain: layer "
-     "above layer at random places, to fall one after the other; packed: cut from a random close packing, touching",
-     "\"lattice\"",
-     {},
-     as_words},
-    {"velocity", MachineKey::array, "m/s", "[0, 0, 0]"},
-    {"shaken", MachineKey::value, "random velocity in each direction, up to so many m/s", "0"},
-    {"glued", MachineKey::flag, "true: they never move, and are touched as a wall is", "false"},
-    {"spheres", MachineKey::value,
-     "spheres one by one: a list, or a CSV file with the header x,y,z and diameter, vx,vy,vz, wx,wy,wz as far as "
-     "known"},
-    {"when", MachineKey::value, "0: it is left out", "1"},
-});
+constexpr std::array sphere_keys = {
+    needed(fields::vector<&dem::Sphere::position>("at", "m", "")),
+    Field{"diameter", MachineKey::quantity, "m; default: that of the species"},
+    fields::vector<&dem::Sphere::velocity>("velocity", "m/s", ""),
+    fields::vector<&dem::Sphere::angular_velocity>("spin", "rad/s", ""),
+};
 
-constexpr auto sphere_keys = std::to_array<Key>({
-    needed({"at", MachineKey::array, "m"}),
-    {"diameter", MachineKey::value, "m; default: that of the species"},
-    {"velocity", MachineKey::array, "m/s", "[0, 0, 0]"},
-    {"spin", MachineKey::array, "rad/s", "[0, 0, 0]"},
-});
-
-constexpr auto feed_keys = std::to_array<Key>({
-    {"name", MachineKey::text, "of its observables NAME_fed and NAME_waiting", "\"feed\""},
-    {"species", MachineKey::text, "the species; or a mix"},
-    {"mix", MachineKey::object, "shares by species"},
-    {"by", MachineKey::word, "what the shares of a mix are of", "\"mass\"", {}, by_words},
-    needed({"rate", MachineKey::value, "kg/s"}),
+using machine::Feed;
+constexpr std::array feed_keys = {
+    Field{"name", MachineKey::text, "of its observables NAME_fed and NAME_waiting", "\"feed\""},
+    Field{"species", MachineKey::text, "the species; or a mix"},
+    Field{"mix", MachineKey::object, "shares by species"},
+    Field{"by", MachineKey::word, "what the shares of a mix are of", "\"mass\"", {}, by_words},
+    needed(fields::quantity<&Feed::rate>("rate", "kg/s", "", no_negative_number)),
     needed({"through", MachineKey::object,
             "the region in which particles appear; or a disc: as thick as one and a half of them"}),
-    {"velocity", MachineKey::array, "m/s", "[0, 0, 0]"},
-    {"every", MachineKey::value,
-     "time from batch to batch, s; default: until a batch has left the region by its velocity"},
-    {"during", MachineKey::words, "phases in which it acts; default: all"},
-    {"when", MachineKey::value, "0: it is left out", "1"},
-});
+    fields::vector<&Feed::velocity>("velocity", "m/s", ""),
+    Field{"every", MachineKey::quantity,
+          "time from batch to batch, s; default: until a batch has left the region by its velocity"},
+    Field{"during", MachineKey::words, "phases in which it acts; default: all"},
+    Field{"when", MachineKey::quantity, "0: it is left out", "1"},
+};
 
-constexpr auto phase_keys = std::to_array<Key>({
-    needed({"name", MachineKey::text, "by which others name it"}),
-    {"for", MachineKey::value, "how long it lasts, s"},
-    {"until", MachineKey::value, "what ends it; of a list whatever holds first"},
-    {"at_most", MachineKey::value, "with until: how long it lasts at most, s"},
-    {"expected", MachineKey::value,
-     "with until: how long it will last, s; changes only predictions of cost, half of at_most by default"},
-    {"frames", MachineKey::value, "it is measured at its beginning and after each of so many equal intervals", "100"},
-    {"ends_at_frames", MachineKey::flag, "true: its conditions are looked at when it is measured, and not in between",
-     "false"},
-});
-
-constexpr auto until_keys = std::to_array<Key>({
-    {"at_rest", MachineKey::flag, "kinetic energy below a thousandth of m g d per particle for sqrt(d/g)"},
-    {"empty", MachineKey::object, "no particle in a region"},
-    {"flow_stops", MachineKey::object, "the mass in a region stays the same for a time"},
-    {"measure", MachineKey::text, "a measurement passes a value: above or below"},
-    {"above", MachineKey::value, "of measure"},
-    {"below", MachineKey::value, "of measure"},
-});
-
-constexpr auto check_keys = std::to_array<Key>({
-    needed({"when", MachineKey::value, "not 0: it is said"}),
+constexpr auto check_keys = std::to_array<Field>({
+    needed({"when", MachineKey::quantity, "not 0: it is said"}),
     {"refuse", MachineKey::text, "the case is impossible: why; \"{NAME}\" is a number or word"},
     {"warn", MachineKey::text, "the case says little: a name for all cases of this kind"},
     {"that", MachineKey::text, "with warn: why; \"{NAME}\" is a number or word"},
 });
 
-constexpr auto flow_stops_keys = std::to_array<Key>({
-    needed({"in", MachineKey::object, "the region"}),
-    needed({"quiet", MachineKey::value, "s"}),
+using machine::FlowStops;
+constexpr std::array flow_stops_keys = {
+    needed(fields::region<&FlowStops::region>("in", "the region")),
+    needed(fields::quantity<&FlowStops::quiet>("quiet", "s", "", positive_number)),
+};
+
+constexpr auto until_keys = std::to_array<Field>({
+    {"at_rest", MachineKey::flag, "kinetic energy below a thousandth of m g d per particle for sqrt(d/g)"},
+    {"empty", MachineKey::region, "no particle in a region"},
+    holding({"flow_stops", MachineKey::object, "the mass in a region stays the same for a time"}, flow_stops_keys),
+    {"measure", MachineKey::text, "a measurement passes a value: above or below"},
+    {"above", MachineKey::quantity, "of measure"},
+    {"below", MachineKey::quantity, "of measure"},
 });
 
-constexpr auto measure_keys = std::to_array<Key>({
+using machine::Phase;
+constexpr std::array phase_keys = {
+    needed({"name", MachineKey::text, "by which others name it"}),
+    Field{"for", MachineKey::quantity, "how long it lasts, s"},
+    Field{"until", MachineKey::value, "what ends it; of a list whatever holds first"},
+    Field{"at_most", MachineKey::quantity, "with until: how long it lasts at most, s"},
+    fields::quantity<&Phase::expected>(
+        "expected", "s",
+        "with until: how long it will last; changes only predictions of cost, half of at_most by default",
+        no_negative_number),
+    Field{"frames", MachineKey::quantity, "it is measured at its beginning and after each of so many equal intervals",
+          "100"},
+    fields::flag<&Phase::ends_at_frames>("ends_at_frames",
+                                         "true: its conditions are looked at when it is measured, and not in between"),
+};
+
+constexpr auto measure_keys = std::to_array<Field>({
     {"as", MachineKey::word, "what becomes of the values at the frames; default: mean, of a profile profile"},
     {"during", MachineKey::words, "phases in which it is measured; default: all"},
     {"shares", MachineKey::array, "only values from the first to the second of these shares of the first value count"},
@@ -263,117 +177,210 @@ constexpr auto measure_keys = std::to_array<Key>({
     {"meaning", MachineKey::text, "in words"},
 });
 
-constexpr auto time_of_keys = std::to_array<Key>({
+constexpr auto time_of_keys = std::to_array<Field>({
     needed({"time_of", MachineKey::text, "a measurement: the first time at which it passes a value, s"}),
-    {"above", MachineKey::value, "the value"},
-    {"below", MachineKey::value, "the value"},
+    {"above", MachineKey::quantity, "the value"},
+    {"below", MachineKey::quantity, "the value"},
     {"meaning", MachineKey::text, "in words"},
 });
 
-constexpr auto expression_keys = std::to_array<Key>({
+constexpr auto expression_keys = std::to_array<Field>({
     needed({"expression", MachineKey::text, "of other measurements, parameters and \"let\""}),
     {"unit", MachineKey::text, "its unit, as shown", "\"SI\""},
     {"meaning", MachineKey::text, "in words"},
 });
 
+/// Returns an object for each alternative, followed by other fields.
+std::vector<Field> with_alternatives(std::span<const Type> types, std::string_view meaning,
+                                     std::initializer_list<Field> others) {
+    std::vector<Field> all;
+    for (const Type& type : types)
+        all.push_back(holding({type.name, MachineKey::object, meaning.empty() ? type.meaning : meaning}, type.fields));
+    all.insert(all.end(), others);
+    return all;
+}
+
 }  // namespace
 
-std::span<const Key> top() {
-    return top_keys;
+std::span<const Field> motion() {
+    static const auto keys = with_alternatives(
+        geometry::motion_types(), {},
+        {
+            {"from", MachineKey::quantity,
+             "a phase, at whose beginning it starts, or a time, s; default: at the start"},
+            {"to", MachineKey::quantity, "a phase, at whose end it ends, or a time, s; default: never"},
+            {"during", MachineKey::words, "phases in which it acts, one after the other"},
+            {"repeat", MachineKey::quantity, "so many of it: a motion that comes again", "1"},
+            {"as", MachineKey::text, "name that counts the repeated ones in expressions, from 0"},
+            {"when", MachineKey::quantity, "0: it does not act at all", "1"},
+        });
+    return keys;
 }
-std::span<const Key> parameter() {
+
+std::span<const Field> wall() {
+    static const auto keys = with_alternatives(
+        machine::shape_types(), "a shape",
+        {
+            {"triangles", MachineKey::array, "a shape: a list of triangles [[x, y, z], [x, y, z], [x, y, z]], m"},
+            {"stl", MachineKey::text, "a shape: an STL file beside the machine file"},
+            {"scale", MachineKey::quantity, "of stl: length of the file's unit, m", "1"},
+            {"facet_angle", MachineKey::quantity,
+             "of stl and triangles: facets that meet at less than this angle stand for a curved surface, rad", "0"},
+            holding(
+                {"turned", MachineKey::object, "of stl, triangles, rectangle, disc, box: turned before it is placed"},
+                machine::placement_fields()),
+            {"at", MachineKey::vector, "of the same: where its origin is placed, m", "[0, 0, 0]"},
+            {"material", MachineKey::text, "one of the materials; default: the only one that no particles are of"},
+            holding({"motion", MachineKey::array, "motions, which add up", "[]"}, motion()),
+            {"during", MachineKey::words, "phases in which it is there; default: all"},
+            {"when", MachineKey::quantity, "0: it is not there at all", "1"},
+            {"repeat", MachineKey::quantity, "so many of them", "1"},
+            {"as", MachineKey::text, "name that counts the repeated ones in expressions, from 0"},
+        });
+    return keys;
+}
+
+std::span<const Field> contacts() {
+    static const auto keys = [] {
+        std::vector<Field> all(dem::contact_fields().begin(), dem::contact_fields().end());
+        all.insert(all.end(), dem::law_fields().begin(), dem::law_fields().end());
+        all.push_back(
+            holding({"pairs", MachineKey::named, "\"MATERIAL MATERIAL\": what differs between these two", "{}"},
+                    dem::contact_fields()));
+        return all;
+    }();
+    return keys;
+}
+
+std::span<const Field> top() {
+    static const std::array keys = {
+        needed({"name", MachineKey::text, "the name shown everywhere: letters, digits and _"}),
+        Field{"summary", MachineKey::text, "what it is, in one line"},
+        holding({"parameters", MachineKey::named, "by name: what factors and fixed values of a campaign may set", "{}"},
+                parameter_keys),
+        Field{"let", MachineKey::object,
+              "by name: expressions that other expressions may use; those that use numbers of species are known from "
+              "\"walls\" on",
+              "{}"},
+        holding({"checks", MachineKey::array, "what a case is refused for, or warned of", "[]"}, check_keys),
+        Field{"gravity", MachineKey::value, "[x, y, z] in m/s2, or size, tilt and azimuth", "[0, 0, -9.81]"},
+        holding({"domain", MachineKey::object,
+                 "the box outside of which particles are gone; default: around walls, fillings and feeds at all times",
+                 "{}"},
+                domain_keys),
+        needed(holding({"materials", MachineKey::named, "by name: density and stiffness"}, material_keys)),
+        holding({"contacts", MachineKey::object, "how bodies of these materials touch", "{}"}, contacts()),
+        needed(holding({"species", MachineKey::named, "by name: kinds of particles"}, species_keys)),
+        holding({"walls", MachineKey::named, "by name: shape, material, motion", "{}"}, wall()),
+        holding({"fill", MachineKey::array, "particles at the start", "[]"}, fill_keys),
+        holding({"feed", MachineKey::array, "particles added while it runs", "[]"}, feed_keys),
+        needed(holding({"phases", MachineKey::array, "what happens, one after the other"}, phase_keys)),
+        needed({"measure", MachineKey::object, "by name: what a case answers"}),
+        Field{"main", MachineKey::text,
+              "the measurement that reports and tables show first; default: the first by name"},
+    };
+    return keys;
+}
+
+std::span<const Field> parameter() {
     return parameter_keys;
 }
-std::span<const Key> gravity() {
+std::span<const Field> gravity() {
     return gravity_keys;
 }
-std::span<const Key> domain() {
+std::span<const Field> domain() {
     return domain_keys;
 }
-std::span<const Key> material() {
+std::span<const Field> material() {
     return material_keys;
 }
-std::span<const Key> contacts() {
-    return contact_keys;
-}
-/// Contacts without the laws, which are one for all pairs.
-std::span<const Key> pair() {
-    return std::span(contact_keys).first<11>();
-}
-std::span<const Key> species() {
+std::span<const Field> species() {
     return species_keys;
 }
-std::span<const Key> sizes() {
+std::span<const Field> sizes() {
     return size_keys;
 }
-std::span<const Key> wall() {
-    return wall_keys;
-}
-std::span<const Key> turned() {
-    return turned_keys;
-}
-std::span<const Key> fill() {
+std::span<const Field> fill() {
     return fill_keys;
 }
-std::span<const Key> sphere() {
+std::span<const Field> sphere() {
     return sphere_keys;
 }
-std::span<const Key> feed() {
+std::span<const Field> feed() {
     return feed_keys;
 }
-std::span<const Key> phase() {
+std::span<const Field> phase() {
     return phase_keys;
 }
-std::span<const Key> until() {
+std::span<const Field> until() {
     return until_keys;
 }
-std::span<const Key> check() {
+std::span<const Field> check() {
     return check_keys;
 }
-std::span<const Key> flow_stops() {
+std::span<const Field> flow_stops() {
     return flow_stops_keys;
 }
-std::span<const Key> measure() {
+std::span<const Field> measure() {
     return measure_keys;
 }
-std::span<const Key> expression() {
+std::span<const Field> expression() {
     return expression_keys;
 }
-std::span<const Key> time_of() {
+std::span<const Field> time_of() {
     return time_of_keys;
 }
 
-std::span<const Table> all() {
-    static const std::array tables = {
-        Table{"The file", top_keys},
-        Table{"A parameter", parameter_keys},
-        Table{"gravity", gravity_keys},
-        Table{"domain", domain_keys},
-        Table{"A material", material_keys},
-        Table{"contacts", contact_keys},
-        Table{"A species", species_keys},
-        Table{"sizes of a species", size_keys},
-        Table{"A wall", wall_keys},
-        Table{"turned, of a wall", turned_keys},
-        Table{"A motion of a wall", motion()},
-        Table{"rotate", rotate()},
-        Table{"shift", shift()},
-        Table{"vibrate", vibrate()},
-        Table{"press", press()},
-        Table{"drive", drive()},
-        Table{"free", free()},
-        Table{"A filling", fill_keys},
-        Table{"A sphere of a filling", sphere_keys},
-        Table{"A feed", feed_keys},
-        Table{"A phase", phase_keys},
-        Table{"until, of a phase", until_keys},
-        Table{"flow_stops", flow_stops_keys},
-        Table{"A check", check_keys},
-        Table{"A measurement", measure_keys},
-        Table{"The time of a measurement", time_of_keys},
-        Table{"An expression of measurements", expression_keys},
-    };
-    return tables;
+std::span<const Type> shapes() {
+    return machine::shape_types();
+}
+std::span<const Type> regions() {
+    return machine::region_types();
+}
+std::span<const Type> motions() {
+    return geometry::motion_types();
+}
+std::span<const Type> probes() {
+    static const auto types = [] {
+        std::vector<Type> all;
+        for (const auto& probe : machine::probe_catalogue()) all.push_back({probe.name, probe.meaning, probe.options});
+        return all;
+    }();
+    return types;
+}
+
+std::span<const Type> all() {
+    static const auto types = [] {
+        std::vector<Type> all = {
+            {"The file", "", top()},
+            {"A parameter", "", parameter_keys},
+            {"gravity", "", gravity_keys},
+            {"domain", "", domain_keys},
+            {"A material", "", material_keys, fields::initial<dem::Elasticity>},
+            {"contacts", "", contacts(), []() -> const void* { return &dem::standard_contact(); }},
+            {"A species", "", species_keys},
+            {"sizes of a species", "", size_keys},
+            {"A wall", "", wall()},
+            {"turned, of a wall", "", machine::placement_fields(), fields::initial<machine::Placement>},
+            {"A motion of a wall", "", motion()},
+        };
+        all.insert(all.end(), motions().begin(), motions().end());
+        const Type others[] = {
+            {"A filling", "", fill_keys, fields::initial<Fill>},
+            {"A sphere of a filling", "", sphere_keys, fields::initial<dem::Sphere>},
+            {"A feed", "", feed_keys, fields::initial<Feed>},
+            {"A phase", "", phase_keys, fields::initial<Phase>},
+            {"until, of a phase", "", until_keys},
+            {"flow_stops", "", flow_stops_keys},
+            {"A check", "", check_keys},
+            {"A measurement", "", measure_keys},
+            {"The time of a measurement", "", time_of_keys},
+            {"An expression of measurements", "", expression_keys},
+        };
+        all.insert(all.end(), std::begin(others), std::end(others));
+        return all;
+    }();
+    return types;
 }
 
 }  // namespace grainsweep::campaign::machine_keys

@@ -26,11 +26,11 @@ double arm_of(const geometry::Shape& shape, const Vec3& centre) {
     return geometry::norm(farthest);
 }
 
-geometry::Flight read_flight(const Cursor& place, const MachineReading& reading, const geometry::Shape& shape,
-                             double number) {
+/// Completes a flight by what follows from the shape.
+void complete(geometry::Flight& flight, const Section& of, const MachineReading& reading,
+              const geometry::Shape& shape) {
     const auto& scope = reading.scope;
-    const Section of(place, machine_keys::free());
-    geometry::Flight flight{.mass = scope.number(of.at("mass"), "kg", positive_number), .number = number};
+    const Cursor& place = of.place();
     const auto centre = of.find("centre"), inertia = of.find("inertia");
     const auto solid = machine::solid_of(shape);
     if (!solid && !(centre && inertia))
@@ -53,13 +53,10 @@ geometry::Flight read_flight(const Cursor& place, const MachineReading& reading,
     }
     const Vec3 held = scope.vector(of, "held", "1");
     for (std::size_t k = 0; k < 3; ++k) flight.freedom[k] = held[k] != 0 ? 0 : 1;
-    flight.force = scope.vector(of, "force", "N") + flight.mass * reading.spec.gravity;
-    flight.moment = scope.vector(of, "torque", "N m");
-    flight.fastest = scope.number(of.at("speed_at_most"), "m/s", positive_number);
+    flight.force = flight.force + flight.mass * reading.spec.gravity;
     const double arm = arm_of(shape, flight.centre);
     if (!std::isfinite(arm)) place.refuse("a wall without end cannot move freely");
     flight.fastest_turn = flight.fastest / arm;
-    return flight;
 }
 
 }  // namespace
@@ -70,52 +67,22 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
     const Section section(place, machine_keys::motion());
     present = scope.present(section);
     machine::WallMotion motion;
-    const auto number = static_cast<double>(wall.motions.size());
-    int kinds = 0;
-    if (const auto rotate = section.find("rotate")) {
-        const Section of(*rotate, machine_keys::rotate());
-        motion.motion = geometry::Rotation{.point = scope.vector(of, "through", "m"),
-                                           .axis = scope.direction(of.at("axis")),
-                                           .speed = scope.number(of.at("speed"), "rad/s")};
-        ++kinds;
+    const auto types = geometry::motion_types();
+    const Type* type = named_in(place.json(), types);
+    if (type == nullptr) {
+        std::string names;
+        for (const Type& t : types)
+            names += fmt::format("{}\"{}\"", &t == &types.back() ? " and " : names.empty() ? "" : ", ", t.name);
+        place.refuse("a motion is one of " + names);
     }
-    if (const auto shift = section.find("shift")) {
-        const Section of(*shift, machine_keys::shift());
-        motion.motion = geometry::Translation{.velocity = scope.vector(of.at("velocity"), "m/s")};
-        ++kinds;
-    }
-    if (const auto vibrate = section.find("vibrate")) {
-        const Section of(*vibrate, machine_keys::vibrate());
-        motion.motion = geometry::Vibration{.amplitude = scope.vector(of.at("amplitude"), "m"),
-                                            .frequency = scope.number(of.at("frequency"), "Hz", no_negative_number),
-                                            .phase = scope.number(of, "phase", "rad", 0)};
-        ++kinds;
-    }
-    if (const auto press = section.find("press")) {
-        const Section of(*press, machine_keys::press());
-        motion.motion = geometry::Press{.along = scope.direction(of.at("along")),
-                                        .force = scope.number(of.at("force"), "N"),
-                                        .mass = scope.number(of.at("mass"), "kg", positive_number),
-                                        .fastest = scope.number(of.at("speed_at_most"), "m/s", positive_number),
-                                        .number = number};
-        ++kinds;
-    }
-    if (const auto drive = section.find("drive")) {
-        const Section of(*drive, machine_keys::drive());
-        motion.motion = geometry::Drive{.point = scope.vector(of, "through", "m"),
-                                        .axis = scope.direction(of.at("axis")),
-                                        .moment = scope.number(of.at("torque"), "N m"),
-                                        .inertia = scope.number(of.at("inertia"), "kg m2", positive_number),
-                                        .fastest = scope.number(of.at("speed_at_most"), "rad/s", positive_number),
-                                        .number = number};
-        ++kinds;
-    }
-    if (const auto free = section.find("free")) {
-        motion.motion = read_flight(*free, reading, wall.shape, number);
-        ++kinds;
-    }
-    if (kinds != 1)
-        place.refuse("a motion is one of \"rotate\", \"shift\", \"vibrate\", \"press\", \"drive\" and \"free\"");
+    const Section of(section.at(type->name), type->fields);
+    scope.read(of, type->fields, type->make(&motion.motion));
+    if (auto* flight = std::get_if<geometry::Flight>(&motion.motion)) complete(*flight, of, reading, wall.shape);
+    std::visit(
+        [&](auto& m) {
+            if constexpr (requires { m.number; }) m.number = static_cast<double>(wall.motions.size());
+        },
+        motion.motion);
 
     const auto during = read_during(section, reading);
     const auto from = section.find("from"), to = section.find("to");

@@ -80,7 +80,7 @@ ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
     for (const char* key : {"unit", "bounds", "above", "whole", "words"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a file has none");
     const auto rows = machine_keys::parameter();
-    const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Key::name)->words);
+    const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Field::name)->words);
     spec.unit = "";
     const std::string none = section.at("default").text();
     require_name(section.at("default"), none);

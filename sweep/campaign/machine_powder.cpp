@@ -3,6 +3,7 @@
 #include "sweep/campaign/machine_reading.hpp"
 
 #include "solver/machine/filling.hpp"
+#include "solver/machine/shapes.hpp"
 #include "solver/plain_text.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     if (!place && !file) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
     // If a parameter chooses, the values of all choices are beside it.
     const bool chosen = place && place->json().is_string() && place->text().find('{') != std::string::npos;
-    const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Key::name)->words;
+    const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Field::name)->words;
     const auto spread = place ? scope.word(*place, words) : std::string("file");
     for (const auto& [key, of] :
          {std::pair{"half_width", "uniform"}, std::pair{"sigma", "lognormal"}, std::pair{"file", "file"}})
@@ -59,17 +60,14 @@ machine::Region feed_region(const Cursor& place, const MachineReading& reading, 
     constexpr double thickness = 1.5;  // largest diameters
     if (!place.json().is_object() || !place.json().contains("disc") || place.json().size() != 1)
         return reading.scope.region(place);
-    const auto form = std::ranges::find(machine_keys::shapes(), std::string_view("disc"), &machine_keys::Form::name);
-    const Section disc(place["disc"], form->keys);
+    const auto types = machine::shape_types();
+    const auto fields = std::ranges::find(types, std::string_view("disc"), &Type::name)->fields;
+    machine::Disc disc;
+    reading.scope.read(Section(place["disc"], fields), fields, &disc);
     double largest = 0;
     for (const auto& [species, share] : mix) largest = std::max(largest, reading.spec.species[species].largest());
-    machine::Region::Round round;
-    round.axis = reading.scope.direction(disc, "normal", {0, 0, 1});
-    round.length = thickness * largest;
-    round.base = geometry::operator-(reading.scope.vector(disc, "centre", "m"),
-                                     geometry::operator*(round.length / 2, round.axis));
-    round.radius = reading.scope.number(disc.at("radius"), "m", positive_number);
-    round.inner = reading.scope.number(disc, "inner", "m", 0, no_negative_number);
+    machine::Region::Round round{disc.centre, disc.normal, disc.radius, disc.inner, thickness * largest};
+    round.base = geometry::operator-(round.base, geometry::operator*(round.length / 2, round.axis));
     machine::Region region{round};
     if (const std::string flaw = region.flaw(); !flaw.empty()) place.refuse(flaw);
     return region;
@@ -83,7 +81,7 @@ machine::Mix read_mix(const Section& section, const MachineReading& reading) {
     if (one) return {{reading.scope.place_in(*one, reading.species, "species"), 1.0}};
     if (!several->json().is_object() || several->json().empty())
         several->refuse("must be an object of shares by species");
-    const auto words = std::ranges::find(machine_keys::fill(), std::string_view("by"), &Key::name)->words;
+    const auto words = std::ranges::find(machine_keys::fill(), std::string_view("by"), &Field::name)->words;
     const auto by = reading.scope.word(section, "by", words, "mass");
     machine::Mix mix;
     double sum = 0;
@@ -131,9 +129,7 @@ machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading
     const Section section(place, machine_keys::sphere());
     const auto& scope = reading.scope;
     dem::Sphere sphere;
-    sphere.position = scope.vector(section.at("at"), "m");
-    sphere.velocity = scope.vector(section, "velocity", "m/s");
-    sphere.angular_velocity = scope.vector(section, "spin", "rad/s");
+    scope.read(section, machine_keys::sphere(), &sphere);
     sphere.radius = scope.number(section, "diameter", "m", reading.spec.species[species].diameter, positive_number) / 2;
     return {species, sphere};
 }
@@ -248,13 +244,7 @@ void read_fills(const Section& top, MachineReading& reading) {
         fill.mix = read_mix(section, reading);
         fill.count = count_of(section, reading, fill.mix);
         if (!section.find("in")) throw wrong_question(place.path(), "", "key 'in' is missing: the region they lie in");
-        fill.in = reading.scope.region(section.at("in"));
-        const auto words = std::ranges::find(machine_keys::fill(), std::string_view("as"), &Key::name)->words;
-        fill.as = static_cast<machine::Fill::As>(
-            std::ranges::find(words, reading.scope.word(section, "as", words, words.front())) - words.begin());
-        fill.velocity = reading.scope.vector(section, "velocity", "m/s");
-        fill.shaken = reading.scope.number(section, "shaken", "m/s", 0, no_negative_number);
-        fill.glued = section.flag("glued", false);
+        reading.scope.read(section, machine_keys::fill(), &fill);
         reading.spec.fills.emplace_back(std::move(fill));
     }
 }
@@ -272,7 +262,7 @@ void read_feeds(const Section& top, MachineReading& reading) {
         if (std::ranges::find(reading.spec.feeds, feed.name, &machine::Feed::name) != reading.spec.feeds.end())
             place.refuse("several feeds need names of their own", feed.name + "_2");
         feed.mix = read_mix(section, reading);
-        feed.rate = reading.scope.number(section.at("rate"), "kg/s", no_negative_number);
+        reading.scope.read(section, machine_keys::feed(), &feed);
         const Cursor through = section.at("through");
         feed.through = feed_region(through, reading, feed.mix);
         const auto bounds = feed.through.bounds();
@@ -283,7 +273,6 @@ void read_feeds(const Section& top, MachineReading& reading) {
             if (!(bounds.low[k] < bounds.high[k])) through.refuse("nothing lies in this region");
             widest = std::max(widest, bounds.high[k] - bounds.low[k]);
         }
-        feed.velocity = reading.scope.vector(section, "velocity", "m/s");
         const double speed = geometry::norm(feed.velocity);
         double depth = widest;
         for (std::size_t k = 0; k < 3; ++k)

@@ -12,8 +12,6 @@
 namespace grainsweep::campaign {
 
 inline constexpr double endless = std::numeric_limits<double>::infinity();
-inline constexpr Interval positive_number{0, endless, true, true};
-inline constexpr Interval no_negative_number{0, endless, false, true};
 
 /// State of the reading of a machine: names read so far, and the incomplete Spec.
 struct MachineReading {

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace grainsweep::campaign {
@@ -208,50 +211,78 @@ std::vector<std::string> MachineScope::names() const {
     return names;
 }
 
-std::optional<std::size_t> form_of(const Json& object, std::span<const machine_keys::Form> forms) {
-    std::optional<std::size_t> found;
-    for (std::size_t k = 0; k < forms.size(); ++k) {
-        if (!object.is_object() || !object.contains(std::string(forms[k].name))) continue;
-        if (found) return std::nullopt;
-        found = k;
+void MachineScope::read(const Section& section, std::span<const Field> fields, void* object) const {
+    for (const Field& field : fields) {
+        if (field.at == nullptr && field.choose == nullptr) continue;
+        const auto place = section.find(field.name);
+        if (!place) continue;
+        const auto choose = [&](const Cursor& chosen) {
+            const auto found = std::ranges::find(field.words, word(chosen, field.words));
+            field.choose(object, static_cast<std::size_t>(found - field.words.begin()));
+        };
+        switch (field.kind) {
+            case Field::Kind::quantity:
+                *static_cast<double*>(field.at(object)) = number(*place, field.unit, field.bounds);
+                break;
+            case Field::Kind::vector:
+                *static_cast<Vec3*>(field.at(object)) = vector(*place, field.unit);
+                break;
+            case Field::Kind::direction:
+                *static_cast<Vec3*>(field.at(object)) = direction(*place);
+                break;
+            case Field::Kind::region:
+                *static_cast<Region*>(field.at(object)) = region(*place);
+                break;
+            case Field::Kind::flag:
+                *static_cast<bool*>(field.at(object)) = place->flag();
+                break;
+            case Field::Kind::word:
+                choose(*place);
+                break;
+            case Field::Kind::words:
+                for (const Cursor& one : place->elements()) choose(one);
+                break;
+            default:
+                throw std::logic_error("no reader for the kind of field " + std::string(field.name));
+        }
     }
+}
+
+const Type* named_in(const Json& object, std::span<const Type> types) {
+    const Type* found = nullptr;
+    if (!object.is_object()) return nullptr;
+    for (const Type& type : types)
+        if (object.contains(std::string(type.name)) && std::exchange(found, &type) != nullptr) return nullptr;
     return found;
 }
 
+const Type& MachineScope::read_alternative(const Cursor& place, std::span<const Type> types, void* variant,
+                                           std::string_view rule) const {
+    const Type* type = named_in(place.json(), types);
+    if (type == nullptr || place.json().size() != 1) {
+        const WordList words(std::views::transform(types, &Type::name));
+        const bool one = place.json().is_object() && place.json().size() == 1;
+        place.refuse(fmt::format("{}: {}", rule, in_words(words)),
+                     one ? nearest_word(place.json().begin().key(), words) : std::string());
+    }
+    void* object = type->make(variant);
+    if (!type->fields.empty()) read(Section(place[type->name], type->fields), type->fields, object);
+    return *type;
+}
+
 Region MachineScope::region(const Cursor& place) const {
-    const auto forms = machine_keys::regions();
-    const auto form = form_of(place.json(), forms);
-    const WordList words(std::views::transform(forms, &machine_keys::Form::name));
-    if (!form || place.json().size() != 1) {
-        std::string nearest;
-        if (place.json().is_object() && place.json().size() == 1)
-            nearest = nearest_word(place.json().begin().key(), words);
-        place.refuse(fmt::format("a region is an object with one key: {}", in_words(words)), nearest);
-    }
-    const auto& [name, meaning, keys] = forms[*form];
-    const Cursor inner = place[name];
     Region region;
-    if (name == "all" || name == "any") {
-        std::vector<Region> of;
-        for (const auto& one : inner.elements()) of.push_back(this->region(one));
-        if (name == "all")
-            region.is = Region::All{std::move(of)};
-        else
-            region.is = Region::Any{std::move(of)};
-    } else if (name == "not") {
-        region.is = Region::Not{{this->region(inner)}};
-    } else {
-        const Section section(inner, keys);
-        if (name == "box") region.is = Region::Box{vector(section.at("low"), "m"), vector(section.at("high"), "m")};
-        if (name == "cylinder")
-            region.is = Region::Round{vector(section.at("base"), "m"), direction(section, "axis", {0, 0, 1}),
-                                      number(section.at("radius"), "m"), number(section, "inner", "m", 0),
-                                      number(section.at("length"), "m")};
-        if (name == "ball")
-            region.is = Region::Ball{vector(section.at("centre"), "m"), number(section.at("radius"), "m")};
-        if (name == "half_space")
-            region.is = Region::Half{vector(section, "point", "m"), direction(section.at("normal"))};
-    }
+    const Type& type =
+        read_alternative(place, machine::region_types(), &region.is, "a region is an object with one key");
+    const Cursor inner = place[type.name];
+    std::visit(
+        [&](auto& combined) {
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(combined)>, machine::NotRegion>)
+                combined.of = {this->region(inner)};
+            else if constexpr (requires { combined.of; })
+                for (const auto& one : inner.elements()) combined.of.push_back(this->region(one));
+        },
+        region.is);
     if (const std::string flaw = region.flaw(); !flaw.empty()) inner.refuse(flaw);
     return region;
 }

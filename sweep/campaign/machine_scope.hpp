@@ -59,6 +59,13 @@ public:
     [[nodiscard]] std::vector<std::size_t> places_in(const Cursor& place, const std::vector<std::string>& names,
                                                      std::string_view what) const;
 
+    /// Reads the fields of a section that have a place in an object; absent ones keep their value.
+    void read(const Section& section, std::span<const Field> fields, void* object) const;
+    /// Makes a variant hold the alternative that a value names as its only key, and reads its fields. Refuses other
+    /// values with the rule.
+    const Type& read_alternative(const Cursor& place, std::span<const Type> types, void* variant,
+                                 std::string_view rule) const;
+
     [[nodiscard]] std::vector<std::string> names() const;
     /// Returns the value of a known name, which may be undefined.
     [[nodiscard]] double value(std::string_view name) const { return numbers_.find(name)->second; }
@@ -75,7 +82,7 @@ private:
 
 /// Returns whether a text is a number with or without a unit, not an expression.
 [[nodiscard]] bool is_quantity(std::string_view text);
-/// Returns the only key of an object among the forms; refuses none and several.
-[[nodiscard]] std::optional<std::size_t> form_of(const Json& object, std::span<const machine_keys::Form> forms);
+/// Returns the only type whose name is a key of the object; null: none or several.
+[[nodiscard]] const Type* named_in(const Json& object, std::span<const Type> types);
 
 }  // namespace grainsweep::campaign

@@ -7,9 +7,9 @@
 namespace grainsweep::campaign::powder_keys {
 namespace {
 
-using PowderKind = Key::Kind;
+using PowderKind = Field::Kind;
 
-constexpr auto top_keys = std::to_array<Key>({
+constexpr auto top_keys = std::to_array<Field>({
     needed({"powder", PowderKind::text, "name of the powder"}),
     {"material", PowderKind::object, "density and stiffness"},
     {"sizes", PowderKind::object, "how diameters are distributed"},
@@ -19,13 +19,13 @@ constexpr auto top_keys = std::to_array<Key>({
     {"posterior", PowderKind::text, "CSV file of settings that a calibration found, beside the powder file"},
 });
 
-constexpr auto material_keys = std::to_array<Key>({
+constexpr auto material_keys = std::to_array<Field>({
     {"density", PowderKind::value, "kg/m3"},
     {"youngs_modulus", PowderKind::value, "Pa"},
     {"poisson_ratio", PowderKind::value, "Poisson's ratio"},
 });
 
-constexpr auto contact_keys = std::to_array<Key>({
+constexpr auto contact_keys = std::to_array<Field>({
     {"restitution", PowderKind::value, "coefficient of restitution"},
     {"friction", PowderKind::value, "Coulomb friction"},
     {"rolling_friction", PowderKind::value, "tangent of the steepest slope a sphere stands on"},
@@ -41,7 +41,7 @@ constexpr auto contact_keys = std::to_array<Key>({
     {"wall_surface_energy", PowderKind::value, "work of adhesion at walls, J/m2"},
 });
 
-constexpr auto size_keys = std::to_array<Key>({
+constexpr auto size_keys = std::to_array<Field>({
     {"file", PowderKind::text, "a CSV file of sizes, as size_file of the scenes and as powder import writes"},
     {"diameter", PowderKind::value, "all particles are equal, m"},
     {"d10", PowderKind::value,
@@ -53,23 +53,23 @@ constexpr auto size_keys = std::to_array<Key>({
     {"by", PowderKind::word, "what the shares are of; of a file its header says it", "\"volume\"", {}, export_by},
 });
 
-constexpr auto lognormal_keys = std::to_array<Key>({
+constexpr auto lognormal_keys = std::to_array<Field>({
     needed({"median", PowderKind::value, "half is smaller, m"}),
     {"sigma", PowderKind::value, "standard deviation of ln d"},
     {"ratio", PowderKind::value, "or its exponential: the geometric standard deviation"},
 });
 
-constexpr auto rosin_rammler_keys = std::to_array<Key>({
+constexpr auto rosin_rammler_keys = std::to_array<Field>({
     needed({"d63", PowderKind::value, "63.2 % are smaller, m"}),
     needed({"n", PowderKind::value, "exponent"}),
 });
 
-constexpr auto cut_keys = std::to_array<Key>({
+constexpr auto cut_keys = std::to_array<Field>({
     {"below", PowderKind::value, "what is smaller is left out, m"},
     {"above", PowderKind::value, "what is larger is left out, m"},
 });
 
-constexpr auto measured_keys = std::to_array<Key>({
+constexpr auto measured_keys = std::to_array<Field>({
     needed({"what", PowderKind::text, "the quantity"}),
     needed({"value", PowderKind::value, "number, or text with a unit"}),
     {"error", PowderKind::value, "standard error"},
@@ -78,32 +78,32 @@ constexpr auto measured_keys = std::to_array<Key>({
 
 }  // namespace
 
-std::span<const Key> top() {
+std::span<const Field> top() {
     return top_keys;
 }
-std::span<const Key> material() {
+std::span<const Field> material() {
     return material_keys;
 }
-std::span<const Key> contacts() {
+std::span<const Field> contacts() {
     return contact_keys;
 }
-std::span<const Key> sizes() {
+std::span<const Field> sizes() {
     return size_keys;
 }
-std::span<const Key> lognormal() {
+std::span<const Field> lognormal() {
     return lognormal_keys;
 }
-std::span<const Key> rosin_rammler() {
+std::span<const Field> rosin_rammler() {
     return rosin_rammler_keys;
 }
-std::span<const Key> cut() {
+std::span<const Field> cut() {
     return cut_keys;
 }
-std::span<const Key> measured() {
+std::span<const Field> measured() {
     return measured_keys;
 }
 
-std::vector<std::pair<std::string_view, std::span<const Key>>> all() {
+std::vector<std::pair<std::string_view, std::span<const Field>>> all() {
     return {{"powder", top()},  {"material", material()},   {"contacts", contacts()},
             {"sizes", sizes()}, {"lognormal", lognormal()}, {"rosin_rammler", rosin_rammler()},
             {"cut", cut()},     {"measured", measured()}};

@@ -10,15 +10,15 @@
 
 namespace grainsweep::campaign::powder_keys {
 
-[[nodiscard]] std::span<const Key> top();
-[[nodiscard]] std::span<const Key> material();
-[[nodiscard]] std::span<const Key> contacts();
-[[nodiscard]] std::span<const Key> sizes();
-[[nodiscard]] std::span<const Key> lognormal();
-[[nodiscard]] std::span<const Key> rosin_rammler();
-[[nodiscard]] std::span<const Key> cut();
-[[nodiscard]] std::span<const Key> measured();
+[[nodiscard]] std::span<const Field> top();
+[[nodiscard]] std::span<const Field> material();
+[[nodiscard]] std::span<const Field> contacts();
+[[nodiscard]] std::span<const Field> sizes();
+[[nodiscard]] std::span<const Field> lognormal();
+[[nodiscard]] std::span<const Field> rosin_rammler();
+[[nodiscard]] std::span<const Field> cut();
+[[nodiscard]] std::span<const Field> measured();
 /// Returns all keys, by their object.
-[[nodiscard]] std::vector<std::pair<std::string_view, std::span<const Key>>> all();
+[[nodiscard]] std::vector<std::pair<std::string_view, std::span<const Field>>> all();
 
 }  // namespace grainsweep::campaign::powder_keys

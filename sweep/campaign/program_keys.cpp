@@ -6,7 +6,7 @@
 namespace grainsweep::campaign {
 namespace {
 
-using KeyKind = Key::Kind;
+using KeyKind = Field::Kind;
 
 constexpr Interval positive{0, std::numeric_limits<double>::infinity(), true, true};
 
@@ -16,8 +16,8 @@ constexpr std::array<std::string_view, 3> shape_names = {"scalar", "series", "pr
 constexpr std::array<std::string_view, 4> separator_names = {"comma", "semicolon", "tab", "blank"};
 }  // namespace
 
-std::span<const Key> program_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> program_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"command", KeyKind::words,
                 "the program and its arguments, no shell: {name} is replaced by the value of a factor or fixed "
                 "value, {seed}, {seed31} (1 to 2^31 - 2), {case}, {threads}; {{name}} stays as {name}"}),
@@ -61,8 +61,8 @@ std::span<const Key> program_keys() {
     return keys;
 }
 
-std::span<const Key> program_parameter_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> program_parameter_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"unit", KeyKind::text, "of its values"},
         {"bounds", KeyKind::array, "of a number [low, high], null: open; of a word the list of what it may be"},
         {"meaning", KeyKind::text, "in words"},
@@ -72,8 +72,8 @@ std::span<const Key> program_parameter_keys() {
     return keys;
 }
 
-std::span<const Key> program_observable_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> program_observable_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"unit", KeyKind::text, "of its values"},
         {"meaning", KeyKind::text, "in words"},
         {"shape",
@@ -88,8 +88,8 @@ std::span<const Key> program_observable_keys() {
     return keys;
 }
 
-std::span<const Key> program_from_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> program_from_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         {"json", KeyKind::text, "a JSON file that the program writes"},
         {"path", KeyKind::text,
          "of json: JSON pointer (RFC 6901) of a number, or of a list of numbers where there is an over"},
@@ -105,8 +105,8 @@ std::span<const Key> program_from_keys() {
     return keys;
 }
 
-std::span<const Key> program_version_keys() {
-    static constexpr auto keys = std::to_array<Key>({
+std::span<const Field> program_version_keys() {
+    static constexpr auto keys = std::to_array<Field>({
         needed({"command", KeyKind::words, "the program and its arguments"}),
         needed(
             {"match", KeyKind::text,

@@ -7,10 +7,10 @@
 
 namespace grainsweep::campaign {
 
-[[nodiscard]] std::span<const Key> program_keys();
-[[nodiscard]] std::span<const Key> program_parameter_keys();
-[[nodiscard]] std::span<const Key> program_observable_keys();
-[[nodiscard]] std::span<const Key> program_from_keys();
-[[nodiscard]] std::span<const Key> program_version_keys();
+[[nodiscard]] std::span<const Field> program_keys();
+[[nodiscard]] std::span<const Field> program_parameter_keys();
+[[nodiscard]] std::span<const Field> program_observable_keys();
+[[nodiscard]] std::span<const Field> program_from_keys();
+[[nodiscard]] std::span<const Field> program_version_keys();
 
 }  // namespace grainsweep::campaign

@@ -5,6 +5,7 @@
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_keys.hpp"
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/program.hpp"
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -54,24 +56,54 @@ OrderedJson items_of(const std::vector<std::string>& words) {
     return items;
 }
 
-OrderedJson schema_of(const Key& key) {
+OrderedJson section(std::span<const Field> fields);
+
+/// A number, a text with a unit, or an expression.
+OrderedJson quantity_schema() {
+    return {{"type", {"number", "string"}}};
+}
+
+OrderedJson vector_schema() {
+    return {{"type", "array"}, {"items", quantity_schema()}, {"minItems", 3}, {"maxItems", 3}};
+}
+
+/// A name or a list of names.
+OrderedJson names_schema() {
+    return {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
+}
+
+/// Any number of entries by name.
+OrderedJson named_schema(OrderedJson entry) {
+    return {{"type", "object"},
+            {"additionalProperties", std::move(entry)},
+            {"properties", {{std::string(notes_key), notes_schema()}}}};
+}
+
+/// A word of a machine file, or the parameter that chooses it: "{NAME}".
+OrderedJson word_or_parameter(OrderedJson word) {
+    word["type"] = "string";
+    return {{"anyOf", {std::move(word), {{"type", "string"}, {"pattern", R"(\{\w+\})"}}}}};
+}
+
+OrderedJson schema_of(const Field& key) {
     const std::vector<std::string> words(key.words.begin(), key.words.end());
     OrderedJson schema = {{"description", std::string(key.meaning)}};
     switch (key.kind) {
-        case Key::Kind::text:
+        case Field::Kind::text:
             schema["type"] = "string";
             schema["minLength"] = 1;
             break;
-        case Key::Kind::word:
+        case Field::Kind::word:
             schema["type"] = "string";
             if (!words.empty()) schema["enum"] = words;
+            if (key.choose != nullptr) schema = word_or_parameter(std::move(schema));
             break;
-        case Key::Kind::words:
+        case Field::Kind::words:
             schema["type"] = "array";
             schema["items"] = {{"type", "string"}};
             if (!words.empty()) schema["items"] = items_of(words);
             break;
-        case Key::Kind::whole:
+        case Field::Kind::whole:
             if (words.empty()) {
                 schema["type"] = "integer";
                 add_bounds(schema, key.bounds);
@@ -81,28 +113,49 @@ OrderedJson schema_of(const Key& key) {
                 schema["anyOf"] = {{{"enum", words}}, number};
             }
             break;
-        case Key::Kind::number:
+        case Field::Kind::number:
             schema["type"] = "number";
             add_bounds(schema, key.bounds);
             break;
-        case Key::Kind::flag:
+        case Field::Kind::flag:
             schema["type"] = "boolean";
             break;
-        case Key::Kind::object:
+        case Field::Kind::quantity:
+            schema.update(quantity_schema());
+            add_bounds(schema, key.bounds);  // a rule for numbers only
+            break;
+        case Field::Kind::vector:
+        case Field::Kind::direction:
+            schema.update(vector_schema());
+            break;
+        case Field::Kind::region:
+            schema["$ref"] = "#/$defs/region";
+            break;
+        case Field::Kind::species:
+        case Field::Kind::walls:
+            schema.update(names_schema());
+            break;
+        case Field::Kind::object:
             schema["type"] = "object";
+            if (!key.members.empty()) schema.update(section(key.members));
             break;
-        case Key::Kind::array:
+        case Field::Kind::named:
+            schema.update(named_schema(section(key.members)));
+            break;
+        case Field::Kind::array:
             schema["type"] = "array";
+            if (!key.members.empty()) schema["items"] = section(key.members);
             break;
-        case Key::Kind::value:
+        case Field::Kind::value:
             break;
     }
-    if (!key.standard.empty()) schema["default"] = OrderedJson::parse(key.standard);
+    if (auto value = OrderedJson::parse(key.standard, nullptr, false); !value.is_discarded())
+        schema["default"] = std::move(value);  // "2/7" is an expression
     return schema;
 }
 
 /// Returns the schema of an object that has only the keys of a table and notes.
-OrderedJson section(std::span<const Key> keys) {
+OrderedJson section(std::span<const Field> keys) {
     OrderedJson schema = {{"type", "object"}, {"properties", OrderedJson::object()}};
     OrderedJson required = OrderedJson::array();
     for (const auto& key : keys) {
@@ -138,7 +191,7 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
 
 /// Adds the figures of distributions. `value`: schema of one value of the parameter.
 void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
-    const std::pair<const char*, std::span<const Key>> forms[] = {
+    const std::pair<const char*, std::span<const Field>> forms[] = {
         {"uniform", uniform_keys()}, {"normal", normal_keys()}, {"lognormal", lognormal_keys()},
         {"weibull", weibull_keys()}, {"gumbel", gumbel_keys()}, {"triangular", triangular_keys()},
         {"beta", beta_keys()}};
@@ -146,7 +199,7 @@ void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
         auto& form = properties[name];
         form.update(section(keys));
         for (const auto& key : keys)
-            if (key.kind == Key::Kind::value) form["properties"][std::string(key.name)]["type"] = value["type"];
+            if (key.kind == Field::Kind::value) form["properties"][std::string(key.name)]["type"] = value["type"];
     }
     properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
     OrderedJson named = section(sample_keys());
@@ -252,7 +305,7 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
 }
 
 /// Returns the properties of a powder file; scenes have parameters of the same names.
-OrderedJson properties_of_powder(std::span<const Key> keys) {
+OrderedJson properties_of_powder(std::span<const Field> keys) {
     OrderedJson schema = section(keys);
     for (const auto& key : keys) {
         auto& property = schema["properties"][std::string(key.name)];
@@ -263,10 +316,10 @@ OrderedJson properties_of_powder(std::span<const Key> keys) {
 }
 
 /// Numbers above 0, or texts with a unit.
-OrderedJson positive_values(std::span<const Key> keys) {
+OrderedJson positive_values(std::span<const Field> keys) {
     OrderedJson schema = section(keys);
     for (const auto& key : keys)
-        if (key.kind == Key::Kind::value)
+        if (key.kind == Field::Kind::value)
             schema["properties"][std::string(key.name)].update(
                 {{"type", {"number", "string"}}, {"pattern", pattern_of_quantities}, {"exclusiveMinimum", 0}});
     return schema;
@@ -304,21 +357,17 @@ OrderedJson defined_scene_rule(std::string_view word, OrderedJson accuracy) {
             {"else", {{"properties", absent}}}};
 }
 
-OrderedJson program_schema() {
+OrderedJson program_section_schema() {
     OrderedJson schema = section(program_keys());
     auto& properties = schema["properties"];
     properties["command"]["minItems"] = 1;
     properties["environment"]["additionalProperties"] = {{"type", "string"}};
-    const auto named = [](OrderedJson entry) {
-        return OrderedJson{{"additionalProperties", std::move(entry)},
-                           {"properties", {{std::string(notes_key), notes_schema()}}}};
-    };
-    properties["parameters"].update(named(section(program_parameter_keys())));
+    properties["parameters"].update(named_schema(section(program_parameter_keys())));
     OrderedJson observable = section(program_observable_keys());
     observable["properties"]["from"].update(section(program_from_keys()));
     observable["properties"]["from"]["oneOf"] = {
         {{"required", {"json", "path"}}}, {{"required", {"csv", "column"}}}, {{"required", {"output"}}}};
-    properties["observables"].update(named(std::move(observable)));
+    properties["observables"].update(named_schema(std::move(observable)));
     properties["version"].update(section(program_version_keys()));
     return schema;
 }
@@ -336,13 +385,21 @@ std::string pattern_of_reserved_names() {
     return pattern + ")$";
 }
 
+/// Returns the schema of a file with these fields.
+OrderedJson file_schema(std::string_view file, std::string_view description, OrderedJson object) {
+    OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                          {"title", fmt::format("grainsweep {}", file)},
+                          {"description", fmt::format("{}; SI units where a number has no unit", description)}};
+    schema.update(object);
+    schema["properties"][std::string(schema_key)] = {{"description", "where an editor finds the schema; ignored"},
+                                                     {"type", "string"}};
+    return schema;
+}
+
 }  // namespace
 
 std::string powder_schema(int indentation) {
-    OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                          {"title", "grainsweep powder"},
-                          {"description", "material, sizes, contacts; SI units where a number has no unit"}};
-    schema.update(section(powder_keys::top()));
+    OrderedJson schema = file_schema("powder", "material, sizes, contacts", section(powder_keys::top()));
     auto& properties = schema["properties"];
     properties["material"].update(properties_of_powder(powder_keys::material()));
     properties["contacts"].update(properties_of_powder(powder_keys::contacts()));
@@ -355,13 +412,76 @@ std::string powder_schema(int indentation) {
     return schema.dump(indentation);
 }
 
+std::string machine_schema(int indentation) {
+    namespace keys = machine_keys;
+    OrderedJson schema =
+        file_schema("machine", "bodies, powder, motions, phases and what is measured", section(keys::top()));
+    const auto one_of = [](std::span<const Type> types, std::initializer_list<const char*> others) {
+        OrderedJson rules = OrderedJson::array();
+        for (const Type& type : types) rules.push_back({{"required", {type.name}}});
+        for (const char* other : others) rules.push_back({{"required", {other}}});
+        return rules;
+    };
+    auto& properties = schema["properties"];
+    properties["let"] = named_schema(quantity_schema());
+    properties["gravity"]["anyOf"] = {vector_schema(), section(keys::gravity())};
+    auto& wall = properties["walls"]["additionalProperties"];
+    wall["oneOf"] = one_of(keys::shapes(), {"triangles", "stl"});
+    wall["properties"]["during"] = names_schema();
+    wall["properties"]["motion"]["items"]["oneOf"] = one_of(keys::motions(), {});
+    wall["properties"]["motion"]["items"]["properties"]["during"] = names_schema();
+    auto& fill = properties["fill"]["items"]["properties"];
+    fill["spheres"]["anyOf"] = {{{"type", "string"}}, {{"type", "array"}, {"items", section(keys::sphere())}}};
+    fill["mix"] = named_schema(quantity_schema());
+    fill["by"] = word_or_parameter(fill["by"]);
+    auto& spread = properties["species"]["additionalProperties"]["properties"]["sizes"]["properties"]["spread"];
+    spread = word_or_parameter(spread);
+    auto& feed = properties["feed"]["items"]["properties"];
+    feed["during"] = names_schema();
+    feed["mix"] = named_schema(quantity_schema());
+    feed["by"] = word_or_parameter(feed["by"]);
+    OrderedJson disc = {{"type", "object"}, {"required", {"disc"}}};
+    disc["properties"]["disc"] =
+        section(std::ranges::find(keys::shapes(), std::string_view("disc"), &Type::name)->fields);
+    feed["through"]["anyOf"] = {{{"$ref", "#/$defs/region"}}, std::move(disc)};
+    OrderedJson until = section(keys::until());
+    properties["phases"]["items"]["properties"]["until"]["anyOf"] = {until, {{"type", "array"}, {"items", until}}};
+
+    OrderedJson probe = section(keys::measure());
+    probe["properties"]["during"] = names_schema();
+    OrderedJson probes = OrderedJson::array();
+    for (const auto& info : keys::probes()) {
+        auto& options = probe["properties"][std::string(info.name)] = section(info.fields);
+        options["description"] = info.meaning;
+        probes.push_back({{"required", {info.name}}});
+    }
+    probe["oneOf"] = std::move(probes);
+    OrderedJson entry;
+    entry["anyOf"] = {{{"type", "string"}}, section(keys::expression()), section(keys::time_of()), std::move(probe)};
+    properties["measure"].update(named_schema(std::move(entry)));
+
+    OrderedJson region = {{"type", "object"}, {"minProperties", 1}, {"maxProperties", 1}};
+    const OrderedJson inner = {{"$ref", "#/$defs/region"}};
+    for (const Type& type : keys::regions()) {
+        auto& form = region["properties"][std::string(type.name)];
+        form = !type.fields.empty() ? section(type.fields)
+               : type.name == "not" ? inner
+                                    : OrderedJson{{"type", "array"}, {"items", inner}, {"minItems", 1}};
+        form["description"] = type.meaning;
+    }
+    region["additionalProperties"] = false;
+    schema["$defs"]["region"] = std::move(region);
+    return schema.dump(indentation);
+}
+
+std::string program_schema(int indentation) {
+    return file_schema("program", "the section \"program\" of a campaign file", program_section_schema())
+        .dump(indentation);
+}
+
 std::string campaign_schema(int indentation) {
-    OrderedJson schema = {
-        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
-        {"title", "grainsweep campaign"},
-        {"description",
-         "one scene, factors that vary, a design over them, and when to stop; SI units where a number has no unit"}};
-    schema.update(section(campaign_keys()));
+    OrderedJson schema = file_schema("campaign", "one scene, factors that vary, a design over them, and when to stop",
+                                     section(campaign_keys()));
     // Members are kept in a vector: all of this level stand before one of them is referred to.
     schema["oneOf"] = {{{"required", {"design"}}}, {{"required", {"calibration"}}}};
     schema["allOf"] = OrderedJson::array();
@@ -388,7 +508,7 @@ std::string campaign_schema(int indentation) {
     several["properties"]["calibration"]["required"] = {"experiments"};
     schema["anyOf"] = {{{"required", {"scene"}}}, several};
     properties["calibration"]["properties"]["stop"].update(section(stop_keys()));
-    properties["program"].update(program_schema());
+    properties["program"].update(program_section_schema());
     properties["limits"].update(section(limits_keys()));
     properties["execution"].update(section(execution_keys()));
     properties["design"]["oneOf"] = OrderedJson::array();

@@ -1,4 +1,4 @@
-// JSON Schemas of campaign and powder files, for completion and checks in editors.
+// JSON Schemas of the files that users write, for completion and checks in editors.
 #pragma once
 
 #include <string>
@@ -11,6 +11,10 @@ namespace grainsweep::campaign {
 [[nodiscard]] std::string campaign_schema(int indentation = 2);
 /// Returns the same for a powder file, from its key tables and the parameters of the scenes.
 [[nodiscard]] std::string powder_schema(int indentation = 2);
+/// Returns the same for a machine file, from its fields and the options of the probes.
+[[nodiscard]] std::string machine_schema(int indentation = 2);
+/// Returns the same for the section "program" of a campaign file.
+[[nodiscard]] std::string program_schema(int indentation = 2);
 
 inline constexpr int on_one_line = -1;  ///< indentation
 

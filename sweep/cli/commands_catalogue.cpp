@@ -1,6 +1,7 @@
 // scenes, designs, schema: catalogues, from the tables that the reader of campaign files uses for its checks.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cursor.hpp"
+#include "sweep/campaign/field_text.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_keys.hpp"
@@ -170,31 +171,34 @@ void show_scene(const SceneInfo& scene, Format format) {
     if (!scene.accuracy.empty()) std::cout << '\n';
 }
 
-/// Appends the keys of an object.
-void add_keys(store::Table& table, std::string_view object, std::span<const campaign::Key> keys) {
-    for (const auto& key : keys) {
-        const auto one_of = key.words.empty() ? "" : "; one of " + alternatives(key.words);
-        table.rows.push_back({std::string(object), std::string(key.name),
-                              key.required ? Cell{std::string("required")} : text_or_none(std::string(key.standard)),
-                              std::string(key.meaning) + one_of});
+/// Appends the fields of a type. `object`: its name in the table.
+void add_fields(store::Table& table, std::string_view object, const Type& type) {
+    for (const auto& field : type.fields) {
+        const auto one_of = field.words.empty() ? "" : "; one of " + alternatives(field.words);
+        table.rows.push_back(
+            {std::string(object), std::string(field.name),
+             field.required ? Cell{std::string("required")} : text_or_none(campaign::default_text(type, field)),
+             campaign::meaning_text(field) + one_of});
     }
 }
 
 /// The keys of a machine file, object by object, shapes and regions among them.
 store::Table machine_table() {
     store::Table table{{"object", "key", "default", "meaning"}, {}};
-    for (const auto& [title, keys] : campaign::machine_keys::all()) add_keys(table, title, keys);
-    for (const auto& form : campaign::machine_keys::shapes())
-        add_keys(table, fmt::format("shape {}", form.name), form.keys);
-    for (const auto& form : campaign::machine_keys::regions())
-        add_keys(table, fmt::format("region {}", form.name), form.keys);
+    for (const Type& type : campaign::machine_keys::all()) add_fields(table, type.name, type);
+    for (const Type& type : campaign::machine_keys::shapes())
+        add_fields(table, fmt::format("shape {}", type.name), type);
+    for (const Type& type : campaign::machine_keys::regions())
+        add_fields(table, fmt::format("region {}", type.name), type);
     return table;
 }
 
 /// The keys of the section "program", object by object.
 store::Table program_table() {
     store::Table table{{"object", "key", "default", "meaning"}, {}};
-    const auto add = [&](const char* object, std::span<const campaign::Key> keys) { add_keys(table, object, keys); };
+    const auto add = [&](const char* object, std::span<const Field> keys) {
+        add_fields(table, object, {object, {}, keys});
+    };
     add("program", campaign::program_keys());
     add("parameters.NAME", campaign::program_parameter_keys());
     add("observables.NAME", campaign::program_observable_keys());
@@ -330,11 +334,16 @@ int list_designs(const std::string& name, Format format) {
 }
 
 int print_schema(const std::string& name, Format format) {
-    const std::vector<std::string> known = {"campaign", "powder"};
-    if (!name.empty() && std::ranges::find(known, name) == known.end())
-        throw campaign::wrong_question("NAME", name, "there are the schemas campaign and powder",
-                                       campaign::nearest_word(name, known));
-    const auto schema = name == "powder" ? campaign::powder_schema : campaign::campaign_schema;
+    static const std::map<std::string, std::string (*)(int), std::less<>> schemas = {
+        {"campaign", campaign::campaign_schema},
+        {"machine", campaign::machine_schema},
+        {"powder", campaign::powder_schema},
+        {"program", campaign::program_schema}};
+    const auto found = schemas.find(name.empty() ? "campaign" : name);
+    if (found == schemas.end())
+        throw campaign::wrong_question("NAME", name, "there are the schemas campaign, machine, powder and program",
+                                       campaign::nearest_word(name, campaign::WordList(std::views::keys(schemas))));
+    const auto schema = found->second;
     if (format == Format::csv)
         report::write(std::cout, store::Table{{"schema"}, {{schema(2)}}}, format);
     else
@@ -357,9 +366,9 @@ std::vector<Command> catalogue_commands() {
                              declare_name, list_machines),
         command<std::string>("designs", "lists the designs, or the options of one design", declare_name, list_designs),
         verbatim(command<std::string>(
-            "schema", "prints the JSON Schema of a campaign file, or of a powder file",
+            "schema", "prints the JSON Schema of a campaign, machine or powder file, or of a section \"program\"",
             [](Parser& parser, std::string& name) {
-                parser.add_option("[NAME]", name, "campaign, the default, or powder");
+                parser.add_option("[NAME]", name, "campaign, the default, machine, powder or program");
             },
             print_schema)),
     };

@@ -104,7 +104,7 @@ std::string keys_section() {
                 "list of texts. grainsweep schema "
                 "prints the JSON Schema.") +
             "\n";
-    const auto add = [&text](std::string_view title, std::span<const campaign::Key> keys) {
+    const auto add = [&text](std::string_view title, std::span<const Field> keys) {
         text += fmt::format(".SS {}\n", title);
         for (const auto& key : keys) {
             std::string meaning(key.meaning);

@@ -83,8 +83,8 @@ int main(int argc, char** argv) {
     measure("poisson", [&] { poisson.solve(values); });
 
     ImplicitDiffusion diffusion(grid, velocity_edges(walls, 1), 18 * setup.time_step / 2);
-    Field right = flow.velocity()[1];
-    Field solution(grid);
+    grainsweep::flow::Field right = flow.velocity()[1];
+    grainsweep::flow::Field solution(grid);
     measure("implicit_diffusion", [&] { diffusion.solve(right, solution); });
 
     const Weights weights(grid, velocity_edges(walls, 1));

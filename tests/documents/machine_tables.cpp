@@ -2,6 +2,7 @@
 
 #include "solver/machine/probe.hpp"
 #include "solver/machine/reduction.hpp"
+#include "sweep/campaign/field_text.hpp"
 #include "sweep/campaign/machine_keys.hpp"
 #include "tests/documents/table_rows.hpp"
 
@@ -14,70 +15,32 @@ namespace grainsweep::tests {
 namespace {
 
 namespace keys = campaign::machine_keys;
-using machine::OptionSpec;
 
-std::string kind_of(const campaign::Key& key) {
-    using Kind = campaign::Key::Kind;
-    switch (key.kind) {
-        case Kind::text:
-            return "text";
-        case Kind::word:
-            return "word";
-        case Kind::words:
-            return "words";
-        case Kind::value:
-            return "value";
-        case Kind::whole:
-        case Kind::number:
-            return "number";
-        case Kind::flag:
-            return "true, false";
-        case Kind::object:
-            return "object";
-        case Kind::array:
-            return "list";
-    }
-    throw std::logic_error("a kind of key without a word");
-}
+using campaign::kind_word;
 
-std::string kind_of(const OptionSpec& option) {
-    switch (option.kind) {
-        case OptionSpec::Kind::number:
-            return "number";
-        case OptionSpec::Kind::vector:
-            return "point";
-        case OptionSpec::Kind::direction:
-            return "direction";
-        case OptionSpec::Kind::region:
-            return "region";
-        case OptionSpec::Kind::species:
-            return "species";
-        case OptionSpec::Kind::walls:
-            return "walls";
-        case OptionSpec::Kind::word:
-            return "word";
-    }
-    throw std::logic_error("a kind of option without a word");
-}
-
-std::string standard_of(const campaign::Key& key) {
-    return key.required ? "required" : code(std::string(key.standard));
-}
-
-std::string meaning_of(const campaign::Key& key) {
+/// Returns the cells of a field: key, kind, default, meaning.
+std::vector<std::string> cells_of(const Type& type, const Field& field) {
     std::string words;
-    for (const auto word : key.words) words += (words.empty() ? "`" : ", `") + std::string(word) + "`";
-    return std::string(key.meaning) + (words.empty() ? "" : "; one of " + words);
+    for (const auto word : field.words) words += (words.empty() ? "`" : ", `") + std::string(word) + "`";
+    return {code(std::string(field.name)), std::string(kind_word(field.kind)),
+            field.required ? "required" : code(campaign::default_text(type, field)),
+            campaign::meaning_text(field) + (words.empty() ? "" : "; one of " + words)};
 }
 
-std::string forms_table(std::string_view what, std::span<const keys::Form> forms) {
+std::string forms_table(std::string_view what, std::span<const Type> types) {
     std::string table = head({std::string(what), "key", "value", "default", "meaning"});
-    for (const auto& form : forms) {
-        const std::string name = code(std::string(form.name));
-        table += row({name, "", form.keys.empty() ? (form.name == "not" ? "region" : "list") : "object", "",
-                      std::string(form.meaning)});
-        for (const auto& key : form.keys)
-            table += row({name, code(std::string(key.name)), kind_of(key), standard_of(key), meaning_of(key)});
+    for (const auto& type : types) {
+        const std::string name = code(std::string(type.name));
+        table += row({name, "",
+                      !type.fields.empty() ? "object"
+                      : type.name == "not" ? "region"
+                                           : "list",
+                      "", std::string(type.meaning)});
+        for (const auto& field : type.fields) {
+            auto cells = cells_of(type, field);
+            cells.insert(cells.begin(), name);
+            table += row(cells);
+        }
     }
     return table;
 }
@@ -119,7 +82,8 @@ std::string options_table() {
     std::map<Meaning, std::vector<std::string>> rows;
     for (const auto& probe : machine::probe_catalogue())
         for (const auto& option : probe.options)
-            rows[{std::string(option.name), kind_of(option), std::string(option.unit), std::string(option.meaning)}]
+            rows[{std::string(option.name), std::string(kind_word(option.kind)), std::string(option.unit),
+                  std::string(option.meaning)}]
                 .push_back(std::string(probe.name));
     std::string table = head({"option", "value", "unit", "meaning", "of"});
     for (const auto& [meaning, probes] : rows) {
@@ -150,11 +114,10 @@ std::string reductions_table() {
 
 std::string machine_keys_tables() {
     std::string all;
-    for (const auto& table : keys::all()) {
-        all += (all.empty() ? "### " : "\n### ") + std::string(table.title) + "\n\n" +
+    for (const Type& type : keys::all()) {
+        all += (all.empty() ? "### " : "\n### ") + std::string(type.name) + "\n\n" +
                head({"key", "value", "default", "meaning"});
-        for (const auto& key : table.keys)
-            all += row({code(std::string(key.name)), kind_of(key), standard_of(key), meaning_of(key)});
+        for (const auto& field : type.fields) all += row(cells_of(type, field));
     }
     return all;
 }

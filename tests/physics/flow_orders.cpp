@@ -236,8 +236,8 @@ TEST(Conservation, ConvectionMakesNoEnergy) {
         double magnitude = 0;
         for (int d = 0; d < 3; ++d) {
             const Weights weights(grid, velocity_edges(flow.sides(), d));
-            Field convection(grid);
-            Field diffusion(grid);
+            flow::Field convection(grid);
+            flow::Field diffusion(grid);
             momentum_transport(d, flow.velocity(), weights, cells, 1, convection, diffusion);
             for (int k = 1; k <= cells[2]; ++k)
                 for (int j = 1; j <= cells[1]; ++j)
@@ -310,7 +310,7 @@ double energy_residual(int steps) {
     flow.set_temperature([](double x, double, double z) { return z * (1 + 0.3 * x); });
     for (int s = 0; s < steps - 1; ++s) flow.step();
     const FaceVectors before = flow.velocity();
-    const Field cold = flow.temperature();
+    const flow::Field cold = flow.temperature();
     flow.step();
     FaceVectors middle = before;
     double change = 0;
@@ -322,8 +322,8 @@ double energy_residual(int steps) {
     for (int d = 0; d < 3; ++d) {
         const auto c = static_cast<std::size_t>(d);
         const Weights weights(flow.grid(), velocity_edges(flow.sides(), d));
-        Field convection(flow.grid());
-        Field diffusion(flow.grid());
+        flow::Field convection(flow.grid());
+        flow::Field diffusion(flow.grid());
         momentum_transport(d, middle, weights, {n, n, n}, 2, convection, diffusion);
         for (int k = 1; k <= n; ++k)
             for (int j = 1; j <= n; ++j)

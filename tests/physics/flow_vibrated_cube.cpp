@@ -43,7 +43,7 @@ TEST(VibratedCube, FirstHarmonicsAreThoseOfOtherPrograms) {
     }
     const auto largest = [&](std::size_t d) {
         double peak = 0;
-        const Field& shape = fluid.velocity()[d];
+        const flow::Field& shape = fluid.velocity()[d];
         for (int k = 1; k <= n; ++k)
             for (int j = 1; j <= n; ++j)
                 for (int i = 1; i <= n; ++i)

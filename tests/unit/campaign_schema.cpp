@@ -1,18 +1,23 @@
 // The schema and the reader know the same keys: whatever one refuses, so does the other.
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/schema.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/places.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace grainsweep::tests::campaign_schema_test {
 
@@ -25,7 +30,7 @@ std::set<std::string> keys_of(const json& object) {
     return keys;
 }
 
-std::set<std::string> key_names(std::span<const Key> keys) {
+std::set<std::string> key_names(std::span<const Field> keys) {
     std::set<std::string> names = {std::string(notes_key)};
     for (const auto& key : keys) names.emplace(key.name);
     return names;
@@ -63,7 +68,9 @@ TEST(Schema, IsDraft2020AndRefusesUnknownKeysEverywhere) {
 
 TEST(Schema, HasTheKeysOfTheReader) {
     const auto& properties = schema()["properties"];
-    EXPECT_EQ(keys_of(properties), key_names(campaign_keys()));
+    auto of_the_file = key_names(campaign_keys());
+    of_the_file.emplace(schema_key);
+    EXPECT_EQ(keys_of(properties), of_the_file);
     EXPECT_EQ(keys_of(properties["convergence"]["properties"]), key_names(convergence_keys()));
     EXPECT_EQ(keys_of(properties["limits"]["properties"]), key_names(limits_keys()));
     EXPECT_EQ(keys_of(properties["execution"]["properties"]), key_names(execution_keys()));
@@ -154,6 +161,109 @@ TEST(Schema, DefaultsAreThoseOfTheReader) {
     EXPECT_EQ(convergence["tolerance"]["default"], campaign.convergence->tolerance);
     EXPECT_FALSE(convergence["block"].contains("default")) << "it follows from the design";
     EXPECT_EQ(convergence["stop"]["default"], campaign.convergence->stop);
+}
+
+/// Returns the path of the first part that breaks the schema; empty: none. Knows the words that our schemas use.
+std::string broken_at(const json& rule, const json& value, const json& root, const std::string& path = "$") {
+    if (rule.is_boolean()) return rule.get<bool>() ? "" : path;
+    if (rule.contains("$ref"))
+        return broken_at(root.at(json::json_pointer(rule["$ref"].get<std::string>().substr(1))), value, root, path);
+    if (rule.contains("type")) {
+        const auto fits = [&](const std::string& type) {
+            return (type == "object" && value.is_object()) || (type == "array" && value.is_array()) ||
+                   (type == "string" && value.is_string()) || (type == "boolean" && value.is_boolean()) ||
+                   (type == "number" && value.is_number()) || (type == "integer" && value.is_number_integer());
+        };
+        const auto types = rule["type"].is_array() ? rule["type"].get<std::vector<std::string>>()
+                                                   : std::vector{rule["type"].get<std::string>()};
+        if (std::ranges::none_of(types, fits)) return path;
+    }
+    if (value.is_string() && rule.contains("pattern") &&
+        !std::regex_search(value.get<std::string>(), std::regex(rule["pattern"].get<std::string>())))
+        return path;
+    if (rule.contains("enum") && std::ranges::find(rule["enum"], value) == rule["enum"].end()) return path;
+    if (value.is_number()) {
+        const double x = value.get<double>();
+        if (x < rule.value("minimum", x) || x > rule.value("maximum", x)) return path;
+        if (rule.contains("exclusiveMinimum") && x <= rule["exclusiveMinimum"].get<double>()) return path;
+    }
+    const auto breaks = [&](const json& part) { return !broken_at(part, value, root, path).empty(); };
+    if (rule.contains("anyOf") && std::ranges::all_of(rule["anyOf"], breaks)) return path;
+    if (rule.contains("oneOf") && std::ranges::count_if(rule["oneOf"], breaks) + 1 != std::ssize(rule["oneOf"]))
+        return path;
+    if (value.is_array()) {
+        if (value.size() < rule.value("minItems", 0U) || value.size() > rule.value("maxItems", value.size()))
+            return path;
+        for (std::size_t k = 0; rule.contains("items") && k < value.size(); ++k)
+            if (auto at = broken_at(rule["items"], value[k], root, fmt::format("{}[{}]", path, k)); !at.empty())
+                return at;
+    }
+    if (!value.is_object()) return "";
+    for (const auto& key : rule.value("required", json::array()))
+        if (!value.contains(key.get<std::string>())) return path + "." + key.get<std::string>();
+    for (const auto& [key, inner] : value.items()) {
+        const json& properties = rule.contains("properties") ? rule["properties"] : json::object();
+        const json part = properties.contains(key) ? properties[key] : rule.value("additionalProperties", json(true));
+        if (auto at = broken_at(part, inner, root, path + "." + key); !at.empty()) return at;
+    }
+    return "";
+}
+
+TEST(MachineSchema, AcceptsEveryInstalledMachine) {
+    const json rule = json::parse(machine_schema());
+    std::size_t checked = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(tests::source("configs"))) {
+        if (entry.path().extension() != ".json") continue;
+        std::ifstream file(entry.path());
+        const json document = json::parse(file);
+        if (!is_machine_document(document)) continue;
+        EXPECT_EQ(broken_at(rule, document, rule), "") << entry.path();
+        ++checked;
+    }
+    EXPECT_GE(checked, 20U);
+}
+
+TEST(MachineSchema, RefusesAtTheSamePlaceAsTheReader) {
+    const json rule = json::parse(machine_schema());
+    const json drop =
+        json::parse(R"({"name": "drop", "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}},
+        "species": {"bead": {"diameter": "2 mm"}},
+        "walls": {"drum": {"cylinder": {"radius": "50 mm", "length": "40 mm"}, "motion": [{"rotate": {"axis": [0, 1, 0], "speed": 1}}]}},
+        "fill": [{"species": "bead", "count": 10, "in": {"any": [{"ball": {"centre": [0, 0, 0], "radius": "2 cm"}}]}}],
+        "domain": {"low": [-1, -1, -1], "high": [1, 1, 1]},
+        "phases": [{"name": "turn", "for": 1}], "measure": {"speed": {"rms_speed": {}}}})");
+    const auto reads_machine = [](const json& document) {
+        try {
+            (void)make_machine(document, "$", [](const std::string&) { return std::string(); });
+            return true;
+        } catch (const WrongQuestion&) {
+            return false;
+        }
+    };
+    ASSERT_TRUE(reads_machine(drop));
+    ASSERT_EQ(broken_at(rule, drop, rule), "");
+    json noted = drop;
+    noted["$schema"] = "machine.schema.json";
+    noted["walls"]["drum"]["notes"] = "of steel";
+    EXPECT_TRUE(reads_machine(noted));
+    EXPECT_EQ(broken_at(rule, noted, rule), "");
+    const std::pair<const char*, json> changes[] = {{"/walls/drum/cylinder/radios", 1},
+                                                    {"/walls/drum/motion/0/rotate/axis", {1, 0}},
+                                                    {"/walls/drum/motion/0/turn", json::object()},
+                                                    {"/walls/drum/motion/0/shift", {{"velocity", {0, 0, 0}}}},
+                                                    {"/walls/drum/plane", {{"normal", {0, 0, 1}}}},
+                                                    {"/walls/drum/cylinder/side", "within"},
+                                                    {"/fill/0/in", {{"bowl", json::object()}}},
+                                                    {"/fill/0/as", "rein"},
+                                                    {"/measure/speed/rms_sped", json::object()},
+                                                    {"/materials/glass/poisson_ratio", 0.7},
+                                                    {"/phases/0/frame", 10}};
+    for (const auto& [place, value] : changes) {
+        json wrong = drop;
+        wrong[json::json_pointer(place)] = value;
+        EXPECT_FALSE(reads_machine(wrong)) << place;
+        EXPECT_NE(broken_at(rule, wrong, rule), "") << place;
+    }
 }
 
 TEST(Configs, EveryFileReadsWithoutError) {

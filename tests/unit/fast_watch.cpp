@@ -17,7 +17,7 @@ struct Two {
     Setup setup;
     ListSpace space;
     Record records[2]{};
-    Field field{};
+    dem::fast::Field field{};
     std::int32_t id[2] = {0, 1};
     std::vector<Velocities> motions{2};
 

@@ -29,8 +29,8 @@ Grid box(int nx, int ny, int nz, double clustering = 0) {
              Axis::clustered(nz, 0, 3, clustering)}};
 }
 
-Field noise(const Grid& grid, std::uint64_t stream) {
-    Field field(grid);
+flow::Field noise(const Grid& grid, std::uint64_t stream) {
+    flow::Field field(grid);
     const Stream random(7, stream);
     for (int k = 1; k <= grid.cells(2); ++k)
         for (int j = 1; j <= grid.cells(1); ++j)
@@ -143,7 +143,7 @@ TEST(DenseProduct, SumsInOrderWhateverTheBlock) {
 TEST(AxisProduct, SkipsWhatIsNegligible) {
     for (const int n : {2, 7, 28, 40}) {
         const Grid grid = box(n, n, n);
-        const Field field = noise(grid, 1);
+        const flow::Field field = noise(grid, 1);
         for (int d = 0; d < 3; ++d) {
             Eigen::MatrixXd bell(n, n);
             for (int r = 0; r < n; ++r)
@@ -152,7 +152,7 @@ TEST(AxisProduct, SkipsWhatIsNegligible) {
             EXPECT_EQ(whole.kept(), 1);
             EXPECT_LE(banded.kept(), n == 40 ? 0.6 : 1);
             EXPECT_EQ(AxisProduct(grid, d, Eigen::MatrixXd::Ones(n, n)).kept(), 1);
-            Field fast(grid), plain(grid);
+            flow::Field fast(grid), plain(grid);
             banded.apply(field, fast);
             whole.apply(field, plain);
             const auto line = [&](int i, int j, int k) {  // entry by entry
@@ -192,7 +192,7 @@ TEST(SecondDifference, IsExactForQuadraticsOnUniformGrids) {
 TEST(Poisson, InvertsTheDivergenceOfTheGradient) {
     const auto check = [](const Grid& grid, const Sides& sides) {
         const Edges edges = pressure_edges(sides);
-        Field q = noise(grid, 1);
+        flow::Field q = noise(grid, 1);
         // The solution is defined up to a constant: the volume mean is zero.
         double mean = 0;
         double volume = 0;
@@ -237,8 +237,8 @@ TEST(Poisson, InvertsTheDivergenceOfTheGradient) {
 TEST(ImplicitDiffusion, SolvesItsFactors) {
     const double a = 0.03;
     const auto check = [&](const Grid& grid, const Edges& edges) {
-        const Field exact = [&] {
-            Field x = noise(grid, 2);
+        const flow::Field exact = [&] {
+            flow::Field x = noise(grid, 2);
             for (int d = 0; d < 3; ++d)  // known wall values do not change
                 if (first_unknown(edges[static_cast<std::size_t>(d)]) == 2) {
                     for (int q = 0; q <= grid.cells(d == 2 ? 1 : 2) + 1; ++q)
@@ -248,7 +248,7 @@ TEST(ImplicitDiffusion, SolvesItsFactors) {
             return x;
         }();
         // r = (1 - a Lx)(1 - a Ly)(1 - a Lz) x by dense matrices along each line.
-        Field right = exact;
+        flow::Field right = exact;
         for (int d = 0; d < 3; ++d) {
             const int n = grid.cells(d);
             const Eigen::MatrixXd factor = Eigen::MatrixXd::Identity(n, n) -
@@ -264,7 +264,7 @@ TEST(ImplicitDiffusion, SolvesItsFactors) {
                     for (int m = 1; m <= n; ++m) start[m * right.stride(d)] = line(m - 1);
                 }
         }
-        Field solution(grid);
+        flow::Field solution(grid);
         ImplicitDiffusion(grid, edges, a).solve(right, solution);
         for (int k = 1; k <= grid.cells(2); ++k)
             for (int j = 1; j <= grid.cells(1); ++j)

@@ -28,30 +28,30 @@ Vec3 vector_area(const Triangles& triangles) {
 
 TEST(MachineShapes, ADiscHasTheAreaOfTheCircle) {
     for (const Vec3& normal : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0.6, 0, -0.8}}) {
-        const Triangles full = machine::disc({1, 2, 3}, normal, 0.5, 0);
+        const Triangles full = machine::triangles_of(machine::Disc{{1, 2, 3}, normal, 0.5, 0});
         EXPECT_EQ(full.size(), 64U);
         EXPECT_NEAR(area_of(full), std::numbers::pi * 0.25, 1e-12);
         const Vec3 up = vector_area(full);
         EXPECT_NEAR(std::abs(dot(up, normal)), std::numbers::pi * 0.25, 1e-12) << "flat and across its normal";
         for (const auto& triangle : full)
             for (const Vec3& corner : triangle) EXPECT_NEAR(dot(corner - Vec3{1, 2, 3}, normal), 0, 1e-15);
-        const Triangles ring = machine::disc({1, 2, 3}, normal, 0.5, 0.2);
+        const Triangles ring = machine::triangles_of(machine::Disc{{1, 2, 3}, normal, 0.5, 0.2});
         EXPECT_EQ(ring.size(), 128U);
         EXPECT_NEAR(area_of(ring), std::numbers::pi * (0.25 - 0.04), 1e-12);
     }
-    EXPECT_THROW((void)machine::disc({}, {0, 0, 1}, 0.5, 0.5), std::invalid_argument);
+    EXPECT_THROW((void)machine::triangles_of(machine::Disc{{}, {0, 0, 1}, 0.5, 0.5}), std::invalid_argument);
 }
 
 TEST(MachineShapes, ABoxLeavesOutItsOpenFaces) {
     const Vec3 low{0, 0, 0}, high{1, 2, 3};
-    const Triangles closed = machine::box(low, high, {});
+    const Triangles closed = machine::triangles_of(machine::Box{low, high, {}});
     EXPECT_EQ(closed.size(), 12U);
     EXPECT_DOUBLE_EQ(area_of(closed), 2 * (2 + 3 + 6));
     const double faces[] = {6, 6, 3, 3, 2, 2};
     for (std::size_t face = 0; face < 6; ++face) {
         std::array<bool, 6> open{};
         open[face] = true;
-        const Triangles rest = machine::box(low, high, open);
+        const Triangles rest = machine::triangles_of(machine::Box{low, high, open});
         EXPECT_EQ(rest.size(), 10U);
         EXPECT_DOUBLE_EQ(area_of(rest), 22 - faces[face]);
         // No triangle of the rest lies in the plane of the open face.
@@ -59,13 +59,13 @@ TEST(MachineShapes, ABoxLeavesOutItsOpenFaces) {
         for (const auto& [a, b, c] : rest)
             EXPECT_FALSE(a[face / 2] == level && b[face / 2] == level && c[face / 2] == level) << face;
     }
-    EXPECT_TRUE(machine::box(low, high, {true, true, true, true, true, true}).empty());
-    EXPECT_THROW((void)machine::box(high, low, {}), std::invalid_argument);
+    EXPECT_TRUE(machine::triangles_of(machine::Box{low, high, {true, true, true, true, true, true}}).empty());
+    EXPECT_THROW((void)machine::triangles_of(machine::Box{high, low, {}}), std::invalid_argument);
     EXPECT_THROW((void)machine::mesh_of({}, 0, {}), std::invalid_argument);
 }
 
 TEST(MachineShapes, AShapeIsTurnedThenShifted) {
-    const Triangles flat = machine::rectangle({1, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const Triangles flat = machine::triangles_of(machine::Rectangle{{1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     EXPECT_EQ(flat.size(), 2U);
     EXPECT_DOUBLE_EQ(area_of(flat), 1);
     // A quarter turn about z through (1, 0, 0) takes +x to +y; then 5 up.

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace grainsweep::dem {
@@ -33,11 +34,22 @@ void for_each_number(Of& m, Visit&& visit) {
     visit(m.surface_tension), visit(m.contact_angle), visit(m.bridge_volume);
 }
 
-/// Writes a shape or a motion; put(value) writes a number or an array of numbers.
+/// Calls visit for the members of a shape or motion, or for the whole if it consists of numbers without padding.
+template <class Of, class Visit>
+void visit_whole(Of& one, Visit&& visit) {
+    if constexpr (requires { one.fields(one, visit); }) {
+        one.fields(one, visit);
+    } else {
+        static_assert(std::is_trivially_copyable_v<Of> && sizeof(Of) % sizeof(double) == 0);
+        visit(one);
+    }
+}
+
+/// Writes a shape or a motion; put(value) writes a number, or a struct or an array of numbers.
 template <class Variant, class Put>
 void write_alternative(const Variant& alternatives, Put&& put) {
     put(static_cast<std::uint64_t>(alternatives.index()));
-    std::visit([&](const auto& one) { one.fields(one, put); }, alternatives);
+    std::visit([&](const auto& one) { visit_whole(one, put); }, alternatives);
 }
 
 /// Writes all parameters except motions and presence.
@@ -83,7 +95,7 @@ template <class Get>
         std::uint64_t index = 0;
         get(index);
         alternatives = alternative<std::remove_cvref_t<decltype(alternatives)>>(index);
-        std::visit([&](auto& one) { one.fields(one, get); }, alternatives);
+        std::visit([&](auto& one) { visit_whole(one, get); }, alternatives);
     };
     Wall wall;
     read(wall.shape);

@@ -1,5 +1,5 @@
 // Number, mass, solid volume and mean diameter of the particles whose centres lie in a region.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -48,14 +48,18 @@ std::unique_ptr<machine::Probe> make_amount(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo amount_count{"count", "1", "number of particles in a region", amount_options,
-                             make_amount<Amount::count>};
-const ProbeInfo amount_mass{"mass", "kg", "mass of the particles in a region", amount_options,
-                            make_amount<Amount::mass>};
-const ProbeInfo amount_volume{"volume", "m3", "solid volume of the particles in a region", amount_options,
-                              make_amount<Amount::volume>};
-const ProbeInfo mean_diameter{
-    "mean_diameter", "m", "mean diameter of the particles in a region, by number", amount_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<MeanDiameter>(given); }};
+ProbeInfo amount_count() {
+    return {"count", "1", "number of particles in a region", amount_options, make_amount<Amount::count>};
+}
+ProbeInfo amount_mass() {
+    return {"mass", "kg", "mass of the particles in a region", amount_options, make_amount<Amount::mass>};
+}
+ProbeInfo amount_volume() {
+    return {"volume", "m3", "solid volume of the particles in a region", amount_options, make_amount<Amount::volume>};
+}
+ProbeInfo mean_diameter() {
+    return {"mean_diameter", "m", "mean diameter of the particles in a region, by number", amount_options,
+            make_probe<MeanDiameter>};
+}
 
 }  // namespace grainsweep::machine::probes

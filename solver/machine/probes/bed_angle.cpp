@@ -1,6 +1,6 @@
 // Lean of a bed: the angle by which its centre of volume is turned about an axis from straight below, right hand. For a
 // bed that is a segment of a circle it is the slope of the surface.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <cmath>
@@ -39,14 +39,14 @@ private:
 };
 
 constexpr std::array bed_angle_options = {
-    of_option, in_option,
-    OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis that the bed is raised about", true},
-    OptionSpec{"through", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"}};
+    of_option, in_option, option("axis", Field::Kind::direction, "", "the axis that the bed is raised about", true),
+    option("through", Field::Kind::vector, "m", "a point on the axis; default: the origin")};
 
 }  // namespace
 
-const ProbeInfo bed_angle{
-    "bed_angle", "deg", "angle of the centre of volume from straight below, about an axis", bed_angle_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<BedAngleProbe>(given); }};
+ProbeInfo bed_angle() {
+    return {"bed_angle", "deg", "angle of the centre of volume from straight below, about an axis", bed_angle_options,
+            make_probe<BedAngleProbe>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,6 +1,6 @@
 // Solid fraction of a bed in a vessel of constant cross-section. It is measured from three diameters above the bottom
 // to three below the 95 % quantile of the centres' heights.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/upright.hpp"
 #include "solver/observables/settled.hpp"
 
@@ -24,16 +24,16 @@ constexpr Interval positive_size{0, std::numeric_limits<double>::infinity(), tru
 constexpr std::array bed_fraction_options = {
     of_option,
     in_option,
-    OptionSpec{"from", OptionSpec::Kind::vector, "m", "a point of the bottom; default: the origin"},
+    option("from", Field::Kind::vector, "m", "a point of the bottom; default: the origin"),
     along_option,
-    OptionSpec{"diameter", OptionSpec::Kind::number, "m", "diameter of the particles", true, positive_size},
-    OptionSpec{"section", OptionSpec::Kind::number, "m2", "cross-section of the vessel", true, positive_size}};
+    option("diameter", Field::Kind::quantity, "m", "diameter of the particles", true, positive_size),
+    option("section", Field::Kind::quantity, "m2", "cross-section of the vessel", true, positive_size)};
 
 }  // namespace
 
-const ProbeInfo bed_fraction{
-    "bed_fraction", "1", "solid fraction of a bed, three diameters clear of its bottom and its top",
-    bed_fraction_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<BedFraction>(given); }};
+ProbeInfo bed_fraction() {
+    return {"bed_fraction", "1", "solid fraction of a bed, three diameters clear of its bottom and its top",
+            bed_fraction_options, make_probe<BedFraction>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,6 +1,6 @@
 // Surface of a bed in a rotating drum and the flow below it, from sums over all frames so far. The value at the last
 // frame is the result for the whole time. Definitions: solver/observables/turned_bed.hpp.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/probes/section.hpp"
 
 #include <array>
@@ -70,7 +70,7 @@ constexpr std::array bed_surface_options = {
     section_axis_option,
     section_through_option,
     section_radius_option,
-    OptionSpec{"length", OptionSpec::Kind::number, "m", "length of the drum", true, {0, 1e3, true, false}},
+    option("length", Field::Kind::quantity, "m", "length of the drum", true, {0, 1e3, true, false}),
     section_diameter_option};
 
 template <Surface of>
@@ -85,17 +85,25 @@ constexpr ProbeInfo bed_surface_row(std::string_view name, std::string_view unit
 
 }  // namespace
 
-const ProbeInfo bed_surface_angle = bed_surface_row<Surface::angle>(
-    "bed_surface_angle", "deg",
-    "slope of the line through the heights where the mean solid fraction since the first frame, on cells of D, falls "
-    "through 0.3, within 0.4 R of the axis");
-const ProbeInfo bed_surface_residual = bed_surface_row<Surface::residual>(
-    "bed_surface_residual", "1", "root mean square of those heights above and below their line, divided by D");
-const ProbeInfo bed_surface_speed = bed_surface_row<Surface::speed>(
-    "bed_surface_speed", "m/s",
-    "mean velocity down that line, of centres 0 to 1 D below it and within 2.5 D of the foot of the perpendicular from "
-    "the axis");
-const ProbeInfo bed_layer_depth = bed_surface_row<Surface::depth>(
-    "bed_layer_depth", "1", "depth below that line at which the mean velocity along it changes sign, divided by D");
+ProbeInfo bed_surface_angle() {
+    return bed_surface_row<Surface::angle>("bed_surface_angle", "deg",
+                                           "slope of the line through the heights where the mean solid fraction since "
+                                           "the first frame, on cells of D, falls "
+                                           "through 0.3, within 0.4 R of the axis");
+}
+ProbeInfo bed_surface_residual() {
+    return bed_surface_row<Surface::residual>(
+        "bed_surface_residual", "1", "root mean square of those heights above and below their line, divided by D");
+}
+ProbeInfo bed_surface_speed() {
+    return bed_surface_row<Surface::speed>("bed_surface_speed", "m/s",
+                                           "mean velocity down that line, of centres 0 to 1 D below it and within 2.5 "
+                                           "D of the foot of the perpendicular from "
+                                           "the axis");
+}
+ProbeInfo bed_layer_depth() {
+    return bed_surface_row<Surface::depth>(
+        "bed_layer_depth", "1", "depth below that line at which the mean velocity along it changes sign, divided by D");
+}
 
 }  // namespace grainsweep::machine::probes

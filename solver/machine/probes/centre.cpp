@@ -1,6 +1,6 @@
 // Mean position of particles along a direction, weighted by volume, from a point: the place of an intruder, the centre
 // of a bed.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -27,13 +27,14 @@ private:
 };
 
 constexpr std::array centre_options = {
-    of_option, in_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the coordinate", true},
-    OptionSpec{"from", OptionSpec::Kind::vector, "m", "the point from which it counts; default: the origin"}};
+    of_option, in_option, option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
+    option("from", Field::Kind::vector, "m", "the point from which it counts; default: the origin")};
 
 }  // namespace
 
-const ProbeInfo centre{
-    "centre", "m", "mean position along a direction, weighted by volume", centre_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<CentreProbe>(given); }};
+ProbeInfo centre() {
+    return {"centre", "m", "mean position along a direction, weighted by volume", centre_options,
+            make_probe<CentreProbe>};
+}
 
 }  // namespace grainsweep::machine::probes

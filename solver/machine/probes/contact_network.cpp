@@ -7,7 +7,7 @@
 //     anisotropy = sqrt(3/2 F'_ab F'_ab), F' = F less its trace: 0 isotropic, 1/2 all in a plane, 1 all parallel
 #include "solver/machine/binning.hpp"
 #include "solver/machine/contact_place.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <cmath>
@@ -96,23 +96,19 @@ private:
     Vec3 along_;
 };
 
-constexpr OptionSpec both_of_option{"of", OptionSpec::Kind::species, "",
-                                    "the species both particles are of; default: all"};
-constexpr OptionSpec contact_in_option{"in", OptionSpec::Kind::region, "",
-                                       "the region in which contacts count; default: everywhere"};
+constexpr Field both_of_option =
+    option("of", Field::Kind::species, "", "the species both particles are of; default: all");
+constexpr Field contact_in_option =
+    option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
 constexpr std::array contact_force_options = {both_of_option, contact_in_option};
 constexpr std::array contact_density_options = {
     both_of_option, contact_in_option,
-    OptionSpec{"to",
-               OptionSpec::Kind::number,
-               "1",
-               "the force where the last bin ends, divided by the mean; default: 6",
-               false,
-               {0, 1e6, true, false}},
+    option("to", Field::Kind::quantity, "1", "the force where the last bin ends, divided by the mean; default: 6",
+           false, {0, 1e6, true, false}),
     bins_option};
 constexpr std::array fabric_options = {
     both_of_option, contact_in_option,
-    OptionSpec{"along", OptionSpec::Kind::direction, "", "the component along it; default: the anisotropy"}};
+    option("along", Field::Kind::direction, "", "the component along it; default: the anisotropy")};
 
 std::string flaw_of_contact_density(const Options& given) {
     return flaw_of_bins(given, 0, given.number("to", largest_ratio));
@@ -120,30 +116,31 @@ std::string flaw_of_contact_density(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo contact_force{"contact_force",
-                              "N",
-                              "mean size of the normal force between particles",
-                              contact_force_options,
-                              [](const Options& given) -> std::unique_ptr<machine::Probe> {
-                                  return std::make_unique<ContactForces<false>>(given);
-                              },
-                              true};
-const ProbeInfo contact_force_density{"contact_force_density",
-                                      "1",
-                                      "probability density of normal forces divided by their mean",
-                                      contact_density_options,
-                                      [](const Options& given) -> std::unique_ptr<machine::Probe> {
-                                          return std::make_unique<ContactForces<true>>(given);
-                                      },
-                                      true,
-                                      "force divided by the mean force",
-                                      flaw_of_contact_density};
-const ProbeInfo fabric{
-    "fabric",
-    "1",
-    "anisotropy of the directions of contacts between particles, 0 to 1, or a component of their fabric tensor",
-    fabric_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Fabric>(given); },
-    true};
+ProbeInfo contact_force() {
+    return {"contact_force",
+            "N",
+            "mean size of the normal force between particles",
+            contact_force_options,
+            make_probe<ContactForces<false>>,
+            true};
+}
+ProbeInfo contact_force_density() {
+    return {"contact_force_density",
+            "1",
+            "probability density of normal forces divided by their mean",
+            contact_density_options,
+            make_probe<ContactForces<true>>,
+            true,
+            "force divided by the mean force",
+            flaw_of_contact_density};
+}
+ProbeInfo fabric() {
+    return {"fabric",
+            "1",
+            "anisotropy of the directions of contacts between particles, 0 to 1, or a component of their fabric tensor",
+            fabric_options,
+            make_probe<Fabric>,
+            true};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,5 +1,5 @@
 // Contacts of a bed: the mean number of partners, and the deepest overlap.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -41,26 +41,20 @@ private:
 constexpr std::array contacts_options = {of_option, in_option};
 constexpr std::array<std::string_view, 2> over_words = {"frames", "steps"};
 constexpr std::array overlap_options = {
-    OptionSpec{"over",
-               OptionSpec::Kind::word,
-               "",
-               "'frames': now, 'steps': the deepest at any step since the phase began; default: "
-               "'frames'",
-               false,
-               {},
-               over_words}};
+    option("over", Field::Kind::word, "",
+           "'frames': now, 'steps': the deepest at any step since the phase began; default: "
+           "'frames'",
+           false, {}, over_words)};
 
 }  // namespace
 
-const ProbeInfo coordination{
-    "coordination",
-    "1",
-    "mean number of other particles that a particle touches",
-    contacts_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Coordination>(given); },
-    true};
-const ProbeInfo overlap{
-    "overlap", "1", "deepest overlap of two particles divided by the diameter of the smaller one", overlap_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Overlap>(given); }};
+ProbeInfo coordination() {
+    return {"coordination",           "1", "mean number of other particles that a particle touches", contacts_options,
+            make_probe<Coordination>, true};
+}
+ProbeInfo overlap() {
+    return {"overlap", "1", "deepest overlap of two particles divided by the diameter of the smaller one",
+            overlap_options, make_probe<Overlap>};
+}
 
 }  // namespace grainsweep::machine::probes

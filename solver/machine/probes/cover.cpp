@@ -1,6 +1,6 @@
 // View of a camera along the axis of a drum with light behind it: the cells whose centres a particle hides. Area, angle
 // and outline are computed from the mean image of all frames so far.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/probes/section.hpp"
 
 #include <array>
@@ -114,8 +114,8 @@ std::string flaw_of_cover(const Options& given) {
     return columns * columns <= most_image_cells ? "" : "\"cell\" makes more than 1000 by 1000 cells";
 }
 
-constexpr OptionSpec cell_option{"cell", OptionSpec::Kind::number, "m", "side of the cells",
-                                 true,   {0, 1e3, true, false}};
+constexpr Field cell_option =
+    option("cell", Field::Kind::quantity, "m", "side of the cells", true, {0, 1e3, true, false});
 constexpr std::array cover_options = {
     of_option, in_option, section_axis_option, section_through_option, section_radius_option, cell_option};
 constexpr std::array outline_options = {
@@ -125,12 +125,8 @@ constexpr std::array outline_options = {
     section_through_option,
     section_radius_option,
     cell_option,
-    OptionSpec{"reach",
-               OptionSpec::Kind::number,
-               "1",
-               "farthest column from the axis, as a share of the radius; default: 1",
-               false,
-               {0, 1, true, false}}};
+    option("reach", Field::Kind::quantity, "1", "farthest column from the axis, as a share of the radius; default: 1",
+           false, {0, 1, true, false})};
 
 template <OfCover of>
 std::unique_ptr<machine::Probe> make_cover(const Options& given) {
@@ -139,39 +135,46 @@ std::unique_ptr<machine::Probe> make_cover(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo cover{
-    "cover",
-    "1",
-    "1 for each cell across a drum whose centre a particle hides from a view along the axis, else 0",
-    cover_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<CoverImage>(given); },
-    false,
-    "cell: column + columns times row, columns = 2 ceil(radius/cell)",
-    flaw_of_cover};
-const ProbeInfo cover_angle{"cover_angle",
-                            "deg",
-                            "slope of the line through the heights of cover_outline",
-                            outline_options,
-                            make_cover<OfCover::angle>,
-                            false,
-                            {},
-                            flaw_of_cover};
-const ProbeInfo cover_area{"cover_area",
-                           "m2",
-                           "area of the cells of cover that are hidden in at least half of the frames so far",
-                           cover_options,
-                           make_cover<OfCover::area>,
-                           false,
-                           {},
-                           flaw_of_cover};
-const ProbeInfo cover_outline{
-    "cover_outline",
-    "m",
-    "height above the axis at which the mean of cover over the frames so far falls through 0.5, column by column",
-    outline_options,
-    make_cover<OfCover::outline>,
-    false,
-    "distance across the axis, m",
-    flaw_of_cover};
+ProbeInfo cover() {
+    return {"cover",
+            "1",
+            "1 for each cell across a drum whose centre a particle hides from a view along the axis, else 0",
+            cover_options,
+            make_probe<CoverImage>,
+            false,
+            "cell: column + columns times row, columns = 2 ceil(radius/cell)",
+            flaw_of_cover};
+}
+ProbeInfo cover_angle() {
+    return {"cover_angle",
+            "deg",
+            "slope of the line through the heights of cover_outline",
+            outline_options,
+            make_cover<OfCover::angle>,
+            false,
+            {},
+            flaw_of_cover};
+}
+ProbeInfo cover_area() {
+    return {"cover_area",
+            "m2",
+            "area of the cells of cover that are hidden in at least half of the frames so far",
+            cover_options,
+            make_cover<OfCover::area>,
+            false,
+            {},
+            flaw_of_cover};
+}
+ProbeInfo cover_outline() {
+    return {
+        "cover_outline",
+        "m",
+        "height above the axis at which the mean of cover over the frames so far falls through 0.5, column by column",
+        outline_options,
+        make_cover<OfCover::outline>,
+        false,
+        "distance across the axis, m",
+        flaw_of_cover};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -2,7 +2,7 @@
 // Gone particles count with the size that they had.
 //
 //     share = mass outside / mass of all
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <numbers>
@@ -48,8 +48,7 @@ private:
 };
 
 constexpr std::array discharge_options = {
-    of_option,
-    OptionSpec{"from", OptionSpec::Kind::region, "", "the region that they left, by centres; default: the domain"}};
+    of_option, option("from", Field::Kind::region, "", "the region that they left, by centres; default: the domain")};
 
 template <Discharge of>
 std::unique_ptr<machine::Probe> make_discharge(const Options& given) {
@@ -58,15 +57,22 @@ std::unique_ptr<machine::Probe> make_discharge(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo discharged_mass{"discharged_mass", "kg", "mass that has left a region or the domain", discharge_options,
-                                make_discharge<Discharge::mass>};
-const ProbeInfo discharged_number{"discharged_number", "1", "particles that have left a region or the domain",
-                                  discharge_options, make_discharge<Discharge::number>};
-const ProbeInfo discharged_diameters{"discharged_diameters", "m",
-                                     "sum of the diameters of the particles that have left a region or the domain",
-                                     discharge_options, make_discharge<Discharge::diameters>};
-const ProbeInfo discharged_share{"discharged_share", "1",
-                                 "mass that has left a region or the domain divided by that of all particles so far",
-                                 discharge_options, make_discharge<Discharge::share>};
+ProbeInfo discharged_mass() {
+    return {"discharged_mass", "kg", "mass that has left a region or the domain", discharge_options,
+            make_discharge<Discharge::mass>};
+}
+ProbeInfo discharged_number() {
+    return {"discharged_number", "1", "particles that have left a region or the domain", discharge_options,
+            make_discharge<Discharge::number>};
+}
+ProbeInfo discharged_diameters() {
+    return {"discharged_diameters", "m", "sum of the diameters of the particles that have left a region or the domain",
+            discharge_options, make_discharge<Discharge::diameters>};
+}
+ProbeInfo discharged_share() {
+    return {"discharged_share", "1",
+            "mass that has left a region or the domain divided by that of all particles so far", discharge_options,
+            make_discharge<Discharge::share>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -3,7 +3,7 @@
 //
 // The engine records every passage (dem/crossings.hpp), so the count is exact for any frames, also of particles that
 // are fed and leave between two of them.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -31,9 +31,9 @@ private:
 };
 
 constexpr std::array flow_options = {
-    of_option, OptionSpec{"in", OptionSpec::Kind::region, "", "the part of the plane: where the centre passes it"},
-    OptionSpec{"point", OptionSpec::Kind::vector, "m", "a point of the plane", true},
-    OptionSpec{"normal", OptionSpec::Kind::direction, "", "the direction that counts positive", true}};
+    of_option, option("in", Field::Kind::region, "", "the part of the plane: where the centre passes it"),
+    option("point", Field::Kind::vector, "m", "a point of the plane", true),
+    option("normal", Field::Kind::direction, "", "the direction that counts positive", true)};
 
 template <bool by_mass>
 std::unique_ptr<machine::Probe> make_flow(const Options& given) {
@@ -42,23 +42,27 @@ std::unique_ptr<machine::Probe> make_flow(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo flow_mass{"passed_mass",
-                          "kg",
-                          "mass that has passed through a plane; its slope is the mass flow",
-                          flow_options,
-                          make_flow<true>,
-                          false,
-                          {},
-                          nullptr,
-                          Source::passages};
-const ProbeInfo flow_number{"passed_number",
-                            "1",
-                            "particles that have passed through a plane",
-                            flow_options,
-                            make_flow<false>,
-                            false,
-                            {},
-                            nullptr,
-                            Source::passages};
+ProbeInfo flow_mass() {
+    return {"passed_mass",
+            "kg",
+            "mass that has passed through a plane; its slope is the mass flow",
+            flow_options,
+            make_flow<true>,
+            false,
+            {},
+            nullptr,
+            Source::passages};
+}
+ProbeInfo flow_number() {
+    return {"passed_number",
+            "1",
+            "particles that have passed through a plane",
+            flow_options,
+            make_flow<false>,
+            false,
+            {},
+            nullptr,
+            Source::passages};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,7 +1,7 @@
 // Granular temperature: a third of the mean square of the velocity about its mean, weighted by mass.
 //
 //     T = sum m |v - u|^2/(3 sum m),   u = sum m v/sum m
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -39,10 +39,9 @@ constexpr std::array granular_temperature_options = {of_option, in_option};
 
 }  // namespace
 
-const ProbeInfo granular_temperature{"granular_temperature", "m2/s2",
-                                     "a third of the mean square velocity about the mean", granular_temperature_options,
-                                     [](const Options& given) -> std::unique_ptr<machine::Probe> {
-                                         return std::make_unique<GranularTemperatureProbe>(given);
-                                     }};
+ProbeInfo granular_temperature() {
+    return {"granular_temperature", "m2/s2", "a third of the mean square velocity about the mean",
+            granular_temperature_options, make_probe<GranularTemperatureProbe>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,7 +1,7 @@
 // The shape of a heap on a plate, as solver/observables/heap.hpp defines it: columns and rings of the width "cell"
 // about the mass centre. Particles that never move belong to the plate.
 #include "solver/observables/heap.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/upright.hpp"
 
 namespace grainsweep::machine::probes {
@@ -45,10 +45,10 @@ std::string flaw_of_heap(const Options& given) {
 }
 
 constexpr Interval above_zero{0, std::numeric_limits<double>::infinity(), true, true};
-constexpr OptionSpec heap_cell_option{
-    "cell", OptionSpec::Kind::number, "m", "width of columns and rings: about one particle", true, above_zero};
-constexpr OptionSpec reach_option{
-    "reach", OptionSpec::Kind::number, "m", "radius of the outermost ring about the mass centre", true, above_zero};
+constexpr Field heap_cell_option =
+    option("cell", Field::Kind::quantity, "m", "width of columns and rings: about one particle", true, above_zero);
+constexpr Field reach_option =
+    option("reach", Field::Kind::quantity, "m", "radius of the outermost ring about the mass centre", true, above_zero);
 constexpr std::array<std::string_view, 2> angles = {"moments", "outline"};
 constexpr std::array heap_options = {of_option, in_option, from_option, along_option, heap_cell_option, reach_option};
 constexpr std::array heap_angle_options = {
@@ -58,50 +58,56 @@ constexpr std::array heap_angle_options = {
     along_option,
     heap_cell_option,
     reach_option,
-    OptionSpec{"by",
-               OptionSpec::Kind::word,
-               "",
-               "'moments': atan(2 z_c/<r>) within the first ring lower than half a cell, exact for an even cone; "
-               "'outline': slope of the rings between 0.2 and 0.8 of the height; default: moments",
-               false,
-               {},
-               angles}};
+    option("by", Field::Kind::word, "",
+           "'moments': atan(2 z_c/<r>) within the first ring lower than half a cell, exact for an even cone; "
+           "'outline': slope of the rings between 0.2 and 0.8 of the height; default: moments",
+           false, {}, angles)};
 
 }  // namespace
 
-const ProbeInfo heap_angle{
-    "heap_angle", "deg", "angle of repose of a heap", heap_angle_options, make_heap_angle, false, {}, flaw_of_heap};
-const ProbeInfo heap_height{"heap_height",
-                            "m",
-                            "height of a heap: the highest of the inner three rings",
-                            heap_options,
-                            make_heap<&HeapShape::height>,
-                            false,
-                            {},
-                            flaw_of_heap};
-const ProbeInfo heap_residual{"heap_residual",
-                              "m",
-                              "root mean square height of a heap's outline off the line of its slope",
-                              heap_options,
-                              make_heap<&HeapShape::residual>,
-                              false,
-                              {},
-                              flaw_of_heap};
-const ProbeInfo heap_run_out{"heap_run_out",
-                             "m",
-                             "distance from the mass centre within which nine tenths of the particles lie",
-                             heap_options,
-                             make_heap<&HeapShape::run_out>,
-                             false,
-                             {},
-                             flaw_of_heap};
-const ProbeInfo heap_outline{"heap_outline",
-                             "m",
-                             "mean height of a heap's surface in rings about the mass centre",
-                             heap_options,
-                             make_heap<nullptr>,
-                             false,
-                             "radius of the middle of the ring, m",
-                             flaw_of_heap};
+ProbeInfo heap_angle() {
+    return {"heap_angle", "deg",       "angle of repose of a heap", heap_angle_options, make_heap_angle, false,
+            {},           flaw_of_heap};
+}
+ProbeInfo heap_height() {
+    return {"heap_height",
+            "m",
+            "height of a heap: the highest of the inner three rings",
+            heap_options,
+            make_heap<&HeapShape::height>,
+            false,
+            {},
+            flaw_of_heap};
+}
+ProbeInfo heap_residual() {
+    return {"heap_residual",
+            "m",
+            "root mean square height of a heap's outline off the line of its slope",
+            heap_options,
+            make_heap<&HeapShape::residual>,
+            false,
+            {},
+            flaw_of_heap};
+}
+ProbeInfo heap_run_out() {
+    return {"heap_run_out",
+            "m",
+            "distance from the mass centre within which nine tenths of the particles lie",
+            heap_options,
+            make_heap<&HeapShape::run_out>,
+            false,
+            {},
+            flaw_of_heap};
+}
+ProbeInfo heap_outline() {
+    return {"heap_outline",
+            "m",
+            "mean height of a heap's surface in rings about the mass centre",
+            heap_options,
+            make_heap<nullptr>,
+            false,
+            "radius of the middle of the ring, m",
+            flaw_of_heap};
+}
 
 }  // namespace grainsweep::machine::probes

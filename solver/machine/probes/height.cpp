@@ -1,5 +1,5 @@
 // Heights against gravity, from a point: below which a share of the solid volume lies, and the mean.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/upright.hpp"
 
 #include <cmath>
@@ -71,23 +71,19 @@ constexpr std::array height_options = {
     in_option,
     from_option,
     along_option,
-    OptionSpec{"share",
-               OptionSpec::Kind::number,
-               "1",
-               "share of the solid volume below; default: 0.95",
-               false,
-               {0, 1, true, false}},
-    OptionSpec{
-        "of_sphere", OptionSpec::Kind::word, "", "'top' or 'centre' of the spheres; default: top", false, {}, ends}};
+    option("share", Field::Kind::quantity, "1", "share of the solid volume below; default: 0.95", false,
+           {0, 1, true, false}),
+    option("of_sphere", Field::Kind::word, "", "'top' or 'centre' of the spheres; default: top", false, {}, ends)};
 constexpr std::array mean_height_options = {of_option, in_option, from_option, along_option};
 
 }  // namespace
 
-const ProbeInfo height_of_share{
-    "height", "m", "height below which a share of the solid volume lies: the top of a bed", height_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<HeightOfShare>(given); }};
-const ProbeInfo mean_height{
-    "mean_height", "m", "mean height, weighted by volume", mean_height_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<MeanHeight>(given); }};
+ProbeInfo height_of_share() {
+    return {"height", "m", "height below which a share of the solid volume lies: the top of a bed", height_options,
+            make_probe<HeightOfShare>};
+}
+ProbeInfo mean_height() {
+    return {"mean_height", "m", "mean height, weighted by volume", mean_height_options, make_probe<MeanHeight>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -12,7 +12,7 @@
 // missing.
 #include "solver/machine/binning.hpp"
 #include "solver/machine/partner_order.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 
 #include <algorithm>
 #include <array>
@@ -113,28 +113,24 @@ private:
 
 constexpr std::array<std::string_view, 3> impact_parts = {"all", "normal", "tangential"};
 constexpr Interval impact_energies{0, 1e9, true, false};
-constexpr OptionSpec impact_of{"of", OptionSpec::Kind::species, "",
-                               "species one of which takes part in the contact; default: all"};
-constexpr OptionSpec impact_wall{"wall", OptionSpec::Kind::walls, "",
-                                 "only contacts with this wall, or these; default: all contacts"};
-constexpr OptionSpec impact_part{
-    "part",
-    OptionSpec::Kind::word,
-    "",
-    "'all', 'normal': by the normal force, 'tangential': by friction and rolling; default: "
-    "all",
-    false,
-    {},
-    impact_parts};
+constexpr Field impact_of =
+    option("of", Field::Kind::species, "", "species one of which takes part in the contact; default: all");
+constexpr Field impact_wall =
+    option("wall", Field::Kind::walls, "", "only contacts with this wall, or these; default: all contacts");
+constexpr Field impact_part =
+    option("part", Field::Kind::word, "",
+           "'all', 'normal': by the normal force, 'tangential': by friction and rolling; default: "
+           "all",
+           false, {}, impact_parts);
 constexpr std::array impact_number_options = {impact_of, impact_wall};
 constexpr std::array impact_options = {impact_of, impact_wall, impact_part};
 constexpr std::array impact_spectrum_options = {
     impact_of,
     impact_wall,
     impact_part,
-    OptionSpec{"from", OptionSpec::Kind::number, "J", "where the first bin begins; bins are equal in the logarithm",
-               true, impact_energies},
-    OptionSpec{"to", OptionSpec::Kind::number, "J", "where the last bin ends", true, impact_energies},
+    option("from", Field::Kind::quantity, "J", "where the first bin begins; bins are equal in the logarithm", true,
+           impact_energies),
+    option("to", Field::Kind::quantity, "J", "where the last bin ends", true, impact_energies),
     bins_option};
 
 template <bool by_number>
@@ -144,35 +140,43 @@ std::unique_ptr<machine::Probe> make_impacts(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo impact_energy{"impact_energy",
-                              "J",
-                              "energy that contacts have dissipated in the phases that count",
-                              impact_options,
-                              make_impacts<false>,
-                              false,
-                              {},
-                              nullptr,
-                              Source::steps};
-const ProbeInfo impact_energy_spectrum{"impact_energy_spectrum",
-                                       "J",
-                                       "the same of contacts that have ended, by their energy",
-                                       impact_spectrum_options,
-                                       make_impacts<false>,
-                                       false,
-                                       "energy of a contact, J",
-                                       flaw_of_bins_along,
-                                       Source::steps};
-const ProbeInfo impact_number{
-    "impact_number", "1",          "contacts that have ended", impact_number_options, make_impacts<true>, false, {},
-    nullptr,         Source::steps};
-const ProbeInfo impact_number_spectrum{"impact_number_spectrum",
-                                       "1",
-                                       "the same by the energy that they dissipated",
-                                       impact_spectrum_options,
-                                       make_impacts<true>,
-                                       false,
-                                       "energy of a contact, J",
-                                       flaw_of_bins_along,
-                                       Source::steps};
+ProbeInfo impact_energy() {
+    return {"impact_energy",
+            "J",
+            "energy that contacts have dissipated in the phases that count",
+            impact_options,
+            make_impacts<false>,
+            false,
+            {},
+            nullptr,
+            Source::steps};
+}
+ProbeInfo impact_energy_spectrum() {
+    return {"impact_energy_spectrum",
+            "J",
+            "the same of contacts that have ended, by their energy",
+            impact_spectrum_options,
+            make_impacts<false>,
+            false,
+            "energy of a contact, J",
+            flaw_of_bins_along,
+            Source::steps};
+}
+ProbeInfo impact_number() {
+    return {
+        "impact_number", "1",          "contacts that have ended", impact_number_options, make_impacts<true>, false, {},
+        nullptr,         Source::steps};
+}
+ProbeInfo impact_number_spectrum() {
+    return {"impact_number_spectrum",
+            "1",
+            "the same by the energy that they dissipated",
+            impact_spectrum_options,
+            make_impacts<true>,
+            false,
+            "energy of a contact, J",
+            flaw_of_bins_along,
+            Source::steps};
+}
 
 }  // namespace grainsweep::machine::probes

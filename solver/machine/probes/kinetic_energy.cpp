@@ -1,5 +1,5 @@
 // Kinetic energy of translation: sum of m v^2/2.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -24,9 +24,9 @@ constexpr std::array kinetic_energy_options = {of_option, in_option};
 
 }  // namespace
 
-const ProbeInfo kinetic_energy{"kinetic_energy", "J", "kinetic energy of translation", kinetic_energy_options,
-                               [](const Options& given) -> std::unique_ptr<machine::Probe> {
-                                   return std::make_unique<KineticEnergyProbe>(given);
-                               }};
+ProbeInfo kinetic_energy() {
+    return {"kinetic_energy", "J", "kinetic energy of translation", kinetic_energy_options,
+            make_probe<KineticEnergyProbe>};
+}
 
 }  // namespace grainsweep::machine::probes

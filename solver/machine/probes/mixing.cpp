@@ -7,7 +7,7 @@
 //     M = (s0^2 - s^2)/(s0^2 - sr^2),        v_s = sum v^2/sum v over the spheres of a species
 //
 // over the cells that hold at least a fifth of their volume. 0: apart, 1: mixed as by chance.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <cmath>
@@ -101,32 +101,29 @@ std::string flaw_of_lacey(const Options& given) {
 }
 
 constexpr std::array lacey_options = {
-    OptionSpec{"of", OptionSpec::Kind::species, "", "the two species", true}, in_option,
-    OptionSpec{
-        "cell", OptionSpec::Kind::number, "m", "side of the cubic cells: three to five particles", true, {1e-6, 1e3}},
-    OptionSpec{"origin", OptionSpec::Kind::vector, "m", "a corner of a cell; default: the origin"},
-    OptionSpec{"least",
-               OptionSpec::Kind::number,
-               "1",
-               "solid share of a cell's volume from which on it counts; default: 0.2",
-               false,
-               {0, 1}}};
-constexpr std::array share_options = {
-    OptionSpec{"of", OptionSpec::Kind::species, "", "the species whose share it is", true}, in_option};
+    option("of", Field::Kind::species, "", "the two species", true), in_option,
+    option("cell", Field::Kind::quantity, "m", "side of the cubic cells: three to five particles", true, {1e-6, 1e3}),
+    option("origin", Field::Kind::vector, "m", "a corner of a cell; default: the origin"),
+    option("least", Field::Kind::quantity, "1", "solid share of a cell's volume from which on it counts; default: 0.2",
+           false, {0, 1})};
+constexpr std::array share_options = {option("of", Field::Kind::species, "", "the species whose share it is", true),
+                                      in_option};
 
 }  // namespace
 
-const ProbeInfo lacey{
-    "lacey",
-    "1",
-    "Lacey index of two species: 0 apart, 1 mixed as by chance",
-    lacey_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Lacey>(given); },
-    false,
-    {},
-    flaw_of_lacey};
-const ProbeInfo mass_share{
-    "mass_share", "1", "mass of some species divided by that of all, in a region", share_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<MassShare>(given); }};
+ProbeInfo lacey() {
+    return {"lacey",
+            "1",
+            "Lacey index of two species: 0 apart, 1 mixed as by chance",
+            lacey_options,
+            make_probe<Lacey>,
+            false,
+            {},
+            flaw_of_lacey};
+}
+ProbeInfo mass_share() {
+    return {"mass_share", "1", "mass of some species divided by that of all, in a region", share_options,
+            make_probe<MassShare>};
+}
 
 }  // namespace grainsweep::machine::probes

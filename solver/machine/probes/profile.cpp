@@ -1,7 +1,7 @@
 // Profiles along a direction in equal bins. The value of a bin is the mean of a quantity of its particles, weighted by
 // volume, or the sum of their volumes.
 #include "solver/machine/binning.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -57,29 +57,26 @@ constexpr std::array<std::string_view, 3> quantities = {"solid_volume", "velocit
 constexpr std::array profile_options = {
     of_option,
     in_option,
-    OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the coordinate", true},
-    OptionSpec{"from", OptionSpec::Kind::number, "m", "where the first bin begins", true},
-    OptionSpec{"to", OptionSpec::Kind::number, "m", "where the last bin ends", true},
+    option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
+    option("from", Field::Kind::quantity, "m", "where the first bin begins", true),
+    option("to", Field::Kind::quantity, "m", "where the last bin ends", true),
     bins_option,
-    OptionSpec{"quantity",
-               OptionSpec::Kind::word,
-               "",
-               "'solid_volume' (m3), 'velocity' (m/s) or 'share' of the species by volume; default: solid_volume",
-               false,
-               {},
-               quantities},
-    OptionSpec{"velocity_along", OptionSpec::Kind::direction, "", "the component of the velocity; default: x"}};
+    option("quantity", Field::Kind::word, "",
+           "'solid_volume' (m3), 'velocity' (m/s) or 'share' of the species by volume; default: solid_volume", false,
+           {}, quantities),
+    option("velocity_along", Field::Kind::direction, "", "the component of the velocity; default: x")};
 
 }  // namespace
 
-const ProbeInfo profile{
-    "profile",
-    "SI",
-    "solid volume, velocity or share of species in bins along a direction",
-    profile_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Profile>(given); },
-    false,
-    "centre of the bin, m",
-    flaw_of_bins_along};
+ProbeInfo profile() {
+    return {"profile",
+            "SI",
+            "solid volume, velocity or share of species in bins along a direction",
+            profile_options,
+            make_probe<Profile>,
+            false,
+            "centre of the bin, m",
+            flaw_of_bins_along};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,5 +1,5 @@
 // Mean distance from an axis, weighted by volume: the axis of the machine, or one through the centre of the bed.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -47,21 +47,16 @@ private:
 
 constexpr std::array<std::string_view, 2> abouts = {"axis", "bed"};
 constexpr std::array radius_options = {
-    of_option, in_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the direction of the axis", true},
-    OptionSpec{"through", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"},
-    OptionSpec{
-        "about",
-        OptionSpec::Kind::word,
-        "",
-        "'axis': the axis through that point; 'bed': through the centre of volume of all particles; default: axis",
-        false,
-        {},
-        abouts}};
+    of_option, in_option, option("axis", Field::Kind::direction, "", "the direction of the axis", true),
+    option("through", Field::Kind::vector, "m", "a point on the axis; default: the origin"),
+    option("about", Field::Kind::word, "",
+           "'axis': the axis through that point; 'bed': through the centre of volume of all particles; default: axis",
+           false, {}, abouts)};
 
 }  // namespace
 
-const ProbeInfo radius{
-    "radius", "m", "mean distance from an axis, weighted by volume", radius_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<RadiusProbe>(given); }};
+ProbeInfo radius() {
+    return {"radius", "m", "mean distance from an axis, weighted by volume", radius_options, make_probe<RadiusProbe>};
+}
 
 }  // namespace grainsweep::machine::probes

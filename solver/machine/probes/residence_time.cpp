@@ -4,7 +4,7 @@
 // The engine records every passage (dem/crossings.hpp), so the times are exact to a step for any frames. What starts
 // behind the first plane is counted once it has passed it, and what has not arrived is not counted.
 #include "solver/machine/binning.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <cmath>
@@ -80,23 +80,20 @@ std::string flaw_of_residence_time(const Options& given) {
     return given.has("longest") ? flaw_of_bins(given, 0, given.number("longest")) : "";
 }
 
-constexpr OptionSpec residence_along{"along", OptionSpec::Kind::direction, "",
-                                     "the direction across both planes, from one to the other", true};
-constexpr OptionSpec residence_from{"from", OptionSpec::Kind::number, "m", "where the first plane is along it", true};
-constexpr OptionSpec residence_to{"to", OptionSpec::Kind::number, "m", "where the second plane is along it", true};
+constexpr Field residence_along =
+    option("along", Field::Kind::direction, "", "the direction across both planes, from one to the other", true);
+constexpr Field residence_from = option("from", Field::Kind::quantity, "m", "where the first plane is along it", true);
+constexpr Field residence_to = option("to", Field::Kind::quantity, "m", "where the second plane is along it", true);
 constexpr std::array residence_options = {of_option, in_option, residence_along, residence_from, residence_to};
-constexpr std::array residence_density_options = {of_option,
-                                                  in_option,
-                                                  residence_along,
-                                                  residence_from,
-                                                  residence_to,
-                                                  OptionSpec{"longest",
-                                                             OptionSpec::Kind::number,
-                                                             "s",
-                                                             "residence time at which the last bin ends",
-                                                             true,
-                                                             {0, 1e9, true, false}},
-                                                  bins_option};
+constexpr std::array residence_density_options = {
+    of_option,
+    in_option,
+    residence_along,
+    residence_from,
+    residence_to,
+    option("longest", Field::Kind::quantity, "s", "residence time at which the last bin ends", true,
+           {0, 1e9, true, false}),
+    bins_option};
 
 template <OfResidence what>
 std::unique_ptr<machine::Probe> make_residence(const Options& given) {
@@ -105,33 +102,39 @@ std::unique_ptr<machine::Probe> make_residence(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo residence_time{"residence_time",
-                               "s",
-                               "mean time of the particles so far from one plane to another",
-                               residence_options,
-                               make_residence<OfResidence::mean>,
-                               false,
-                               {},
-                               flaw_of_residence_time,
-                               Source::passages};
-const ProbeInfo residence_time_sd{"residence_time_sd",
-                                  "s",
-                                  "standard deviation of those times",
-                                  residence_options,
-                                  make_residence<OfResidence::deviation>,
-                                  false,
-                                  {},
-                                  flaw_of_residence_time,
-                                  Source::passages};
+ProbeInfo residence_time() {
+    return {"residence_time",
+            "s",
+            "mean time of the particles so far from one plane to another",
+            residence_options,
+            make_residence<OfResidence::mean>,
+            false,
+            {},
+            flaw_of_residence_time,
+            Source::passages};
+}
+ProbeInfo residence_time_sd() {
+    return {"residence_time_sd",
+            "s",
+            "standard deviation of those times",
+            residence_options,
+            make_residence<OfResidence::deviation>,
+            false,
+            {},
+            flaw_of_residence_time,
+            Source::passages};
+}
 
-const ProbeInfo residence_time_density{"residence_time_density",
-                                       "1/s",
-                                       "probability density of those times",
-                                       residence_density_options,
-                                       make_residence<OfResidence::density>,
-                                       false,
-                                       "residence time, s",
-                                       flaw_of_residence_time,
-                                       Source::passages};
+ProbeInfo residence_time_density() {
+    return {"residence_time_density",
+            "1/s",
+            "probability density of those times",
+            residence_density_options,
+            make_residence<OfResidence::density>,
+            false,
+            "residence time, s",
+            flaw_of_residence_time,
+            Source::passages};
+}
 
 }  // namespace grainsweep::machine::probes

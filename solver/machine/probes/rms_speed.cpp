@@ -1,5 +1,5 @@
 // Root mean square speed of the particles that can move; 0 where there are none.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/upright.hpp"
 #include "solver/observables/heap.hpp"
 
@@ -19,8 +19,8 @@ constexpr std::array rms_speed_options = {of_option, in_option};
 
 }  // namespace
 
-const ProbeInfo rms_speed{
-    "rms_speed", "m/s", "root mean square speed; 0 without particles", rms_speed_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<RmsSpeed>(given); }};
+ProbeInfo rms_speed() {
+    return {"rms_speed", "m/s", "root mean square speed; 0 without particles", rms_speed_options, make_probe<RmsSpeed>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -8,15 +8,15 @@
 
 namespace grainsweep::machine {
 
-inline constexpr OptionSpec section_axis_option{
-    "axis", OptionSpec::Kind::direction, "",
-    "the axis of the drum; angles are positive where turning about it, right hand, raises the bed", true};
-inline constexpr OptionSpec section_through_option{"through", OptionSpec::Kind::vector, "m",
-                                                   "a point on the axis; default: the origin"};
-inline constexpr OptionSpec section_radius_option{"radius", OptionSpec::Kind::number, "m", "inner radius of the drum",
-                                                  true,     {0, 1e3, true, false}};
-inline constexpr OptionSpec section_diameter_option{
-    "diameter", OptionSpec::Kind::number, "m", "diameter D of the particles", true, {0, 1e3, true, false}};
+inline constexpr Field section_axis_option =
+    option("axis", Field::Kind::direction, "",
+           "the axis of the drum; angles are positive where turning about it, right hand, raises the bed", true);
+inline constexpr Field section_through_option =
+    option("through", Field::Kind::vector, "m", "a point on the axis; default: the origin");
+inline constexpr Field section_radius_option =
+    option("radius", Field::Kind::quantity, "m", "inner radius of the drum", true, {0, 1e3, true, false});
+inline constexpr Field section_diameter_option =
+    option("diameter", Field::Kind::quantity, "m", "diameter D of the particles", true, {0, 1e3, true, false});
 
 /// Selected particles in the plane across an axis, with "up" against gravity.
 class SectionLook {

@@ -1,5 +1,5 @@
 // Solid fraction of a region: solid volume of the spheres with centres in it, divided by the volume of the region.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -21,7 +21,7 @@ private:
 };
 
 constexpr std::array solid_fraction_options = {
-    of_option, OptionSpec{"in", OptionSpec::Kind::region, "", "the region: a box, cylinder or ball", true}};
+    of_option, option("in", Field::Kind::region, "", "the region: a box, cylinder or ball", true)};
 
 std::string flaw_of_solid_fraction(const Options& given) {
     return given.region("in")->volume() ? "" : "a solid fraction needs a region with a volume: a box, cylinder or ball";
@@ -29,14 +29,15 @@ std::string flaw_of_solid_fraction(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo solid_fraction{
-    "solid_fraction",
-    "1",
-    "solid volume divided by the volume of a region, by centres",
-    solid_fraction_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<SolidFractionProbe>(given); },
-    false,
-    {},
-    flaw_of_solid_fraction};
+ProbeInfo solid_fraction() {
+    return {"solid_fraction",
+            "1",
+            "solid volume divided by the volume of a region, by centres",
+            solid_fraction_options,
+            make_probe<SolidFractionProbe>,
+            false,
+            {},
+            flaw_of_solid_fraction};
+}
 
 }  // namespace grainsweep::machine::probes

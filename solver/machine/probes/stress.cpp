@@ -11,7 +11,7 @@
 //     pressure = (s_xx + s_yy + s_zz)/3,   deviator = sqrt(3/2 s'_ab s'_ab), s' without the pressure, symmetric
 #include "solver/machine/binning.hpp"
 #include "solver/machine/contact_place.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <cmath>
@@ -151,31 +151,25 @@ std::string flaw_of_stress_profile(const Options& given) {
 
 constexpr std::array<std::string_view, 3> stress_quantities = {"pressure", "deviator", "component"};
 constexpr std::array<std::string_view, 3> stress_parts = {"all", "contact", "kinetic"};
-constexpr OptionSpec stress_quantity{"quantity",
-                                     OptionSpec::Kind::word,
-                                     "",
-                                     "'pressure', 'deviator' (von Mises) or 'component'; default: pressure",
-                                     false,
-                                     {},
-                                     stress_quantities};
-constexpr OptionSpec stress_force{"force", OptionSpec::Kind::direction, "",
-                                  "of a component: the direction of the force"};
-constexpr OptionSpec stress_face{"face", OptionSpec::Kind::direction, "",
-                                 "of a component: the normal of the face it acts on"};
-constexpr OptionSpec stress_part{
-    "part",      OptionSpec::Kind::word,
-    "",          "'all', 'contact': by forces, 'kinetic': by motion about the mean; default: all",
-    false,       {},
-    stress_parts};
+constexpr Field stress_quantity =
+    option("quantity", Field::Kind::word, "", "'pressure', 'deviator' (von Mises) or 'component'; default: pressure",
+           false, {}, stress_quantities);
+constexpr Field stress_force =
+    option("force", Field::Kind::direction, "", "of a component: the direction of the force");
+constexpr Field stress_face =
+    option("face", Field::Kind::direction, "", "of a component: the normal of the face it acts on");
+constexpr Field stress_part =
+    option("part", Field::Kind::word, "",
+           "'all', 'contact': by forces, 'kinetic': by motion about the mean; default: all", false, {}, stress_parts);
 constexpr std::array stress_options = {
-    OptionSpec{"in", OptionSpec::Kind::region, "", "the region: a box, cylinder or ball", true}, stress_quantity,
-    stress_force, stress_face, stress_part};
+    option("in", Field::Kind::region, "", "the region: a box, cylinder or ball", true), stress_quantity, stress_force,
+    stress_face, stress_part};
 constexpr std::array stress_profile_options = {
-    OptionSpec{"in", OptionSpec::Kind::region, "", "what bounds the slabs; default: nothing"},
-    OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction across the slabs", true},
-    OptionSpec{"from", OptionSpec::Kind::number, "m", "where the first slab begins", true},
-    OptionSpec{"to", OptionSpec::Kind::number, "m", "where the last slab ends", true},
-    OptionSpec{"section", OptionSpec::Kind::number, "m2", "area of a slab", true, {0, 1e6, true, false}},
+    option("in", Field::Kind::region, "", "what bounds the slabs; default: nothing"),
+    option("along", Field::Kind::direction, "", "the direction across the slabs", true),
+    option("from", Field::Kind::quantity, "m", "where the first slab begins", true),
+    option("to", Field::Kind::quantity, "m", "where the last slab ends", true),
+    option("section", Field::Kind::quantity, "m2", "area of a slab", true, {0, 1e6, true, false}),
     bins_option,
     stress_quantity,
     stress_force,
@@ -188,21 +182,25 @@ std::unique_ptr<machine::Probe> make_stress(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo stress{"stress",
-                       "Pa",
-                       "stress of the powder in a region, compression positive",
-                       stress_options,
-                       make_stress,
-                       true,
-                       {},
-                       flaw_of_stress};
-const ProbeInfo stress_profile{"stress_profile",
-                               "Pa",
-                               "the same in slabs across a direction",
-                               stress_profile_options,
-                               make_stress,
-                               true,
-                               "centre of the slab, m",
-                               flaw_of_stress_profile};
+ProbeInfo stress() {
+    return {"stress",
+            "Pa",
+            "stress of the powder in a region, compression positive",
+            stress_options,
+            make_stress,
+            true,
+            {},
+            flaw_of_stress};
+}
+ProbeInfo stress_profile() {
+    return {"stress_profile",
+            "Pa",
+            "the same in slabs across a direction",
+            stress_profile_options,
+            make_stress,
+            true,
+            "centre of the slab, m",
+            flaw_of_stress_profile};
+}
 
 }  // namespace grainsweep::machine::probes

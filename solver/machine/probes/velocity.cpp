@@ -1,7 +1,7 @@
 // Mean velocity along a direction, weighted by mass, and its sum, the momentum; mean spin about a direction.
 //
 //     velocity = sum m v . e / sum m          momentum = sum m v . e          spin = sum m w . e / sum m
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -30,7 +30,7 @@ private:
 };
 
 constexpr std::array velocity_options = {
-    of_option, in_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true}};
+    of_option, in_option, option("along", Field::Kind::direction, "", "the direction of the component", true)};
 
 template <VelocityOf what>
 std::unique_ptr<machine::Probe> make_velocity(const Options& given) {
@@ -39,11 +39,17 @@ std::unique_ptr<machine::Probe> make_velocity(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo velocity{"velocity", "m/s", "mean velocity along a direction, weighted by mass", velocity_options,
-                         make_velocity<VelocityOf::mean>};
-const ProbeInfo momentum{"momentum", "kg m/s", "sum of mass times velocity along a direction", velocity_options,
-                         make_velocity<VelocityOf::sum>};
-const ProbeInfo spin{"spin", "rad/s", "mean angular velocity about a direction, right hand, weighted by mass",
-                     velocity_options, make_velocity<VelocityOf::spin>};
+ProbeInfo velocity() {
+    return {"velocity", "m/s", "mean velocity along a direction, weighted by mass", velocity_options,
+            make_velocity<VelocityOf::mean>};
+}
+ProbeInfo momentum() {
+    return {"momentum", "kg m/s", "sum of mass times velocity along a direction", velocity_options,
+            make_velocity<VelocityOf::sum>};
+}
+ProbeInfo spin() {
+    return {"spin", "rad/s", "mean angular velocity about a direction, right hand, weighted by mass", velocity_options,
+            make_velocity<VelocityOf::spin>};
+}
 
 }  // namespace grainsweep::machine::probes

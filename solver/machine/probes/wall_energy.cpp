@@ -10,7 +10,7 @@
 // out of the motion of powder and wall; contact_energy is the stored part of this loss. wall_work is the work of the
 // forces on the powder at the speed that the laws use. `contacts` is their work on the wall at the mean speed of the
 // step.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <array>
@@ -80,37 +80,34 @@ private:
 };
 
 constexpr std::array wall_energy_options = {
-    OptionSpec{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true},
-    OptionSpec{
-        "part",
-        OptionSpec::Kind::word,
-        "",
-        "'kinetic': the energy now; its change since the start is the work of 'contacts', of the wall's 'own' force "
-        "and weight, of the 'bounds' of its speed, the error of 'turning', and the 'residual'; default: 'kinetic'",
-        false,
-        {},
-        energy_parts}};
+    option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true),
+    option("part", Field::Kind::word, "",
+           "'kinetic': the energy now; its change since the start is the work of 'contacts', of the wall's 'own' force "
+           "and weight, of the 'bounds' of its speed, the error of 'turning', and the 'residual'; default: 'kinetic'",
+           false, {}, energy_parts)};
 constexpr std::array contact_energy_options = {
-    OptionSpec{"wall", OptionSpec::Kind::walls, "", "only contacts with this wall, or these; default: all contacts"}};
+    option("wall", Field::Kind::walls, "", "only contacts with this wall, or these; default: all contacts")};
 
 }  // namespace
 
-const ProbeInfo contact_energy{
-    "contact_energy",
-    "J",
-    "energy that contacts store in their springs and by cohesion",
-    contact_energy_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<ContactEnergy>(given); },
-    true};
-const ProbeInfo wall_energy{
-    "wall_energy",
-    "J",
-    "kinetic energy of pressed, driven and free walls, or a part of its balance",
-    wall_energy_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<WallEnergy>(given); },
-    false,
-    {},
-    nullptr,
-    Source::sums};
+ProbeInfo contact_energy() {
+    return {"contact_energy",
+            "J",
+            "energy that contacts store in their springs and by cohesion",
+            contact_energy_options,
+            make_probe<ContactEnergy>,
+            true};
+}
+ProbeInfo wall_energy() {
+    return {"wall_energy",
+            "J",
+            "kinetic energy of pressed, driven and free walls, or a part of its balance",
+            wall_energy_options,
+            make_probe<WallEnergy>,
+            false,
+            {},
+            nullptr,
+            Source::sums};
+}
 
 }  // namespace grainsweep::machine::probes

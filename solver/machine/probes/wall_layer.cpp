@@ -1,5 +1,5 @@
 // Speed of the particles that a turning drum carries along.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/probes/section.hpp"
 
 #include <array>
@@ -27,10 +27,10 @@ constexpr std::array wall_layer_options = {
 
 }  // namespace
 
-const ProbeInfo wall_layer_speed{
-    "wall_layer_speed", "m/s",
-    "mean speed about the axis of a drum, of the particles nearer than 0.1 D to the lower half of its wall",
-    wall_layer_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<WallLayer>(given); }};
+ProbeInfo wall_layer_speed() {
+    return {"wall_layer_speed", "m/s",
+            "mean speed about the axis of a drum, of the particles nearer than 0.1 D to the lower half of its wall",
+            wall_layer_options, make_probe<WallLayer>};
+}
 
 }  // namespace grainsweep::machine::probes

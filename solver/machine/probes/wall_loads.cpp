@@ -3,7 +3,7 @@
 // Of several walls together. Means of force, torque and pressure are the impulse divided by its time: integrals over
 // every step, which no choice of frames changes. Work: work of the walls' forces on the powder since the start. It does
 // not include the work of moments against rolling resistance.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -88,49 +88,58 @@ private:
     Vec3 axis_;
 };
 
-constexpr OptionSpec wall_option{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true};
+constexpr Field wall_option = option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true);
 constexpr std::array force_options = {
-    wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true}};
+    wall_option, option("along", Field::Kind::direction, "", "the direction of the component", true)};
 constexpr std::array torque_options = {
-    wall_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true},
-    OptionSpec{"about", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"}};
-constexpr std::array rolling_options = {
-    wall_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true}};
+    wall_option, option("axis", Field::Kind::direction, "", "the axis, right hand", true),
+    option("about", Field::Kind::vector, "m", "a point on the axis; default: the origin")};
+constexpr std::array rolling_options = {wall_option,
+                                        option("axis", Field::Kind::direction, "", "the axis, right hand", true)};
 constexpr std::array work_options = {wall_option};
 constexpr std::array pressure_options = {
-    wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true},
-    OptionSpec{"area", OptionSpec::Kind::number, "m2", "the area that carries it", true, {0, 1e6, true, false}}};
-
-template <class P>
-std::unique_ptr<machine::Probe> make_load(const Options& given) {
-    return std::make_unique<P>(given);
-}
+    wall_option, option("along", Field::Kind::direction, "", "the direction of the component", true),
+    option("area", Field::Kind::quantity, "m2", "the area that carries it", true, {0, 1e6, true, false})};
 
 /// Returns the row of a load whose integral over time the engine keeps.
 template <class P>
 ProbeInfo integrated_load(std::string_view name, std::string_view unit, std::string_view meaning,
-                          std::span<const OptionSpec> options) {
-    ProbeInfo row{name, unit, meaning, options, make_load<P>};
+                          std::span<const Field> options) {
+    ProbeInfo row{name, unit, meaning, options, make_probe<P>};
     row.source = Source::loads;
     return row;
 }
 
 }  // namespace
 
-const ProbeInfo rolling_torque{"rolling_torque",
-                               "N m",
-                               "sum of the moments on particles by which walls resist rolling, about an axis",
-                               rolling_options,
-                               make_load<RollingTorque>,
-                               true};
-const ProbeInfo wall_force =
-    integrated_load<Force>("wall_force", "N", "force of the powder on walls, a component", force_options);
-const ProbeInfo wall_pressure = integrated_load<Force>(
-    "wall_pressure", "Pa", "force of the powder on walls, a component, divided by an area", pressure_options);
-const ProbeInfo wall_torque =
-    integrated_load<Torque>("wall_torque", "N m", "torque of the powder on walls about an axis", torque_options);
-const ProbeInfo wall_work{
-    "wall_work", "J",         "work of walls on the powder since the start", work_options, make_load<Work>, false, {},
-    nullptr,     Source::sums};
+ProbeInfo rolling_torque() {
+    return {"rolling_torque",
+            "N m",
+            "sum of the moments on particles by which walls resist rolling, about an axis",
+            rolling_options,
+            make_probe<RollingTorque>,
+            true};
+}
+ProbeInfo wall_force() {
+    return integrated_load<Force>("wall_force", "N", "force of the powder on walls, a component", force_options);
+}
+ProbeInfo wall_pressure() {
+    return integrated_load<Force>("wall_pressure", "Pa",
+                                  "force of the powder on walls, a component, divided by an area", pressure_options);
+}
+ProbeInfo wall_torque() {
+    return integrated_load<Torque>("wall_torque", "N m", "torque of the powder on walls about an axis", torque_options);
+}
+ProbeInfo wall_work() {
+    return {"wall_work",
+            "J",
+            "work of walls on the powder since the start",
+            work_options,
+            make_probe<Work>,
+            false,
+            {},
+            nullptr,
+            Source::sums};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -1,6 +1,6 @@
 // Places of walls: the distance that a point of a wall has moved along a direction, and the angle by which the wall has
 // turned.
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 #include <algorithm>
@@ -60,22 +60,22 @@ private:
     Vec3 axis_;
 };
 
-constexpr OptionSpec placed_wall{"wall", OptionSpec::Kind::walls, "", "the wall; of a list the first", true};
+constexpr Field placed_wall = option("wall", Field::Kind::walls, "", "the wall; of a list the first", true);
 constexpr std::array position_of_wall_options = {
-    placed_wall, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction", true},
-    OptionSpec{"of", OptionSpec::Kind::vector, "m",
-               "the point of the wall, where it is at the start; default: the origin"}};
-constexpr std::array angle_of_wall_options = {
-    placed_wall, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true}};
+    placed_wall, option("along", Field::Kind::direction, "", "the direction", true),
+    option("of", Field::Kind::vector, "m", "the point of the wall, where it is at the start; default: the origin")};
+constexpr std::array angle_of_wall_options = {placed_wall,
+                                              option("axis", Field::Kind::direction, "", "the axis, right hand", true)};
 
 }  // namespace
 
-const ProbeInfo wall_angle{
-    "wall_angle", "deg", "angle by which a wall has turned since the start; of a free body within half a turn",
-    angle_of_wall_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<AngleOfWall>(given); }};
-const ProbeInfo wall_position{
-    "wall_position", "m", "way of a point of a wall since the start, along a direction", position_of_wall_options,
-    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<PositionOfWall>(given); }};
+ProbeInfo wall_angle() {
+    return {"wall_angle", "deg", "angle by which a wall has turned since the start; of a free body within half a turn",
+            angle_of_wall_options, make_probe<AngleOfWall>};
+}
+ProbeInfo wall_position() {
+    return {"wall_position", "m", "way of a point of a wall since the start, along a direction",
+            position_of_wall_options, make_probe<PositionOfWall>};
+}
 
 }  // namespace grainsweep::machine::probes

@@ -8,7 +8,7 @@
 // while a wall turns under it.
 #include "solver/machine/binning.hpp"
 #include "solver/machine/contact_place.hpp"
-#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
@@ -66,17 +66,17 @@ private:
     std::vector<double> in_bins_;
 };
 
-constexpr OptionSpec worn_wall{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true};
-constexpr OptionSpec worn_in{"in", OptionSpec::Kind::region, "",
-                             "the region in which contacts count; default: everywhere"};
+constexpr Field worn_wall = option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true);
+constexpr Field worn_in =
+    option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
 constexpr std::array wear_options = {worn_wall, of_option, worn_in};
 constexpr std::array wear_profile_options = {
     worn_wall,
     of_option,
     worn_in,
-    OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the coordinate", true},
-    OptionSpec{"from", OptionSpec::Kind::number, "m", "where the first bin begins", true},
-    OptionSpec{"to", OptionSpec::Kind::number, "m", "where the last bin ends", true},
+    option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
+    option("from", Field::Kind::quantity, "m", "where the first bin begins", true),
+    option("to", Field::Kind::quantity, "m", "where the last bin ends", true),
     bins_option};
 
 std::unique_ptr<machine::Probe> make_wear(const Options& given) {
@@ -85,25 +85,28 @@ std::unique_ptr<machine::Probe> make_wear(const Options& given) {
 
 }  // namespace
 
-const ProbeInfo wall_wear{
-    "wall_wear",
-    "J",
-    "normal force times sliding distance on walls; times Archard's coefficient and divided by the "
-    "hardness: the volume worn off",
-    wear_options,
-    make_wear,
-    false,
-    {},
-    nullptr,
-    Source::steps};
-const ProbeInfo wall_wear_profile{"wall_wear_profile",
-                                  "J",
-                                  "the same in bins along a direction",
-                                  wear_profile_options,
-                                  make_wear,
-                                  false,
-                                  "centre of the bin, m",
-                                  flaw_of_bins_along,
-                                  Source::steps};
+ProbeInfo wall_wear() {
+    return {"wall_wear",
+            "J",
+            "normal force times sliding distance on walls; times Archard's coefficient and divided by the "
+            "hardness: the volume worn off",
+            wear_options,
+            make_wear,
+            false,
+            {},
+            nullptr,
+            Source::steps};
+}
+ProbeInfo wall_wear_profile() {
+    return {"wall_wear_profile",
+            "J",
+            "the same in bins along a direction",
+            wear_profile_options,
+            make_wear,
+            false,
+            "centre of the bin, m",
+            flaw_of_bins_along,
+            Source::steps};
+}
 
 }  // namespace grainsweep::machine::probes
