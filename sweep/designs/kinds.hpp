@@ -1,21 +1,9 @@
-// Functions of the kinds of design, one file each. To add a kind: its file, a line here, and a line in catalogue.cpp.
+// What the files of designs share. To add a design: its file, and two words in catalogue.cpp.
 #pragma once
 
 #include "sweep/designs/design.hpp"
 
 namespace grainsweep::designs {
-
-[[nodiscard]] DesignInfo halton_design();
-[[nodiscard]] DesignInfo sobol_design();
-[[nodiscard]] DesignInfo latin_hypercube_design();
-[[nodiscard]] DesignInfo random_design();
-[[nodiscard]] DesignInfo lattice_design();
-[[nodiscard]] DesignInfo list_design();
-[[nodiscard]] DesignInfo saltelli_design();
-[[nodiscard]] DesignInfo morris_design();
-[[nodiscard]] DesignInfo refine_design();
-/// Returns the design of the section "calibration".
-[[nodiscard]] DesignInfo calibration_design();
 
 /// Random streams of designs, so that two kinds never share a draw of the campaign's seed.
 enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol = 3, morris = 4, calibration = 5 };
