@@ -1,6 +1,7 @@
 // Main function, and the only place that catches all exceptions.
 #include "solver/scenes/scene.hpp"
 #include "stats/several_responses.hpp"
+#include "sweep/campaign/json_writer.hpp"
 #include "sweep/campaign/visible_stream.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
@@ -30,9 +31,24 @@ using namespace grainsweep;
 constexpr int wrong_question = 2;
 constexpr int broken_world = 3;
 
-int complain(int code, const std::string& sentence) {
+/// Writes the reason why a command ended; with `json` also as an object on standard output, for programs.
+int complain(int code, const std::string& sentence, bool json) {
     std::cerr << "grainsweep: " << sentence << '\n';
+    if (json) {
+        const campaign::JsonText error = {{"error", {{"code", code}, {"message", sentence}}}};
+        std::cout << error.text() << std::endl;
+    }
     return code;
+}
+
+/// Whether the arguments request JSON, even if they are wrong otherwise.
+bool request_json(int argc, const char* const* argv) {
+    for (int k = 1; k < argc; ++k) {
+        const std::string_view argument = argv[k];
+        if (argument == "--format=json") return true;
+        if (argument == "--format" && k + 1 < argc && std::string_view(argv[k + 1]) == "json") return true;
+    }
+    return false;
 }
 
 /// Returns the exit code after flushing standard output; an error if the output could not be written, as on a full
@@ -70,13 +86,14 @@ int main(int argc, char** argv) {
     if (argc > 1 && runs_cases(argv[1])) workers::answer_end_requests();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     stats::allow_fits_at_once(workers::job_cores());
-    if (const auto why = unsupported_processor(); !why.empty()) return complain(broken_world, why);
+    if (const auto why = unsupported_processor(); !why.empty())
+        return complain(broken_world, why, request_json(argc, argv));
     const campaign::VisibleStream output(std::cout), errors(std::cerr);
     try {
         return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());
     } catch (const campaign::WrongQuestion& error) {
-        return complain(wrong_question, error.what());
+        return complain(wrong_question, error.what(), request_json(argc, argv));
     } catch (const std::exception& error) {  // BrokenWorld and everything unforeseen
-        return complain(broken_world, error.what());
+        return complain(broken_world, error.what(), request_json(argc, argv));
     }
 }

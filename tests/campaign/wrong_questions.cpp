@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -90,6 +91,21 @@ TEST(WrongArguments, ExitWithTwo) {
     EXPECT_EQ(run_program({"run", "nowhere.json"}, folder.path()).code, 2);
     EXPECT_EQ(run_program({"status", "nowhere.db"}, folder.path()).code, 2);
     EXPECT_EQ(run_program({"--version"}, folder.path()).code, 0);
+}
+
+TEST(WrongArguments, AreAlsoPrintedAsJsonWhereJsonIsRequested) {
+    const Folder folder;
+    folder.write("c.json", good_with("\"fixed\"", "\"fixd\""));
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"plan", "c.json", "--format", "json"},
+                                               {"status", "no.db", "--format=json"},
+                                               {"plan", "c.json", "--format", "json", "--fo"}}) {
+        const auto ended = run_program(arguments, folder.path());
+        EXPECT_EQ(ended.code, 2);
+        const auto printed = nlohmann::json::parse(ended.out);
+        EXPECT_EQ(printed["error"]["code"], 2);
+        EXPECT_EQ("grainsweep: " + printed["error"]["message"].get<std::string>() + "\n", ended.err);
+    }
 }
 
 }  // namespace grainsweep::tests::wrong_questions_test

@@ -4,6 +4,7 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/store/store.hpp"
 #include "tests/documents/command_tables.hpp"
+#include "tests/documents/json_tables.hpp"
 #include "tests/documents/machine_tables.hpp"
 #include "tests/documents/measured_tables.hpp"
 #include "tests/documents/page.hpp"
@@ -281,6 +282,7 @@ std::string generated(const std::string& what) {
         const auto machine = own_part_of_machine(name, part);
         return part == "parameters" ? parameters_table(machine) : observables_table(machine);
     }
+    if (kind == "json") return json_table(what.substr(std::string_view("json ").size()));
     if (kind == "powder") return powder_keys_table();
     if (kind == "peers") return peers_table();
     if (kind == "designs") return designs_table();
