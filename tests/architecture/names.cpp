@@ -83,4 +83,34 @@ TEST(Names, OfTestsAreInANamespaceOfTheirFile) {
     }
 }
 
+/// Returns the words of the last column of the glossary's tables, which stand in backticks.
+std::vector<std::string> retired_words() {
+    static const std::regex row(R"(^\|[^|]*\|[^|]*\|([^|]*)\|$)"), word("`(\\w+)`");
+    std::vector<std::string> words;
+    for (const auto& line : lines_of(source("docs/glossary.md"))) {
+        std::smatch cells;
+        if (!std::regex_match(line, cells, row)) continue;
+        const std::string last = cells.str(1);
+        for (std::sregex_iterator it(last.begin(), last.end(), word), end; it != end; ++it) words.push_back((*it)[1]);
+    }
+    return words;
+}
+
+// docs/glossary.md says which word stands for what; another word for it would have to be learned.
+TEST(Names, RetiredWordsOfTheGlossaryAreGone) {
+    const auto words = retired_words();
+    ASSERT_GE(words.size(), 7U);
+    std::string either;
+    for (const auto& word : words) either += (either.empty() ? "" : "|") + word;
+    const std::regex retired("\\b(" + either + ")\\b");
+    for (const char* folder : {"stats", "solver", "sweep"})
+        for (const auto& entry : fs::recursive_directory_iterator(source(folder))) {
+            if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
+            for (const auto& line : lines_of(entry.path())) {
+                const std::string code = line.substr(0, line.find("//"));
+                EXPECT_FALSE(std::regex_search(code, retired)) << entry.path() << ": " << line;
+            }
+        }
+}
+
 }  // namespace grainsweep::tests::names_test
