@@ -126,8 +126,8 @@ const std::vector<Rule>& rules() {
          {"sweep/media/", "sweep/files/", "sweep/plot/plot.hpp", "sweep/report/sheet_file.hpp",
           "sweep/live/http_server.hpp"}},
         {"sweep/cli/run_campaign",  // a run computes and shows nothing
-         {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/store/", "sweep/study/",
-          "sweep/workers/"}},
+         {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/spool/", "sweep/store/",
+          "sweep/study/", "sweep/workers/"}},
         {"sweep/cli/", {"sweep/", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
     };
     return table;
