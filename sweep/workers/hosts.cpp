@@ -76,28 +76,55 @@ private:
     double launched_, heard_;
 };
 
+/// Worker of a host.
 class HostedWorker final : public Process {
 public:
-    HostedWorker(std::shared_ptr<RemoteHost> host, frames::WorkerNumber number);
+    HostedWorker(std::shared_ptr<RemoteHost> host, frames::WorkerNumber number)
+        : host_(std::move(host)), number_(number) {}
 
     void listen(Listener listener) override { listener_ = std::move(listener); }
-    void write(std::string line) override;
+    void write(std::string line) override {
+        if (closed_ || !runs_) return;
+        std::string frame;
+        frames::add_piece(frame, number_, line);
+        host_->write(std::move(frame));
+    }
     [[nodiscard]] bool everything_is_written() const override { return host_->process_->everything_is_written(); }
-    void close() override;
-    void signal(int number) override;
+    void close() override {
+        if (std::exchange(closed_, true) || !runs_) return;
+        std::string frame;
+        frames::add_close(frame, number_);
+        host_->write(std::move(frame));
+    }
+    void signal(int number) override {
+        if (!runs_) return;
+        std::string frame;
+        frames::add_signal(frame, number_, number);
+        if (number == SIGKILL) host_->killed_.emplace(number_, host_->clock_());
+        host_->write(std::move(frame));
+    }
     [[nodiscard]] bool runs() override { return runs_; }
     void wait(std::chrono::milliseconds) override {}  // the host reports its end
     [[nodiscard]] int status() const override { return status_; }
-    [[nodiscard]] std::string end() const override;
+    [[nodiscard]] std::string end() const override {
+        return host_end_.empty() ? describe_end("worker", status_)
+                                 : fmt::format("host {} is gone: {}", id(), host_end_);
+    }
     [[nodiscard]] bool lost_with_host() const override { return !host_end_.empty(); }
     void was_fruitful() override { host_->of_use_ = true; }
     [[nodiscard]] std::size_t node() const override { return host_->number(); }
-    [[nodiscard]] std::string id() const override;
+    [[nodiscard]] std::string id() const override { return fmt::format("{}.{}", host_->number(), number_); }
     [[nodiscard]] const std::string& log() override { return log_; }
 
 private:
     friend class RemoteHost;
-    void ended(int status, std::string_view log, const std::string& host_end);
+    void ended(int status, std::string_view log, const std::string& host_end) {
+        if (!std::exchange(runs_, false)) return;
+        status_ = status;
+        log_ = log;
+        host_end_ = host_end;
+        if (!closed_ && listener_.ended) listener_.ended();
+    }
 
     std::shared_ptr<RemoteHost> host_;
     frames::WorkerNumber number_;
@@ -197,47 +224,6 @@ double RemoteHost::owes_an_end(double now) const {
     double longest = 0;
     for (const auto& [number, when] : killed_) longest = std::max(longest, now - when);
     return longest;
-}
-
-HostedWorker::HostedWorker(std::shared_ptr<RemoteHost> host, frames::WorkerNumber number)
-    : host_(std::move(host)), number_(number) {}
-
-void HostedWorker::write(std::string line) {
-    if (closed_ || !runs_) return;
-    std::string frame;
-    frames::add_piece(frame, number_, line);
-    host_->write(std::move(frame));
-}
-
-void HostedWorker::close() {
-    if (std::exchange(closed_, true) || !runs_) return;
-    std::string frame;
-    frames::add_close(frame, number_);
-    host_->write(std::move(frame));
-}
-
-void HostedWorker::signal(int number) {
-    if (!runs_) return;
-    std::string frame;
-    frames::add_signal(frame, number_, number);
-    if (number == SIGKILL) host_->killed_.emplace(number_, host_->clock_());
-    host_->write(std::move(frame));
-}
-
-std::string HostedWorker::end() const {
-    return host_end_.empty() ? describe_end("worker", status_) : fmt::format("host {} is gone: {}", id(), host_end_);
-}
-
-std::string HostedWorker::id() const {
-    return fmt::format("{}.{}", host_->number(), number_);
-}
-
-void HostedWorker::ended(int status, std::string_view log, const std::string& host_end) {
-    if (!std::exchange(runs_, false)) return;
-    status_ = status;
-    log_ = log;
-    host_end_ = host_end;
-    if (!closed_ && listener_.ended) listener_.ended();
 }
 
 namespace {

@@ -31,6 +31,19 @@ using Json = nlohmann::json;
 template <class T>
 using ByName = std::map<std::string, T, std::less<>>;
 
+/// Neither ends a text nor begins an escape, and is one byte long.
+bool is_plain(char c) {
+    return c >= 0x20 && c < 0x7F && c != '"' && c != '\\';
+}
+
+bool begins_with_digit(std::string_view text) {
+    return !text.empty() && text.front() >= '0' && text.front() <= '9';
+}
+
+bool is_real(std::string_view number) {
+    return number.find_first_of(".eE") != std::string_view::npos;
+}
+
 class MessageWriter {
 public:
     template <class T>
@@ -59,8 +72,14 @@ public:
     /// not finite.
     void put(double number) { campaign::append_json(line, number); }
     void put(std::integral auto number) { line += campaign::JsonText(number).text(); }
-    void put(const Value& value);
-    void put(const Sample& sample);
+    void put(const Value& value) {
+        std::visit([&](const auto& held) { put(held); }, value);
+    }
+    void put(const Sample& sample) {
+        line += '[';
+        for (const double number : {sample.time, sample.bin, sample.value}) separate(), put(number);
+        line += ']';
+    }
     template <class T>
     void put(const std::optional<T>& value) {
         value ? put(*value) : void(line += "null");
@@ -116,13 +135,66 @@ public:
         if (!known) refuse("it is an unknown word");
         into = *known;
     }
-    [[nodiscard]] bool takes_member(std::string_view name);
+    [[nodiscard]] bool takes_member(std::string_view name) {
+        const auto before = rest_;
+        const char last = last_;
+        if ((last_ == '{' || takes(",")) && takes("\"") && rest_.starts_with(name)) {
+            rest_.remove_prefix(name.size());
+            if (rest_.starts_with('"') && takes("\"") && takes(":")) return true;
+        }
+        rest_ = before;
+        last_ = last;
+        return false;
+    }
 
-    void get(std::string& text);
-    void get(double& number);  ///< NaN for null
-    void get(Value& value);
-    void get(Sample& sample);
-    void get(bool& set);
+    void get(std::string& text) {
+        expect("\"");
+        auto end = static_cast<std::size_t>(std::ranges::find_if_not(rest_, is_plain) - rest_.begin());
+        const bool plain = end < rest_.size() && rest_[end] == '"';
+        while (end < rest_.size() && rest_[end] != '"') end += rest_[end] == '\\' ? 2 : 1;
+        if (end >= rest_.size()) refuse("a text has no end");
+        text = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        expect("\"");
+        if (plain) return;
+        try {
+            text = Json::parse("\"" + text + "\"").get<std::string>();
+        } catch (const Json::exception& error) {
+            refuse(error.what());
+        }
+    }
+    /// NaN for null.
+    void get(double& number) {
+        number = std::numeric_limits<double>::quiet_NaN();
+        if (takes("null")) return;
+        const auto word = number_word();
+        if (is_real(word)) return number_in(word, number);
+        std::int64_t whole = 0;  // as another program may write it
+        number_in(word, whole);
+        number = static_cast<double>(whole);
+    }
+    void get(Value& value) {
+        (void)takes("");
+        if (rest_.starts_with('"')) return get(value.emplace<std::string>());
+        const auto word = number_word();
+        if (is_real(word))
+            number_in(word, value.emplace<double>());
+        else
+            number_in(word, value.emplace<std::int64_t>());
+    }
+    void get(Sample& sample) {
+        expect("[");
+        get(sample.time);
+        expect(",");
+        get(sample.bin);
+        expect(",");
+        get(sample.value);
+        expect("]");
+    }
+    void get(bool& set) {
+        set = takes("true");
+        if (!set) expect("false");
+    }
     template <std::integral Whole>
     void get(Whole& number) {
         number_in(number_word(), number);
@@ -154,152 +226,51 @@ public:
         describe(*this, object);
         expect("}");
     }
-    void expect(std::string_view word);
+    void expect(std::string_view word) {
+        if (!takes(word)) refuse("it is no such JSON");
+    }
     /// Returns whether only blanks are left.
-    [[nodiscard]] bool over();
-    [[noreturn]] static void refuse(const char* what);
+    [[nodiscard]] bool over() {
+        (void)takes("");
+        return rest_.empty();
+    }
+    [[noreturn]] static void refuse(const char* what) { throw std::invalid_argument(what); }
 
 private:
-    [[nodiscard]] bool takes(std::string_view word);
+    [[nodiscard]] bool takes(std::string_view word) {
+        rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r"), rest_.size()));
+        if (!rest_.starts_with(word)) return false;
+        rest_.remove_prefix(word.size());
+        if (!word.empty()) last_ = word.back();
+        return true;
+    }
     /// Takes the comma between two values or members.
     void separate(char opening) {
         if (last_ != opening) expect(",");
     }
-    [[nodiscard]] std::string_view number_word();
+    [[nodiscard]] std::string_view number_word() {
+        (void)takes("");
+        const auto found = rest_.substr(0, rest_.find_first_not_of("0123456789+-.eE"));
+        rest_.remove_prefix(found.size());
+        last_ = '0';
+        return found;
+    }
     template <class Number>
     static void number_in(std::string_view word, Number& number) {
         if (!is_number(word)) refuse("it is no number");
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
         if (error != std::errc() || end != word.data() + word.size()) refuse("it is no such number");
     }
-    [[nodiscard]] static bool is_number(std::string_view word);
+    [[nodiscard]] static bool is_number(std::string_view word) {
+        const auto digits = word.starts_with('-') ? word.substr(1) : word;
+        const auto point = digits.find('.');
+        return begins_with_digit(digits) && !(digits.front() == '0' && begins_with_digit(digits.substr(1))) &&
+               (point == std::string_view::npos || begins_with_digit(digits.substr(point + 1)));
+    }
 
     std::string_view rest_;
     char last_ = '\0';  ///< last character read
 };
-
-/// Neither ends a text nor begins an escape, and is one byte long.
-bool is_plain(char c) {
-    return c >= 0x20 && c < 0x7F && c != '"' && c != '\\';
-}
-
-bool begins_with_digit(std::string_view text) {
-    return !text.empty() && text.front() >= '0' && text.front() <= '9';
-}
-
-bool is_real(std::string_view number) {
-    return number.find_first_of(".eE") != std::string_view::npos;
-}
-
-void MessageWriter::put(const Value& value) {
-    std::visit([&](const auto& held) { put(held); }, value);
-}
-
-void MessageWriter::put(const Sample& sample) {
-    line += '[';
-    for (const double number : {sample.time, sample.bin, sample.value}) separate(), put(number);
-    line += ']';
-}
-
-bool MessageReader::takes(std::string_view word) {
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r"), rest_.size()));
-    if (!rest_.starts_with(word)) return false;
-    rest_.remove_prefix(word.size());
-    if (!word.empty()) last_ = word.back();
-    return true;
-}
-
-void MessageReader::expect(std::string_view word) {
-    if (!takes(word)) refuse("it is no such JSON");
-}
-
-bool MessageReader::takes_member(std::string_view name) {
-    const auto before = rest_;
-    const char last = last_;
-    if ((last_ == '{' || takes(",")) && takes("\"") && rest_.starts_with(name)) {
-        rest_.remove_prefix(name.size());
-        if (rest_.starts_with('"') && takes("\"") && takes(":")) return true;
-    }
-    rest_ = before;
-    last_ = last;
-    return false;
-}
-
-void MessageReader::get(std::string& text) {
-    expect("\"");
-    auto end = static_cast<std::size_t>(std::ranges::find_if_not(rest_, is_plain) - rest_.begin());
-    const bool plain = end < rest_.size() && rest_[end] == '"';
-    while (end < rest_.size() && rest_[end] != '"') end += rest_[end] == '\\' ? 2 : 1;
-    if (end >= rest_.size()) refuse("a text has no end");
-    text = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    expect("\"");
-    if (plain) return;
-    try {
-        text = Json::parse("\"" + text + "\"").get<std::string>();
-    } catch (const Json::exception& error) {
-        refuse(error.what());
-    }
-}
-
-void MessageReader::get(bool& set) {
-    set = takes("true");
-    if (!set) expect("false");
-}
-
-std::string_view MessageReader::number_word() {
-    (void)takes("");
-    const auto found = rest_.substr(0, rest_.find_first_not_of("0123456789+-.eE"));
-    rest_.remove_prefix(found.size());
-    last_ = '0';
-    return found;
-}
-
-bool MessageReader::is_number(std::string_view word) {
-    const auto digits = word.starts_with('-') ? word.substr(1) : word;
-    const auto point = digits.find('.');
-    return begins_with_digit(digits) && !(digits.front() == '0' && begins_with_digit(digits.substr(1))) &&
-           (point == std::string_view::npos || begins_with_digit(digits.substr(point + 1)));
-}
-
-void MessageReader::get(double& number) {
-    number = std::numeric_limits<double>::quiet_NaN();
-    if (takes("null")) return;
-    const auto word = number_word();
-    if (is_real(word)) return number_in(word, number);
-    std::int64_t whole = 0;  // as another program may write it
-    number_in(word, whole);
-    number = static_cast<double>(whole);
-}
-
-void MessageReader::get(Value& value) {
-    (void)takes("");
-    if (rest_.starts_with('"')) return get(value.emplace<std::string>());
-    const auto word = number_word();
-    if (is_real(word))
-        number_in(word, value.emplace<double>());
-    else
-        number_in(word, value.emplace<std::int64_t>());
-}
-
-void MessageReader::get(Sample& sample) {
-    expect("[");
-    get(sample.time);
-    expect(",");
-    get(sample.bin);
-    expect(",");
-    get(sample.value);
-    expect("]");
-}
-
-bool MessageReader::over() {
-    (void)takes("");
-    return rest_.empty();
-}
-
-void MessageReader::refuse(const char* what) {
-    throw std::invalid_argument(what);
-}
 
 // ---- members of each message, sorted by name; `it` writes or reads them
 
