@@ -7,7 +7,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
-#include "sweep/cli/path_option.hpp"
+#include "sweep/cli/compute_options.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/cli/run_summary.hpp"
