@@ -4,30 +4,37 @@
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
-#include "sweep/cli/plan_tables.hpp"
-#include "sweep/cli/probe.hpp"
 #include "sweep/cli/program_campaign.hpp"
+#include "sweep/cli/program_case.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/study/history.hpp"
+#include "sweep/workers/compute.hpp"
 #include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace grainsweep::cli {
-
 namespace {
 
 using campaign::Campaign;
@@ -35,6 +42,150 @@ using campaign::Cases;
 using report::Format;
 using report::Json;
 using Cell = store::Table::Cell;
+
+/// Bars of the probability in equal parts of the range, the highest full.
+std::string density_text(const stats::Distribution& distribution) {
+    constexpr std::array<std::string_view, 9> bars = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+    constexpr std::size_t parts = 16;
+    const auto [low, high] = distribution.range();
+    std::array<double, parts> shares{};
+    double before = distribution.cumulative(low), highest = 0;
+    for (std::size_t k = 0; k < parts; ++k) {
+        const double upto = k + 1 == parts
+                                ? distribution.cumulative(high)
+                                : distribution.cumulative(std::lerp(low, high, static_cast<double>(k + 1) / parts));
+        shares[k] = upto - before;
+        before = upto;
+        highest = std::max(highest, shares[k]);
+    }
+    std::string text;
+    for (const double share : shares)
+        text += bars[share > 0 ? static_cast<std::size_t>(std::ceil(8 * share / highest)) : 0];
+    return "|" + text + "|";
+}
+
+/// "multiples of 0.5, when tool = 'roller'".
+std::string factor_rules(const campaign::Factor& factor) {
+    std::vector<std::string> rules;
+    if (factor.step) rules.push_back(fmt::format("multiples of {}", campaign::shortest(*factor.step)));
+    if (factor.share) rules.emplace_back("share");
+    if (!factor.group.empty()) rules.push_back("group " + factor.group);
+    if (!factor.when.empty()) rules.push_back("when " + factor.when);
+    return fmt::format("{}", fmt::join(rules, ", "));
+}
+
+/// Adds a column for the rules of factors besides their values, if a factor has one.
+void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors) {
+    if (std::ranges::all_of(factors, [](const auto& factor) { return factor_rules(factor).empty(); })) return;
+    table.columns.emplace_back("rules");
+    for (std::size_t j = 0; j < factors.size(); ++j) table.rows[j].emplace_back(factor_rules(factors[j]));
+}
+
+store::Table factors_of(const Campaign& campaign) {
+    store::Table table{{"factor", "unit", "low", "high", "scale", "levels"}, {}};
+    for (const auto& factor : campaign.space.factors) {
+        const Cell unit = campaign.scene().find_parameter(factor.name)->unit;
+        if (const auto* range = std::get_if<campaign::Between>(&factor.range)) {
+            const std::string scale = range->scale == campaign::Scale::log ? "log" : "linear";
+            table.rows.push_back({factor.name, unit, range->low, range->high, scale, Cell{}});
+        } else if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range)) {
+            const auto [low, high] = distribution->range();
+            table.rows.push_back({factor.name, unit, low, high, campaign::described(*distribution), Cell{}});
+        } else {
+            std::string levels;
+            for (const auto& level : std::get<campaign::Levels>(factor.range).values) {
+                levels += (levels.empty() ? "" : ", ") + campaign::to_text(level);
+            }
+            table.rows.push_back({factor.name, unit, Cell{}, Cell{}, Cell{}, levels});
+        }
+    }
+    add_rules(table, campaign.space.factors);
+    return table;
+}
+
+/// Returns one row for each factor with a distribution: quantiles, the density as a row of characters along the range,
+/// and the share outside the bounds of the parameter.
+store::Table distributions_of(const Campaign& campaign) {
+    store::Table table{{"factor", "cut %", "5 %", "50 %", "95 %", "low to high"}, {}};
+    for (const auto& factor : campaign.space.factors) {
+        const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
+        if (distribution == nullptr) continue;
+        std::vector<Cell> row = {factor.name, 100 * distribution->cut()};
+        for (const double u : {0.05, 0.5, 0.95}) row.emplace_back(distribution->quantile(u));
+        row.emplace_back(density_text(*distribution));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+/// One case of the campaign, computed to measure the time of the others.
+struct Probe {
+    std::int64_t point = 0;
+    campaign::CaseId case_id;
+    campaign::Outcome outcome{};
+    std::string message;
+    double predicted = 0;  ///< seconds
+    double measured = 0;   ///< seconds: processor time of a scene, time of a program
+};
+
+campaign::CaseResult probed_answer(const campaign::Case& question, std::optional<double> limit_seconds) {
+    if (auto program = campaign::known_program(question.scene))
+        return answer_by_program(std::move(program), question, 1, limit_seconds, {}, {});
+    NoArtefacts artefacts;
+    return workers::compute(question, 1, artefacts, std::nullopt, [](const Scene&) { return true; }).value();
+}
+
+/// Computes, in this process, the case of median predicted cost among the cases that are not settled, proven or
+/// impossible. Empty if there is no such case. The answer is not stored.
+std::optional<Probe> probe_median_case(const Campaign& campaign, const Cases& cases, const campaign::Forecast& forecast,
+                                       const std::vector<bool>& settled) {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        if (!settled[i] && cases.is_first(i) && forecast.seconds[i] > 0) open.push_back(i);
+    if (open.empty()) return std::nullopt;
+    const auto median = open.begin() + static_cast<std::ptrdiff_t>(open.size() / 2);
+    std::ranges::nth_element(open, median, {}, [&](std::size_t i) { return std::pair(forecast.seconds[i], i); });
+    const auto question = cases.question(*median);
+    const auto result = probed_answer(question, campaign.limits.wall_seconds);
+    return Probe{cases.place(*median).point,
+                 question.id,
+                 result.outcome,
+                 result.message,
+                 forecast.seconds[*median],
+                 result.program ? result.cost.wall_seconds : result.cost.cpu_seconds};
+}
+
+/// Multiplies all predicted seconds by the ratio of measured to predicted seconds of the probe.
+void scale_by(const Probe& probe, campaign::Forecast& forecast) {
+    const double factor = probe.measured / probe.predicted;
+    forecast.total_seconds *= factor;
+    forecast.longest_seconds *= factor;
+    for (double& seconds : forecast.seconds) seconds *= factor;
+}
+
+/// Returns a text such as "0.25 s" or "1 min 15 s".
+std::string seconds_text(double seconds) {
+    return seconds < 60 ? fmt::format("{:.2g} s", seconds) : duration(seconds);
+}
+
+std::string probe_text(const Probe& probe) {
+    auto text =
+        fmt::format("point {} took {}, {} were predicted; the times above are scaled by {:.2g}", probe.point,
+                    seconds_text(probe.measured), seconds_text(probe.predicted), probe.measured / probe.predicted);
+    if (probe.outcome != campaign::Outcome::completed)
+        text += fmt::format(". It ended as {}{}{}", campaign::to_string(probe.outcome),
+                            probe.message.empty() ? "" : ": ", probe.message);
+    return text;
+}
+
+Json probe_json(const Probe& probe) {
+    return {{"point", probe.point},
+            {"case_id", probe.case_id},
+            {"outcome", campaign::to_string(probe.outcome)},
+            {"message", probe.message},
+            {"predicted_seconds", probe.predicted},
+            {"measured_seconds", probe.measured}};
+}
 
 constexpr std::size_t points_shown = 8;
 

@@ -1,23 +1,202 @@
 // work: runs one task of a campaign without a main program. collect: stores the answers of such tasks in an archive.
+#include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
-#include "sweep/cli/path_option.hpp"
+#include "sweep/cli/compute_options.hpp"
+#include "sweep/cli/crew_options.hpp"
+#include "sweep/cli/program_campaign.hpp"
+#include "sweep/cli/progress.hpp"
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/cli/run_summary.hpp"
-#include "sweep/cli/work_task.hpp"
+#include "sweep/cli/walltime.hpp"
+#include "sweep/designs/design.hpp"
+#include "sweep/files/artefacts.hpp"
 #include "sweep/report/document.hpp"
+#include "sweep/spool/task.hpp"
+#include "sweep/store/expression.hpp"
+#include "sweep/study/features.hpp"
 #include "sweep/workers/end_requests.hpp"
+#include "sweep/workers/memory_room.hpp"
+#include "sweep/workers/pool.hpp"
+#include "sweep/workers/staged_campaign.hpp"
+#include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace grainsweep::cli {
 namespace {
 
 using report::Format;
+using schedule::Ending;
+
+struct WorkRequest {
+    std::filesystem::path config, spool;
+    std::string share;                    ///< "i/n"; empty: from the Slurm array, or 1/1
+    std::optional<std::int64_t> workers;  ///< overrides the campaign file; 0: all cores
+    double lease = 300;
+    bool quiet = false;
+    std::string path;  ///< instruction path of the workers; empty: the widest of each
+};
+
+struct WorkReport {
+    int exit_code = 0;
+    std::string campaign;
+    std::int64_t part = 1, of = 1;
+    std::int64_t cases = 0, answered = 0, computed = 0;
+    std::string ending;  ///< one sentence
+};
+
+constexpr std::int64_t most_parts = 1'000'000;
+
+std::optional<std::int64_t> whole_in(std::string_view text) {
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return number;
+}
+
+std::optional<std::int64_t> whole_of_environment(const char* name) {
+    const char* text = std::getenv(name);
+    return text == nullptr ? std::nullopt : whole_in(text);
+}
+
+/// Arrays may begin anywhere and have steps; the place among their numbers counts.
+spool::Share share_of_array() {
+    const auto id = whole_of_environment("SLURM_ARRAY_TASK_ID");
+    const auto count = whole_of_environment("SLURM_ARRAY_TASK_COUNT");
+    if (!id || !count || *count < 1) return {};
+    const auto first = whole_of_environment("SLURM_ARRAY_TASK_MIN").value_or(0);
+    const auto step = whole_of_environment("SLURM_ARRAY_TASK_STEP").value_or(1);
+    const auto place = step > 0 && *id >= first ? (*id - first) / step : *id;
+    return {place % *count + 1, *count};
+}
+
+spool::Share share_asked(const std::string& word) {
+    if (word.empty()) return share_of_array();
+    const auto slash = std::min(word.find('/'), word.size());
+    const auto part = whole_in(std::string_view(word).substr(0, slash)).value_or(0);
+    const auto of = whole_in(std::string_view(word).substr(std::min(slash + 1, word.size()))).value_or(0);
+    if (part < 1 || part > of || of > most_parts)
+        throw campaign::wrong_question("--share", word, "must be I/N with I from 1 to N, for example 2/16");
+    return {part, of};
+}
+
+void refuse_what_follows_from_answers(const campaign::Campaign& campaign, const std::filesystem::path& config) {
+    if (designs::design_named(campaign.design).grows)
+        throw campaign::wrong_question(
+            config.string() + ": $", campaign.design,
+            "its later points depend on results, which a task of work does not have; use run");
+    if (campaign::remarks_in(campaign.text).goal)
+        throw campaign::wrong_question(config.string() + ": $.accuracy", "",
+                                       "how many cases reach this tolerance depends on results, which a task of work "
+                                       "does not have; use run, or name a setting");
+    if (campaign.convergence && campaign.convergence->stop)
+        throw campaign::wrong_question(
+            config.string() + ": $.convergence.stop", "true",
+            "tasks of work compute every point, and collect checks convergence; set it to false, or use run");
+}
+
+std::string described(Ending ending, const spool::Task::Tally& tally) {
+    const std::size_t left = tally.cases - tally.answered;
+    switch (ending) {
+        case Ending::finished:
+            return tally.failed == 0 ? "all cases are settled"
+                                     : fmt::format("all cases are finished, {} of them failed", tally.failed);
+        case Ending::out_of_time:
+            return fmt::format("out of time with {} cases left; run work again to resume", left);
+        case Ending::asked_to_end:
+            return fmt::format("ended by a signal with {} cases left; run work again to resume", left);
+        case Ending::interrupted:
+            return fmt::format("interrupted with {} cases left; run work again to resume", left);
+        case Ending::too_long:
+            return fmt::format(
+                "stopped with {} cases left, each predicted to exceed the time limit; extend it "
+                "(execution.walltime, or the job's time limit)",
+                left);
+        default:
+            return tally.elsewhere == left
+                       ? fmt::format("nothing left for this task; other tasks compute the last {} cases", left)
+                       : fmt::format("stopped with {} cases left; run work again to resume", left);
+    }
+}
+
+int exit_code_of(Ending ending, const spool::Task::Tally& tally) {
+    if (ending == Ending::interrupted) return 130;
+    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
+    return tally.failed == 0 && tally.answered + tally.elsewhere == tally.cases ? 0 : 1;
+}
+
+/// Runs the task. Throws WrongQuestion for a campaign whose points depend on answers.
+WorkReport work_on(const WorkRequest& request) {
+    const auto share = share_asked(request.share);
+    const auto campaign = read_with_program(request.config);
+    refuse_what_follows_from_answers(campaign, request.config);
+    refuse_launcher_that_is_not_there(campaign, request.config);
+    campaign::Forecast forecast;
+    const auto cases = campaign::asked_in(request.config, [&] {
+        study::check_features(campaign);
+        auto unfolded =
+            campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+        forecast = campaign::forecast(campaign.scene(), unfolded, workers::memory_room());
+        return unfolded;
+    });
+    const auto beside = std::filesystem::absolute(request.config).parent_path();
+    const spool::Spool spool(std::filesystem::absolute(request.spool),
+                             {beside, spool::hash_of_cases(cases), campaign.text}, campaign.scene());
+    const std::size_t workers = worker_count(campaign, request.workers);
+    ProgressLine line(request.quiet, workers * threads_of_a_case(campaign));
+    for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
+
+    spool::TaskRules rules{share, campaign.limits.attempts, request.lease, walltime_of(campaign)};
+    files::ArtefactFolder artefacts(spool.artefacts());
+    workers::stage_campaign(campaign, artefacts);
+    spool::Task::Watchers watchers;
+    watchers.progress = [&, began = std::chrono::steady_clock::now()](const spool::Task::Tally& tally) {
+        schedule::Progress progress;
+        progress.tally.questions = tally.cases;
+        progress.tally.decided = tally.answered;
+        progress.tally.settled_now = progress.durable = tally.computed;
+        progress.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        progress.computed = static_cast<double>(tally.computed);  // cases: the others are as long on average
+        progress.to_compute = static_cast<double>(tally.cases - tally.answered);
+        line.update(progress);
+    };
+    watchers.note = [&](const std::string& text) { line.note(text); };
+    watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
+        artefacts.remove(workers::checkpoint_key(id, this_computer()));
+    };
+    // Tasks come and go: each has a folder of its own for the cases of a program.
+    const auto cases_here =
+        std::filesystem::absolute(request.spool) / fmt::format("cases-{}-{}", this_computer().host, ::getpid());
+    const StagedProgram staged(campaign::known_program(campaign.scene().name), cases_here);
+    workers::Pool pool(pool_options(campaign, {spool.artefacts(), cases_here}, workers, request.path));
+    spool::Task task(spool, cases, forecast.seconds, pool, std::move(rules), std::move(watchers));
+    const Ending ending = task.run();
+    const auto& tally = task.tally();
+    return {exit_code_of(ending, tally),
+            campaign.name,
+            share.part,
+            share.of,
+            static_cast<std::int64_t>(tally.cases),
+            static_cast<std::int64_t>(tally.answered),
+            static_cast<std::int64_t>(tally.computed),
+            described(ending, tally)};
+}
 
 report::Document document_of(const WorkReport& report) {
     const std::string share = fmt::format("{}/{}", report.part, report.of);

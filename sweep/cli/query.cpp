@@ -4,14 +4,17 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
-#include "sweep/cli/hard_stop.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/report/workbook.hpp"
 #include "sweep/store/store.hpp"
 
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -26,6 +29,43 @@ using campaign::Outcome;
 using report::Format;
 using store::Store;
 using store::Table;
+
+constexpr double grace_seconds = 0.5, longest = 1e9;
+
+/// Returns the text that a signal handler writes.
+std::string& last_words() {
+    static std::string words;
+    return words;
+}
+
+void end_here(int) {
+    const auto& words = last_words();
+    (void)!::write(STDERR_FILENO, words.data(), words.size());
+    ::_exit(2);
+}
+
+void set_timer(double seconds) {
+    const double whole = std::floor(seconds);
+    itimerval timer{};
+    timer.it_value.tv_sec = static_cast<time_t>(whole);
+    timer.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (seconds - whole));
+    ::setitimer(ITIMER_PROF, &timer, nullptr);  // processor time of the whole process
+}
+
+/// Guard that ends the program with exit code 2 and the sentence after this processor time; 0: never. It backs up a
+/// softer limit of the same time: a function of SQLite may run for hours between two checks of the time.
+class HardStop {
+public:
+    HardStop(double seconds, const std::string& sentence) {
+        if (!(seconds > 0)) return;
+        last_words() = "grainsweep: " + sentence + "\n";
+        std::signal(SIGPROF, end_here);
+        set_timer(std::min(seconds + grace_seconds, longest));
+    }
+    HardStop(const HardStop&) = delete;
+    HardStop& operator=(const HardStop&) = delete;
+    ~HardStop() { set_timer(0); }
+};
 
 constexpr FileKind workbook_kind{"workbook", "pk\x03\x04"};  // a ZIP archive, in lower case
 

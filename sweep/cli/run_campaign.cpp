@@ -1,16 +1,15 @@
 #include "sweep/cli/run_campaign.hpp"
 
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
-#include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/folder_beside.hpp"
 #include "sweep/cli/now_writer.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
-#include "sweep/cli/run_campaign_judge.hpp"
 #include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/files/artefacts.hpp"
@@ -18,12 +17,15 @@
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
 #include "sweep/schedule/scheduler.hpp"
+#include "sweep/spool/collect.hpp"
+#include "sweep/spool/spool.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/recorder.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/study/history.hpp"
+#include "sweep/study/model_view.hpp"
 #include "sweep/workers/end_requests.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
@@ -33,16 +35,212 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace grainsweep::cli {
 namespace {
 
-namespace fs = std::filesystem;
+using campaign::Outcome;
 using schedule::Ending;
+namespace fs = std::filesystem;
+
+// ---- collect: answers of a spool
+
+/// Crew of a run that computes no case.
+class NoCrew final : public workers::Crew {
+public:
+    void expect(std::size_t) override {}
+    [[nodiscard]] std::optional<workers::Place> place_for(double) override { return std::nullopt; }
+    void give(const workers::Place&, const campaign::Attempt&, const campaign::Case&) override {}
+    [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override { return std::nullopt; }
+    void retire() override {}
+    void dismiss() override {}
+};
+
+constexpr std::size_t cases_at_once = 256;  // in one durable group
+
+struct Ended {
+    campaign::CaseId id;
+    std::vector<spool::Answer> answers;
+};
+
+void write_ended(store::Store& store, const std::vector<Ended>& cases) {
+    const auto write = [&] {
+        for (const auto& one : cases) {
+            const auto logged = store.attempts(one.id);
+            std::int64_t number = logged.empty() ? 0 : logged.back().number;
+            for (const auto& answer : one.answers) {
+                auto result = answer.result;
+                result.attempt.number = ++number;
+                store.begin(result.attempt, answer.computer);
+                (void)store.finish(result);
+            }
+        }
+    };
+    store.group(write, store::Store::Origin::imported);
+}
+
+/// As enrolling once more would find it.
+void note_state(const campaign::Cases& cases, const Ended& one, std::vector<store::CaseState>& states) {
+    for (auto place = cases.find(campaign::hash_of(one.id)); place; place = cases.next(*place)) {
+        auto& state = states[*place];
+        state.attempts += static_cast<std::int32_t>(one.answers.size());
+        state.failures += static_cast<std::int32_t>(
+            std::ranges::count_if(one.answers, [](const auto& answer) { return !settles(answer.result.outcome); }));
+        state.outcome = one.answers.back().result.outcome;
+    }
+}
+
+/// Returns the campaign of a spool. Throws WrongQuestion if there is none, or a file that it names has changed.
+campaign::Campaign campaign_of_spool(const fs::path& spool) {
+    const auto asked = spool::Spool::asked_in(spool);
+    return campaign::asked_in(spool / "campaign", [&] { return campaign::parse_campaign(asked.text, asked.folder); });
+}
+
+/// Throws WrongQuestion if these are not the cases of the spool.
+void refuse_other_cases(const fs::path& spool, const campaign::Cases& cases) {
+    if (spool::Spool::asked_in(spool).cases == spool::hash_of_cases(cases)) return;
+    throw campaign::wrong_question("DIR", spool.string(),
+                                   "its tasks computed other cases: a file of the campaign has changed since, "
+                                   "or this program is another version");
+}
+
+/// Imports the answers into the database, in which the cases must be enrolled, and into their states.
+spool::Collected import_answers(const fs::path& spool, const campaign::Campaign& campaign, const campaign::Cases& cases,
+                                store::Store& store, std::vector<store::CaseState>& states,
+                                const std::function<void(const std::string&)>& note) {
+    std::vector<Ended> group;
+    const auto flush = [&] {
+        if (!group.empty()) write_ended(store, group);
+        for (const auto& one : group) note_state(cases, one, states);
+        group.clear();
+    };
+    spool::Collector collector;
+    collector.is_settled = [&](const campaign::CaseId& id) {
+        const auto& state = states[cases.find(campaign::hash_of(id)).value()];
+        return state.outcome && (settles(*state.outcome) || state.failures >= campaign.limits.attempts);
+    };
+    collector.import = [&](const campaign::CaseId& id, std::vector<spool::Answer> answers) {
+        group.push_back({id, std::move(answers)});
+        if (group.size() >= cases_at_once) flush();
+    };
+    collector.note = note;
+    const auto collected = spool::collect(spool / "cases", campaign, cases, collector);
+    flush();
+    return collected;
+}
+
+// ---- --adopt: answers of an earlier version of a program whose files alone have other contents
+
+constexpr std::size_t shown_digits = 12;
+
+campaign::WrongQuestion not_adopted(const std::string& old, const std::string& why) {
+    return campaign::wrong_question("--adopt", fmt::format("'{}'", old), why);
+}
+
+/// Returns the first difference apart from the contents of files; empty: none.
+std::string other_difference(const campaign::Program& before, const campaign::Program& now) {
+    const auto names = [](const campaign::Program& program) {
+        std::vector<std::pair<std::string, bool>> list;
+        for (const auto& file : program.files) list.emplace_back(file.name, file.is_template);
+        return list;
+    };
+    if (before.command != now.command) return "the command";
+    if (names(before) != names(now)) return "which files the program has";
+    if (before.protocol != now.protocol) return "the protocol";
+    if (before.environment != now.environment) return "the environment";
+    if (before.version != now.version)
+        return fmt::format("the version of the program ('{}', before '{}')", now.version, before.version);
+    auto with_old_files = now;
+    for (std::size_t k = 0; k < now.files.size(); ++k) with_old_files.files[k].hash = before.files[k].hash;
+    const bool same = campaign::program_scene_name(with_old_files) == campaign::program_scene_name(before);
+    return same ? "" : "the parameters or observables";
+}
+
+/// Returns the id of the same case under the old program.
+campaign::CaseId id_under(const campaign::Program& old_program, const campaign::Campaign& campaign,
+                          const campaign::Case& question, std::int64_t replicate) {
+    const auto& scene = campaign.scene();
+    const auto text = [&](std::optional<std::uint64_t> seed) {
+        return campaign::canonical_text(campaign::program_scene_name(old_program), scene.revision, question.inputs,
+                                        scene.defaults(), seed);
+    };
+    return campaign::content_hash(text(campaign::case_seed(campaign.seed, text({}), replicate)));
+}
+
+/// Returns a line for each file with other contents in two programs with the same files: "script.sh: 1f0c -> 93ab",
+/// with the beginnings of the hashes.
+std::vector<std::string> changed_files(const campaign::Program& old_program, const campaign::Program& program) {
+    std::vector<std::string> changed;
+    for (std::size_t k = 0; k < program.files.size(); ++k)
+        if (const auto& before = old_program.files[k], &now = program.files[k]; before.hash != now.hash)
+            changed.push_back(fmt::format("{}: {} -> {}", now.name, before.hash.substr(0, shown_digits),
+                                          now.hash.substr(0, shown_digits)));
+    return changed;
+}
+
+/// Returns the program of the campaign `old` in the database. Throws WrongQuestion if there is no such campaign, one of
+/// the campaigns has no program, or more than the contents of files changed.
+std::shared_ptr<const campaign::Program> adopted_program(const store::Store& store, const campaign::Campaign& campaign,
+                                                         const std::string& old) {
+    const auto records = store.campaigns();
+    const auto record = std::ranges::find(records, old, [](const auto& one) { return one.name; });
+    if (record == records.end()) {
+        const auto names = campaign::names_of(records);
+        throw campaign::wrong_question(
+            "--adopt", fmt::format("'{}'", old),
+            fmt::format("the database has no such campaign; it has {}", campaign::listed(names)),
+            campaign::nearest_word(old, names));
+    }
+    const auto now = campaign::known_program(campaign.scene().name);
+    if (now == nullptr) throw not_adopted(old, "only answers of a program are adopted (\"scene\": \"program\")");
+    const auto before = store.program(record->scene);
+    if (before == nullptr) throw not_adopted(old, "this campaign has no program");
+    if (record->scene == campaign.scene().name)
+        throw not_adopted(old, "its program is this one: equal cases are shared without --adopt");
+    if (const auto differs = other_difference(*before, *now); !differs.empty())
+        throw not_adopted(old, fmt::format("more than the contents of files changed: {}", differs));
+    return before;
+}
+
+/// Stores the answers of `old` to the same inputs as answers of the campaign, unless it has its own. Each is an attempt
+/// whose message names its original case and program. The campaign must be enrolled. Returns their number.
+std::size_t adopt_answers(store::Store& store, const campaign::Campaign& campaign, const campaign::Cases& cases,
+                          const campaign::Program& old_program) {
+    while (store.enrols()) store.enrol_more(std::numeric_limits<std::uint32_t>::max());
+    std::vector<std::pair<campaign::CaseResult, campaign::Computer>> adopted;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const auto question = cases.question(i);
+        if (!cases.is_first(i) || !store.attempts(question.id).empty()) continue;
+        const auto old_id = id_under(old_program, campaign, question, cases.place(i).replicate);
+        auto result = store.result(old_id);
+        if (!result || !campaign::settles(result->outcome)) continue;
+        campaign::Computer computer;
+        for (const auto& attempt : store.attempts(old_id))
+            if (attempt.number == result->attempt.number)
+                computer = attempt.computer, result->program = attempt.program;
+        result->attempt = {question.id, 1};
+        result->message =
+            fmt::format("{}{}adopted from case {} of {}", result->message, result->message.empty() ? "" : "; ", old_id,
+                        campaign::program_scene_name(old_program));
+        adopted.emplace_back(std::move(*result), std::move(computer));
+    }
+    store.group([&] {
+        for (const auto& [result, computer] : adopted) {
+            store.begin(result.attempt, computer);
+            store.finish(result);
+        }
+    });
+    return adopted.size();
+}
+
+// ---- run
 
 // Places of a campaign that are in the archive before its first case is handed out: a fraction of a second.
 constexpr std::size_t entered_first = 16'384;
@@ -146,6 +344,30 @@ schedule::Questions questions_of(const campaign::Campaign& campaign, const Place
     if (at.size() == placed.size()) places = {};
     questions.ask = [placed, at = std::move(at)](std::uint32_t question) { return placed.question(at[question]); };
     return questions;
+}
+
+/// Returns the judge of the campaign's rule, with the stored values; nullptr without a rule. `placed`: every stored
+/// place.
+std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, const store::Store& store,
+                                            const campaign::Cases& placed, std::int64_t candidates) {
+    if (!campaign.convergence) return nullptr;
+    const auto stored = store.values(campaign.name, campaign.convergence->observable);
+    std::vector<double> known(placed.size(), std::numeric_limits<double>::quiet_NaN());
+    auto next = stored.begin();  // both are ordered by point, then replicate
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        const auto here = std::pair(std::int64_t{placed.place(i).point}, std::int64_t{placed.place(i).replicate});
+        while (next != stored.end() && std::pair(next->point, next->replicate) < here) ++next;
+        if (next == stored.end() || std::pair(next->point, next->replicate) != here) continue;
+        if (next->outcome) known[i] = next->value;
+    }
+    const auto sequences = static_cast<std::size_t>(designs::independent_sequences(campaign.design, campaign.request));
+    std::optional<schedule::ModelView> view;
+    if (campaign.convergence->traits().of_model)
+        view = study::model_view(campaign, candidates,
+                                 store::make_filter(campaign.where, campaign::filter_names(campaign)));
+    const bool weigh = campaign::repeats_weigh(campaign.space.factors);
+    return std::make_unique<schedule::Judge>(*campaign.convergence, placed, sequences, std::move(known), candidates,
+                                             std::move(view), weigh);
 }
 
 schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& request, std::size_t workers) {

@@ -1,9 +1,11 @@
 // Panels side by side on paper, and the paper as a file.
 #include "sweep/files/broken_world.hpp"
-#include "sweep/plot/panel.hpp"
+#include "sweep/plot/axes.hpp"
+#include "sweep/plot/canvas.hpp"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
+#include <cairo.h>
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -12,9 +14,258 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <variant>
 
 namespace grainsweep::plot {
 namespace {
+
+// ---- marks of a panel
+
+/// Draws a sign of Points.
+void draw_sign(Canvas& canvas, double x, double y, Points::Shape shape, double radius, Colour tone) {
+    auto* context = canvas.context();
+    switch (shape) {
+        case Points::Shape::dot:
+            canvas.use(tone);
+            cairo_new_sub_path(context);
+            cairo_arc(context, x, y, radius, 0, 2 * std::numbers::pi);
+            return canvas.fill();
+        case Points::Shape::diamond:
+            canvas.use(tone);
+            cairo_move_to(context, x, y - radius);
+            for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}})
+                cairo_line_to(context, x + dx * radius, y + dy * radius);
+            return canvas.fill();
+        case Points::Shape::cross:
+            // White around it, to stand out on every colour.
+            for (const auto& [width, colour] : {std::pair{1.8, Colour{1, 1, 1}}, {0.8, tone}}) {
+                canvas.use(colour, width);
+                for (const int up : {-1, 1}) canvas.segment(x - radius, y - up * radius, x + radius, y + up * radius);
+                canvas.stroke();
+            }
+    }
+}
+
+/// The two axes of a panel, and a canvas.
+struct Between {
+    Canvas& canvas;
+    const PlacedAxis& x;
+    const PlacedAxis& y;
+
+    [[nodiscard]] std::optional<std::pair<double, double>> place(double across, double up) const {
+        const auto a = x.place(across), b = y.place(up);
+        if (!a || !b) return std::nullopt;
+        return std::pair(*a, *b);
+    }
+
+    /// Joins the places; a place that cannot be drawn leaves a gap.
+    void join(const std::vector<double>& xs, const std::vector<double>& ys) const {
+        bool open = false;
+        for (std::size_t k = 0; k < xs.size(); ++k) {
+            const auto at = place(xs[k], ys[k]);
+            if (at && open)
+                cairo_line_to(canvas.context(), at->first, at->second);
+            else if (at)
+                cairo_move_to(canvas.context(), at->first, at->second);
+            open = at.has_value();
+        }
+    }
+
+    void operator()(const Line& line) const {
+        canvas.use(line.tone, line.width, line.dashed);
+        join(line.x, line.y);
+        canvas.stroke();
+    }
+
+    /// Stretch by stretch between gaps.
+    void operator()(const Band& band) const {
+        canvas.use(band.tone);
+        for (std::size_t k = 0; k + 1 < band.x.size(); ++k) {
+            const auto a = place(band.x[k], band.low[k]), b = place(band.x[k + 1], band.low[k + 1]);
+            const auto c = place(band.x[k + 1], band.high[k + 1]), d = place(band.x[k], band.high[k]);
+            if (!a || !b || !c || !d) continue;
+            cairo_move_to(canvas.context(), a->first, a->second);
+            for (const auto& corner : {b, c, d}) cairo_line_to(canvas.context(), corner->first, corner->second);
+            cairo_close_path(canvas.context());
+        }
+        canvas.fill();  // in one piece: neighbours do not darken each other
+    }
+
+    void operator()(const Whiskers& whiskers) const {
+        constexpr double cap = 1.5;
+        canvas.use(whiskers.tone, 0.6, whiskers.dashed);
+        for (std::size_t k = 0; k < whiskers.at.size(); ++k) {
+            const double low = whiskers.value[k] - whiskers.half_width[k];
+            const double high = whiskers.value[k] + whiskers.half_width[k];
+            const auto a = whiskers.across ? place(low, whiskers.at[k]) : place(whiskers.at[k], low);
+            const auto b = whiskers.across ? place(high, whiskers.at[k]) : place(whiskers.at[k], high);
+            if (!a || !b || !(high > low)) continue;
+            const double dx = whiskers.across ? 0 : cap, dy = whiskers.across ? cap : 0;
+            canvas.segment(a->first, a->second, b->first, b->second);
+            for (const auto& end : {*a, *b})
+                canvas.segment(end.first - dx, end.second - dy, end.first + dx, end.second + dy);
+        }
+        canvas.stroke();
+    }
+
+    void operator()(const Bars& bars) const {
+        canvas.use(bars.tone);
+        for (std::size_t k = 0; k < bars.from.size(); ++k) {
+            const auto a = bars.across ? place(0, bars.from[k]) : place(bars.from[k], 0);
+            const auto b = bars.across ? place(bars.length[k], bars.to[k]) : place(bars.to[k], bars.length[k]);
+            if (a && b) canvas.rectangle(a->first, a->second, b->first, b->second);
+        }
+        canvas.fill();
+    }
+
+    void operator()(const Cells& cells) const {
+        const std::size_t columns = cells.x_edges.size() - 1;
+        constexpr double overlap = 0.15;  // no white line between neighbours
+        for (std::size_t k = 0; k < cells.tones.size(); ++k) {
+            if (!cells.tones[k]) continue;
+            const auto a = place(cells.x_edges[k % columns], cells.y_edges[k / columns + 1]);
+            const auto b = place(cells.x_edges[k % columns + 1], cells.y_edges[k / columns]);
+            if (!a || !b) continue;
+            canvas.use(*cells.tones[k]);
+            canvas.rectangle(a->first, a->second - overlap, b->first + overlap, b->second);
+            canvas.fill();
+        }
+    }
+
+    void operator()(const Points& points) const {
+        const auto count = points.x.size();
+        const double radius = points.radius.value_or(count > 1000 ? 0.8 : count > 200 ? 1.1 : 1.5);
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto& tone = points.tones[points.tones.size() == 1 ? 0 : k];
+            if (const auto at = place(points.x[k], points.y[k]))
+                draw_sign(canvas, at->first, at->second, points.shape, radius, tone);
+        }
+    }
+
+    void operator()(const Marker& marker) const {
+        const auto at = x.place(marker.at);
+        if (!at) return;
+        canvas.use(black, 0.6, true);
+        canvas.segment(*at, y.from, *at, y.to);
+        canvas.stroke();
+    }
+};
+
+// ---- panel in its place (margins, marks, frame), and the legend above all panels
+
+/// Margins around the frame of a panel, in points of print.
+struct Margins {
+    double left = 0, right = 0, top = 0, bottom = 0;
+};
+
+struct Box {
+    double left = 0, top = 0, right = 0, bottom = 0;
+};
+
+constexpr double paper_edge = 1.5;  // nothing is drawn nearer to it
+constexpr double sign_width = 12, key_gap = 9, key_line = line_height * label_size;
+
+/// Position of a key: number of its line from the top, and distance from the left.
+struct KeyPlace {
+    std::size_t line = 0;
+    double left = 0;
+};
+
+/// Side by side, in as many lines as the width makes them take.
+std::vector<KeyPlace> places_of(Canvas& canvas, const std::vector<Key>& keys, double width) {
+    std::vector<KeyPlace> places;
+    KeyPlace next;
+    for (const auto& key : keys) {
+        const double needs = sign_width + canvas.width(key.text, label_size);
+        if (next.left > 0 && next.left + needs > width) next = {next.line + 1, 0};
+        places.push_back(next);
+        next.left += needs + key_gap;
+    }
+    return places;
+}
+
+void draw_key(Canvas& canvas, const Key& key, double left, double y) {
+    constexpr double to = sign_width - 4;
+    using enum Key::Kind;
+    switch (key.kind) {
+        case area:
+            canvas.use(key.tone);
+            canvas.rectangle(left, y - 2.2, left + to, y + 2.2);
+            canvas.fill();
+            break;
+        case Key::Kind::line:
+        case dashes:
+            canvas.use(key.tone, 1, key.kind == dashes);
+            canvas.segment(left, y, left + to, y);
+            canvas.stroke();
+            break;
+        case dot:
+            draw_sign(canvas, left + to / 2, y, Points::Shape::dot, 1.8, key.tone);
+            break;
+        case diamond:
+            draw_sign(canvas, left + to / 2, y, Points::Shape::diamond, 2.5, key.tone);
+            break;
+        case cross:
+            draw_sign(canvas, left + to / 2, y, Points::Shape::cross, 1.8, key.tone);
+            break;
+    }
+    canvas.use(black);
+    canvas.text(left + sign_width, y, key.text, label_size);
+}
+
+/// Returns the height of a legend, 0 without keys.
+double room_of_keys(Canvas& canvas, const std::vector<Key>& keys, double width) {
+    const auto places = places_of(canvas, keys, width);
+    return places.empty() ? 0 : static_cast<double>(places.back().line + 1) * key_line + label_gap;
+}
+
+/// Draws the legend at the top of the paper.
+void draw_keys(Canvas& canvas, const std::vector<Key>& keys, double width) {
+    const auto places = places_of(canvas, keys, width);
+    for (std::size_t k = 0; k < places.size(); ++k)
+        draw_key(canvas, keys[k], places[k].left + 1, key_line * (static_cast<double>(places[k].line) + 0.5));
+}
+
+/// Returns the margins of a panel of this size for titles and labels; `lettered`: and for "(a)" above it.
+Margins margins_of(Canvas& canvas, const Panel& panel, bool lettered, double width, double height) {
+    Margins margins;
+    // The labels' room follows from the frame and the frame from that room: three rounds settle it.
+    for (int round = 0; round < 3; ++round) {
+        const double inner_height = std::max(20.0, height - margins.top - margins.bottom);
+        margins.left = paper_edge + room_left(canvas, panel.y, inner_height);
+        margins.right = panel.scale ? paper_edge + room_of_scale(canvas, *panel.scale, inner_height) : label_size;
+        const double inner_width = std::max(20.0, width - margins.left - margins.right);
+        margins.bottom = paper_edge + room_below(canvas, panel.x, inner_width);
+        margins.top = lettered ? line_height * title_size + label_gap : label_size / 2;
+    }
+    return margins;
+}
+
+/// Draws the panel with its frame at the box. `letter`: "(a)", or empty.
+void draw_panel(Canvas& canvas, const Panel& panel, const std::string& letter, const Box& frame) {
+    const PlacedAxis x{panel.x, frame.left, frame.right}, y{panel.y, frame.bottom, frame.top};
+    for (const auto& mark : panel.marks) {
+        const double beyond = std::holds_alternative<Points>(mark) ? 2.5 : 0;  // a sign at the edge is drawn whole
+        cairo_save(canvas.context());
+        canvas.rectangle(frame.left - beyond, frame.top - beyond, frame.right + beyond, frame.bottom + beyond);
+        cairo_clip(canvas.context());
+        std::visit(Between{canvas, x, y}, mark);
+        cairo_restore(canvas.context());
+    }
+    canvas.use(black, frame_width);
+    canvas.rectangle(frame.left, frame.top, frame.right, frame.bottom);
+    canvas.stroke();
+    draw_below(canvas, x, frame.bottom);
+    draw_left(canvas, y, frame.left);
+    if (panel.scale) draw_scale(canvas, {*panel.scale, frame.bottom, frame.top}, frame.right);
+    canvas.use(black);
+    canvas.text(frame.left, frame.top - label_gap - title_size / 2, letter, title_size);
+}
+
+// ---- figure
 
 constexpr double narrowest_mm = 38, narrowest_with_scale_mm = 60, tallest_mm = 90, gap_mm = 3;
 constexpr double dots_per_inch = 600;

@@ -1,5 +1,5 @@
 // SQL expressions of a case's inputs, evaluated by SQLite: the `where` clause, and numbers computed from inputs. Two
-// rules differ from SQL (expression_text.hpp): a quotient is real, and chained comparisons are refused.
+// rules differ from SQL (expression.cpp): a quotient is real, and chained comparisons are refused.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"

@@ -1,9 +1,9 @@
 // Hosts of a pool: decides when a host is launched, given up and replaced, and which host starts a worker.
 #pragma once
 
+#include "sweep/workers/child.hpp"
 #include "sweep/workers/departures.hpp"
 #include "sweep/workers/fruitless_launches.hpp"
-#include "sweep/workers/remote_host.hpp"
 #include "sweep/workers/worker_state.hpp"
 
 #include <cstddef>
@@ -20,6 +20,8 @@ struct HostPlan {
     std::size_t workers_each = 1;
     TimeLimits limits;
 };
+
+class RemoteHost;
 
 class Hosts {
 public:

@@ -1,5 +1,5 @@
 // Interface of a worker process: write, read, signal, wait. It is a child of this process (child.hpp), or a worker on a
-// host that passes its messages on (remote_host.hpp).
+// host that passes its messages on (hosts.cpp).
 #pragma once
 
 #include <chrono>

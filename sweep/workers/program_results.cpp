@@ -1,6 +1,6 @@
 #include "sweep/workers/program_results.hpp"
 
-#include "sweep/workers/program_json.hpp"
+#include "sweep/campaign/json_builder.hpp"
 #include "sweep/workers/program_tables.hpp"
 #include "sweep/workers/worker_state.hpp"
 
@@ -23,6 +23,65 @@ using campaign::Program;
 using campaign::ProgramObservable;
 using Json = nlohmann::json;
 using Kind = ProgramReply::Kind;
+
+/// Error: the text is not JSON.
+class NoJson : public std::invalid_argument {
+public:
+    using std::invalid_argument::invalid_argument;
+};
+
+/// Returns a value as a short printable text for messages.
+std::string shown_json(const Json& value) {
+    return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace), 60);
+}
+
+constexpr std::size_t deepest = 100;  // values are copied and shown by recursion
+
+/// Reader of JSON that a program wrote. Refuses numbers outside double precision, repeated keys and too deep nesting,
+/// with their place as a JSON pointer.
+class ProgramJson final : public campaign::JsonBuilder {
+public:
+    ProgramJson(std::string_view text, const std::string& name) : JsonBuilder(deepest), text_(text), name_(name) {}
+
+    bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
+        constexpr int number_overflow = 406;
+        if (error.id == number_overflow)
+            throw std::invalid_argument(
+                fmt::format("{}: {} is {}, which is no number", name_, here(), shortened(token, 60)));
+        const auto near = text_.substr(std::min(text_.size(), position > 12 ? position - 12 : 0), 24);
+        for (const char* word : {"NaN", "nan", "Infinity", "inf"})
+            if (near.find(word) != std::string_view::npos)
+                throw std::invalid_argument(
+                    fmt::format("{}: {} is {}, which is no number (byte {})", name_, here(), word, position));
+        throw NoJson(fmt::format("{} is no JSON at byte {}: {}", name_, position, shown_json(std::string(near))));
+    }
+
+private:
+    void refuse_twice() const override {
+        throw std::invalid_argument(fmt::format("{}: {} is there twice", name_, here()));
+    }
+    void refuse_depth() const override {
+        throw std::invalid_argument(fmt::format("{} is nested deeper than {} levels", name_, deepest));
+    }
+    /// The JSON pointer of the value that comes next.
+    [[nodiscard]] std::string here() const {
+        std::string path;
+        for (const auto& frame : frames())
+            path += "/" + (frame.value.is_object() ? frame.key : std::to_string(frame.value.size()));
+        return path.empty() ? "it" : shortened(path, 100);
+    }
+
+    std::string_view text_;
+    const std::string& name_;
+};
+
+/// Returns the parsed text. `name` stands before the place in messages. Throws NoJson, or std::invalid_argument for
+/// JSON that is refused.
+Json program_json(std::string_view text, const std::string& name) {
+    ProgramJson builder(text, name);
+    Json::sax_parse(text.begin(), text.end(), &builder);
+    return std::move(builder.result);
+}
 
 constexpr std::size_t largest_json = std::size_t{16} << 20U;
 

@@ -1,34 +1,283 @@
 #include "sweep/workers/worker.hpp"
 
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/machine.hpp"
-#include "sweep/workers/staged_campaign.hpp"
-
-#include "sweep/files/artefacts.hpp"
 #include "sweep/files/broken_world.hpp"
-#include "sweep/workers/answerer.hpp"
-#include "sweep/workers/compute.hpp"
-#include "sweep/workers/desk.hpp"
+#include "sweep/files/descriptor.hpp"
+#include "sweep/workers/asking_signals.hpp"
+#include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 #include "sweep/workers/program_answerer.hpp"
+#include "sweep/workers/staged_campaign.hpp"
+#include "sweep/workers/worker_state.hpp"
 
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
+#include <pthread.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <deque>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
+#include <mutex>
 #include <set>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 namespace grainsweep::workers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// ---- desk ------------------------------------------------------------------------------------------------------
+
+/// Reason why a worker must end.
+enum class Ending {
+    none,
+    asked,    ///< the main program wrote stop
+    signal,   ///< a signal that requests the end of a process
+    silence,  ///< no message from the main program for too long
+};
+
+constexpr int main_program_is_gone = 3;
+constexpr int nonsense_was_written = 2;
+
+/// Ends the worker after an invalid message, because its answers might belong to other cases than the requested ones.
+[[noreturn]] void refuse(std::string_view line, std::string_view why) {
+    const std::string sentence = fmt::format("grainsweep worker: standard input is not the main program's: {} ({})\n",
+                                             shortened(line, 200), why);
+    (void)std::fwrite(sentence.data(), 1, sentence.size(), stderr);
+    std::_Exit(nonsense_was_written);
+}
+
+/// Messages between a worker and its main program: cases come in; heartbeats, answers and returned cases go out.
+/// Reading, signals and the clock have threads of their own, so that they are served while a case is computed.
+///
+/// The thread that computes makes the desk. It blocks the signals that it waits for, so make it before any other thread
+/// starts.
+class Desk {
+public:
+    struct Limits {
+        double lease_seconds = 600;
+        double give_back_seconds = 20;
+    };
+    explicit Desk(const Limits& limits) : limits_(limits), progress_(std::numeric_limits<double>::quiet_NaN()) {
+        hold_asking_signals();
+        ::pthread_getcpuclockid(::pthread_self(), &computing_);
+    }
+    Desk(const Desk&) = delete;
+    Desk& operator=(const Desk&) = delete;
+
+    /// Sends that the worker is ready, and starts to read.
+    void open(const campaign::Computer& computer) {
+        {
+            const std::lock_guard lock(mutex_);
+            write(Ready{protocol_number, computer});
+            flush();
+        }
+        std::thread([this] { read(); }).detach();
+        std::thread([this] {
+            const auto asked = [this](int signal) {
+                end(Ending::signal,
+                    fmt::format("its worker was asked to end by signal {} ({})", signal, ::strsignal(signal)));
+            };
+            attend(asked, [this] { tick(); });
+        }).detach();
+    }
+    /// Returns the next case; empty once the worker must end.
+    [[nodiscard]] std::optional<Run> next() {
+        std::unique_lock lock(mutex_);
+        // With another case at hand its beginning goes out in one piece with the last answer.
+        if (questions_.empty()) flush();
+        changed_.wait(lock, [this] { return ending_ != Ending::none || !questions_.empty(); });
+        if (ending_ != Ending::none) return std::nullopt;
+        Run run = std::move(questions_.front());
+        questions_.pop_front();
+        return run;
+    }
+    void begin(const campaign::Attempt& attempt, bool resumed) {
+        const std::lock_guard lock(mutex_);
+        progress_ = std::numeric_limits<double>::quiet_NaN();
+        running_ = attempt;
+        write(Begun{attempt, resumed});
+        flush();
+    }
+    /// Stores the progress of the running case, for the heartbeats.
+    void advanced(double progress) {
+        progress_ = progress;
+        ++looks_;
+    }
+    [[nodiscard]] Ending ending() const { return ending_; }
+    /// Sends the answer of the running case.
+    void answer(Done done) {
+        const std::lock_guard lock(mutex_);
+        const std::size_t before = outgoing_.size();
+        write(done);
+        if (const std::size_t length = outgoing_.size() - before; length > longest_line) {
+            outgoing_.resize(before);
+            done.result.outcome = campaign::Outcome::rejected;
+            done.result.observations = {};
+            done.result.message = fmt::format("what it measured takes {} MB, more than the {} MB of a message",
+                                              length >> 20U, longest_line >> 20U);
+            write(done);
+        }
+        running_.reset();
+    }
+    void give_back() {
+        const std::lock_guard lock(mutex_);
+        write(GiveBack{*running_, reason_});
+        running_.reset();
+    }
+    /// Gives back all cases because a file could not be written, and ends the process.
+    [[noreturn]] void break_off(std::string reason) {
+        mutex_.lock();
+        reason_ = std::move(reason);
+        if (running_) write(GiveBack{*running_, reason_, true});
+        running_.reset();
+        leave();
+    }
+    /// Gives back the cases that were never begun, and ends the process.
+    [[noreturn]] void close() {
+        mutex_.lock();
+        leave();
+    }
+
+private:
+    // ---- reading
+
+    void read() {
+        LineBuffer lines(longest_line);
+        std::array<char, 65536> piece{};
+        while (true) {
+            const auto length = ::read(STDIN_FILENO, piece.data(), piece.size());
+            if (length < 0 && errno == EINTR) continue;
+            if (length <= 0) std::_Exit(main_program_is_gone);  // an answer is of no use
+            const bool fits =
+                lines.feed({piece.data(), static_cast<std::size_t>(length)}, [this](std::string_view line) {
+                    take(line);
+                    return true;
+                });
+            if (!fits) refuse(lines.begun(), "a line without an end");
+        }
+    }
+    void take(std::string_view line) {
+        silence_ = 0;
+        try {
+            ToWorker message = decode_to_worker(line);
+            if (std::holds_alternative<Stop>(message)) return end(Ending::asked, "given back before it was finished");
+            if (const auto* threads = std::get_if<Threads>(&message))
+                return allow_threads(static_cast<int>(threads->count));
+            auto* run = std::get_if<Run>(&message);
+            if (run == nullptr) return;
+            const std::lock_guard lock(mutex_);
+            questions_.push_back(std::move(*run));
+            changed_.notify_all();
+        } catch (const std::invalid_argument& error) {
+            refuse(line, error.what());
+        }
+    }
+
+    // ---- signals and time
+
+    void tick() {
+        if (++silence_ > limits_.lease_seconds)
+            end(Ending::silence, "its worker got no message from the main program for too long");
+        const std::lock_guard lock(mutex_);
+        if (ending_ != Ending::none && ++ending_for_ > limits_.give_back_seconds) leave();
+        if (!running_ || !makes_headway()) return;
+        write(Alive{*running_, progress_});
+        flush();
+    }
+    void end(Ending why, std::string reason) {
+        const std::lock_guard lock(mutex_);
+        // Asked twice: at once. A host passes on a signal that all of its processes may have got: that is one request.
+        if (ending_ == Ending::signal && why == Ending::signal && ending_for_ > 1) leave();
+        if (ending_ == Ending::none || (ending_ == Ending::asked && why == Ending::signal)) {
+            ending_ = why;
+            reason_ = std::move(reason);
+        }
+        changed_.notify_all();
+    }
+    // With mutex_ held. Whatever is under way in the computing thread is not waited for: after this no line can follow.
+    [[noreturn]] void leave() {
+        if (running_) write(GiveBack{*running_, reason_ + ", and it could not be saved in time"});
+        for (const auto& run : questions_) write(GiveBack{{run.question.id, run.attempt}, reason_});
+        flush();
+        std::_Exit(ending_ == Ending::silence ? main_program_is_gone : 0);
+    }
+    // A thread that has neither reported nor used its processor since the last heartbeat is blocked, for example by a
+    // dead file server.
+    [[nodiscard]] bool makes_headway() {
+        timespec computed{};
+        ::clock_gettime(computing_, &computed);
+        const unsigned looks = looks_;
+        const bool moved = looks != looks_seen_ || computed.tv_sec != computed_seen_.tv_sec ||
+                           computed.tv_nsec != computed_seen_.tv_nsec;
+        looks_seen_ = looks;
+        computed_seen_ = computed;
+        return moved;
+    }
+
+    // ---- writing
+
+    void write(const ToBoss& message) {
+        outgoing_ += encode(message);
+        outgoing_ += '\n';
+    }
+    void flush() {
+        if (!files::write_all(STDOUT_FILENO, outgoing_)) std::_Exit(main_program_is_gone);
+        outgoing_.clear();
+    }
+
+    Limits limits_;
+    clockid_t computing_{};  ///< processor time of the thread that computes
+    std::mutex mutex_;       ///< guards all members below except the atomics
+    std::condition_variable changed_;
+    std::deque<Run> questions_;
+    std::optional<campaign::Attempt> running_;
+    std::string outgoing_;
+    std::string reason_;  ///< of the ending
+    std::atomic<Ending> ending_ = Ending::none;
+    std::atomic<double> progress_;
+    std::atomic<unsigned> looks_ = 0;  ///< calls of advanced()
+    std::atomic<int> silence_ = 0;     ///< seconds since the main program wrote
+    unsigned looks_seen_ = 0;          // of the thread that ticks
+    timespec computed_seen_{};
+    int ending_for_ = 0;  // seconds
+};
+
+// ---- answers ---------------------------------------------------------------------------------------------------
+
+/// Interface by which a worker gets the answer of a case, from a simulation of the solver or from a program. Only the
+/// worker distinguishes the two.
+class Answerer {
+public:
+    Answerer() = default;
+    Answerer(const Answerer&) = delete;
+    Answerer& operator=(const Answerer&) = delete;
+    virtual ~Answerer() = default;
+
+    /// Looks for the checkpoint of an earlier attempt. Returns whether the case continues from it.
+    [[nodiscard]] virtual bool prepare(const Run& run) = 0;
+    /// Returns the answer of the case prepared last; empty if the case was interrupted because the worker must end.
+    /// Throws BrokenWorld for an error that every other case would meet, too.
+    [[nodiscard]] virtual std::optional<campaign::CaseResult> answer(const Run& run) = 0;
+    /// Returns whether a checkpoint of the case is stored, which is useless once the case is answered.
+    [[nodiscard]] virtual bool left_checkpoint() const = 0;
+};
 
 constexpr std::string_view checkpoint_of_case = "checkpoint\ncase=";  // begins the key of every checkpoint
 

@@ -128,8 +128,8 @@ const std::vector<Rule>& rules() {
          {"sweep/media/", "sweep/files/", "sweep/plot/plot.hpp", "sweep/report/sheet_file.hpp",
           "sweep/live/http_server.hpp"}},
         {"sweep/cli/run_campaign",  // a run computes and shows nothing
-         {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/store/", "sweep/study/",
-          "sweep/workers/"}},
+         {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/spool/", "sweep/store/",
+          "sweep/study/", "sweep/workers/"}},
         {"sweep/cli/", {"sweep/", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
     };
     return table;
@@ -147,9 +147,7 @@ const std::vector<Library>& libraries() {
         // Each costs seconds wherever it is included.
         {"boost/process", {"sweep/workers/process_start.cpp"}},
         {"boost/asio", {"sweep/workers/child.cpp"}},
-        {"nlohmann/",
-         {"sweep/campaign/", "sweep/workers/json_line.cpp", "sweep/workers/program_results.cpp",
-          "sweep/workers/program_json."}},
+        {"nlohmann/", {"sweep/campaign/", "sweep/workers/message.cpp", "sweep/workers/program_results.cpp"}},
         {"CLI/", {"sweep/cli/parser.cpp"}},
         {"Eigen/", {"solver/", "stats/"}},
         {"muParser.h", {"sweep/campaign/formula.cpp"}},

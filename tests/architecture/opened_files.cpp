@@ -32,7 +32,7 @@ const std::map<std::string, std::string>& openers() {
         {"sweep/workers/process_start.cpp", "/dev/null"},
         {"sweep/workers/program_folder.cpp", "of a worker, which opens no database"},
         {"sweep/workers/program_guard.cpp", "of a worker"},
-        {"sweep/workers/program_lines.cpp", "of a worker"},
+        {"sweep/workers/program_answerer.cpp", "of a worker"},
         {"sweep/workers/program_process.cpp", "of a worker"},
         {"sweep/workers/program_setting.cpp", "of a worker"},
     };

@@ -1,7 +1,8 @@
-#include "sweep/cli/path_option.hpp"
+#include "sweep/cli/compute_options.hpp"
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/workers/job_cores.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,6 +35,17 @@ void use_path(const std::string& word) {
 void use_path_of_old(std::string_view path) {
     if (std::ranges::find(instruction_path_words(), path) != instruction_path_words().end())
         (void)choose_instruction_path(path);  // a processor without it keeps its widest; the comparison says so
+}
+
+void declare_threads(Parser& parser, std::int64_t& count) {
+    parser
+        .add_option("--threads N", count,
+                    "threads for the case; 0, the default: one per core of the job; results do not depend on it")
+        ->check(whole_number(0, 1024));
+}
+
+void use_threads(std::int64_t count) {
+    allow_threads(static_cast<int>(count > 0 ? count : static_cast<std::int64_t>(workers::job_cores())));
 }
 
 }  // namespace grainsweep::cli
