@@ -1,6 +1,7 @@
 #include "stats/process_window.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/hypervolume.hpp"
 #include "stats/sobol_sequence.hpp"
 
 #include <boost/math/special_functions/gamma.hpp>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -18,10 +18,6 @@ namespace {
 
 constexpr std::size_t integration_points = 1024, fewest_scores = 40;
 constexpr double narrowest_share = 0.1, searched = 2;
-
-double normal_density(double u) {
-    return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
-}
 
 /// The response whose error is `t` standard errors; of a probability see the header.
 double response_at(const Prediction& p, Judged judged, double error, double t) {
@@ -115,6 +111,10 @@ std::vector<double> probability_of(std::span<const std::vector<Prediction>> pred
     return probability;
 }
 
+double learned(const Prediction& p) {
+    return p.mean_error > 0 ? 1 - p.scatter / std::hypot(p.mean_error, p.scatter) : 0;
+}
+
 std::vector<double> expected_improvement(std::span<const Prediction> objective, std::span<const double> probability,
                                          bool maximise) {
     if (objective.size() != probability.size())
@@ -127,10 +127,7 @@ std::vector<double> expected_improvement(std::span<const Prediction> objective, 
         gain[i] = probability[i];
         if (!best) continue;
         const double above = sign * p.mean - *best, s = p.mean_error;
-        const double improvement =
-            s > 0 ? above * normal_cdf(above / s) + s * normal_density(above / s) : std::max(above, 0.0);
-        const double learned = s > 0 ? 1 - p.scatter / std::hypot(s, p.scatter) : 0;
-        gain[i] *= improvement * learned;
+        gain[i] *= expected_positive(above, s) * learned(p);
     }
     return gain;
 }

@@ -74,6 +74,8 @@ private:
                                                  const Condition& condition, Judged judged,
                                                  const SampledErrors& errors);
 
+/// Returns the last factor of A(x): the part of the error of the mean that one run removes.
+[[nodiscard]] double learned(const Prediction& objective);
 /// Returns A(x) of every point. If P > 1/2 nowhere, returns P.
 [[nodiscard]] std::vector<double> expected_improvement(std::span<const Prediction> objective,
                                                        std::span<const double> probability, bool maximise);

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace grainsweep::campaign {
 
@@ -22,16 +23,28 @@ double read_step_size(const Cursor& place, const ParameterSpec& parameter) {
     return std::get<double>(coerced(read_value(place, size, {}), Value{0.0}));
 }
 
-void check_multiples(const Cursor& place, const Between& range, double step) {
-    const double farthest = std::max(std::abs(range.low), std::abs(range.high));
+void check_multiples(const Cursor& place, const Between& range, std::pair<double, double> ends, double step) {
+    const double farthest = std::max(std::abs(ends.first), std::abs(ends.second));
     if (farthest / step > static_cast<double>(most_multiples))
-        place.refuse(fmt::format("'between' ends more than {} steps from 0: give a larger step", most_multiples));
+        place.refuse(fmt::format("the values end more than {} steps from 0: give a larger step", most_multiples));
     const auto count = multiples_in(step, range.low, range.high).count();
     if (count < 2)
         place.refuse(
             fmt::format("{} multiple of it, counted from 0, lies between {} and {}: give a smaller step or a "
                         "wider range",
                         count == 1 ? "only one" : "no", shortest(range.low), shortest(range.high)));
+}
+
+/// A distribution without ends may round to a number beyond the parameter's bounds.
+void check_rounded(const Cursor& place, const stats::Distribution& distribution, const ParameterSpec& parameter,
+                   double step) {
+    const auto* bounds = std::get_if<Interval>(&parameter.bounds);
+    for (const double u : {0.0, 1.0})
+        if (const double x = stepped(distribution, step, u); bounds != nullptr && !bounds->contains(x))
+            place.refuse(
+                fmt::format("values round to {}, where '{}' has no value: give a smaller step, or {} to the "
+                            "distribution",
+                            shortest(x), parameter.name, u == 0 ? "\"low\"" : "\"high\""));
 }
 
 /// A text on one line, as an identity keeps it.
@@ -50,21 +63,29 @@ void check_group_name(const Cursor& place, const std::string& name) {
 
 }  // namespace
 
-std::optional<double> read_step(const Section& factor, const ParameterSpec& parameter, const Between& range) {
-    const auto step = factor.find("step"), whole = factor.find("whole");
+std::optional<double> read_step(const Section& section, const ParameterSpec& parameter, const Factor& factor) {
+    const auto step = section.find("step"), whole = section.find("whole");
     if (step && whole) step->refuse("'whole' is a step of 1: give one of the two");
-    if (whole && !factor.flag("whole", false)) {
+    if (whole && !section.flag("whole", false)) {
         whole->refuse("only true has a meaning: leave it out for real numbers");
     }
     if (!step && !whole) return std::nullopt;
     const double size = step ? read_step_size(*step, parameter) : 1;
-    check_multiples(step ? *step : *whole, range, size);
+    const auto& place = step ? *step : *whole;
+    if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range)) {
+        const auto [low, high] = distribution->range();
+        check_multiples(place, {low, high}, {distribution->quantile(0), distribution->quantile(1)}, size);
+        check_rounded(place, *distribution, parameter, size);
+    } else {
+        const auto& range = std::get<Between>(factor.range);
+        check_multiples(place, range, {range.low, range.high}, size);
+    }
     return size;
 }
 
 void refuse_steps(const Section& factor, std::string_view why) {
     for (const auto* key : {"step", "whole"})
-        if (const auto place = factor.find(key)) place->refuse(fmt::format("{}; it belongs to \"between\"", why));
+        if (const auto place = factor.find(key)) place->refuse(std::string(why));
 }
 
 void read_ties(const Section& section, Factor& factor) {

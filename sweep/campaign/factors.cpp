@@ -125,11 +125,10 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
             std::visit([&](auto&& range) { factor.range = std::move(range); },
                        read_distribution(section, key, parameter, folder));
         }
-        if (key == "between" || key == "uniform") {
-            factor.step = read_step(section, parameter, std::get<Between>(factor.range));
-        } else {
-            refuse_steps(section, key == "levels" ? "levels are taken as they are" : "a distribution has no steps");
-        }
+        if (key == "levels" || key == "sample")
+            refuse_steps(section, fmt::format("the values of a factor with \"{}\" are taken as they are", key));
+        else
+            factor.step = read_step(section, parameter, factor);
         read_ties(section, factor);
         factors.push_back(std::move(factor));
     }

@@ -28,14 +28,18 @@ std::string joined(const std::vector<Value>& values) {
     return text;
 }
 
+constexpr std::string_view step_mark = " step ";
+
 std::string line_of(const Factor& factor) {
     if (const auto* between = std::get_if<Between>(&factor.range)) {
         return fmt::format("{} between {} {} {}{}{}", factor.name, shortest(between->low), shortest(between->high),
                            between->scale == Scale::log ? "log" : "linear",
-                           factor.step ? " step " + shortest(*factor.step) : "", factor.share ? " share" : "");
+                           factor.step ? fmt::format("{}{}", step_mark, shortest(*factor.step)) : "",
+                           factor.share ? " share" : "");
     }
     if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
-        return fmt::format("{} {}", factor.name, stated_text(*distribution));
+        return fmt::format("{} {}{}", factor.name, stated_text(*distribution),
+                           factor.step ? fmt::format("{}{}", step_mark, shortest(*factor.step)) : "");
     return fmt::format("{} levels {}", factor.name, joined(std::get<Levels>(factor.range).values));
 }
 
@@ -114,7 +118,7 @@ double identity_number(const std::string& text) {
     return number;
 }
 
-/// Returns the factor that line_of() wrote; for a sample only its name.
+/// Returns the factor that line_of() wrote; for a distribution only its name and step.
 StatedFactor factor_in(const std::string& line) {
     constexpr std::string_view levels = " levels ", between = " between ";
     StatedFactor factor;
@@ -130,6 +134,8 @@ StatedFactor factor_in(const std::string& line) {
             if (word == "share") factor.share = true;
             if (word == "step" && words >> number) factor.step = identity_number(number);
         }
+    } else if (const auto at = line.rfind(step_mark); at != std::string::npos) {
+        factor.step = identity_number(line.substr(at + step_mark.size()));
     }
     return factor;
 }
@@ -144,7 +150,8 @@ void add_distributions(std::vector<StatedFactor>& factors, const std::vector<std
     for (std::size_t j = 0; j < lines.size(); ++j) {
         if (factors[j].between || !factors[j].levels.empty()) continue;
         const auto end = std::min(factors[j].name.size() + 1, lines[j].size());
-        auto found = distribution_in(std::string_view(lines[j]).substr(end));
+        const auto stated = std::string_view(lines[j]).substr(0, lines[j].rfind(step_mark));
+        auto found = distribution_in(stated.substr(end));
         if (auto* whole = std::get_if<stats::Distribution>(&found)) factors[j].distribution = std::move(*whole);
         if (auto* column = std::get_if<StatedColumn>(&found); column != nullptr && !column->values.empty())
             samples[column->sample].push_back({j, std::move(*column)});

@@ -40,7 +40,11 @@ double value_at(const stats::Distribution& range, double u) {
 }  // namespace
 
 Value value_at(const Factor& factor, double u) {
-    if (factor.step) return stepped(std::get<Between>(factor.range), *factor.step, u);
+    if (factor.step) {
+        if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
+            return stepped(*distribution, *factor.step, u);
+        return stepped(std::get<Between>(factor.range), *factor.step, u);
+    }
     return std::visit([u](const auto& range) -> Value { return value_at(range, u); }, factor.range);
 }
 

@@ -49,10 +49,10 @@ struct NamedColumn {
 /// Reads the files and sets the columns of the factors; columns of one file share its rows.
 void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& factors, const SceneInfo& scene,
                   const std::filesystem::path& folder);
-/// Reads "step" or "whole" of a factor with a range.
-[[nodiscard]] std::optional<double> read_step(const Section& factor, const ParameterSpec& parameter,
-                                              const Between& range);
-/// Refuses "step" and "whole" of a factor without a range, for the reason `why`.
+/// Reads "step" or "whole" of a factor with a range or a distribution.
+[[nodiscard]] std::optional<double> read_step(const Section& section, const ParameterSpec& parameter,
+                                              const Factor& factor);
+/// Refuses "step" and "whole" of other factors, for the reason `why`.
 void refuse_steps(const Section& factor, std::string_view why);
 /// Reads "group" and "when" of a factor; store::compile_conditions parses the condition.
 void read_ties(const Section& section, Factor& factor);

@@ -51,4 +51,12 @@ double stepped(const Between& range, double step, double u) {
     return multiple_of(step, std::clamp(nearest, first, last));
 }
 
+double stepped(const stats::Distribution& distribution, double step, double u) {
+    const auto nearest = static_cast<std::int64_t>(std::floor(distribution.quantile(u) / step + 0.5));
+    const double x = multiple_of(step, nearest);
+    return x < distribution.low()    ? multiple_of(step, nearest + 1)
+           : x > distribution.high() ? multiple_of(step, nearest - 1)
+                                     : x;
+}
+
 }  // namespace grainsweep::campaign

@@ -4,6 +4,9 @@
 // value of the widened range is rounded to the nearest multiple. So each multiple has a complete cell, also the first
 // and the last, and no value lies outside the range. In a linear range all multiples are equally likely. In a
 // logarithmic range each has the probability of its cell, proportional to log((m + 1/2)/(m - 1/2)).
+//
+// The values of a distribution are rounded to the nearest multiple, so each multiple has the probability of its cell.
+// The first and the last inside its ends have what lies beyond them, too.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -29,5 +32,6 @@ inline constexpr std::int64_t most_multiples = 1'000'000'000;
 [[nodiscard]] bool is_multiple(double step, double x);
 /// Returns the multiple at the coordinate u in [0, 1] of a range that has at least one.
 [[nodiscard]] double stepped(const Between& range, double step, double u);
+[[nodiscard]] double stepped(const stats::Distribution& distribution, double step, double u);
 
 }  // namespace grainsweep::campaign

@@ -50,7 +50,9 @@ designs::FactorRange stated_range(const StatedFactor& stated) {
             return std::get<double>(value_at(factor, u));
         };
     if (stated.distribution)
-        range.value_at = [distribution = *stated.distribution](double u) { return distribution.quantile(u); };
+        range.value_at = [factor = Factor{stated.name, *stated.distribution, stated.step}](double u) {
+            return std::get<double>(value_at(factor, u));
+        };
     range.endless = stated.distribution && !stated.distribution->has_ends();
     return range;
 }

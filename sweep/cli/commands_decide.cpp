@@ -162,12 +162,12 @@ void declare_predict(Parser& parser, PredictRequest& request) {
 }
 
 struct WindowArguments {
-    std::string database, campaign, maximise, minimise;
+    std::string database, campaign;
     std::string next_file, output;
-    std::vector<std::string> hold, left_out;
+    std::vector<std::string> maximise, minimise, reference, hold, left_out;
     std::int64_t next = 0;
     bool single = false, run = false;
-    double width = 0;
+    double width = 0, tolerance = 0;
     std::optional<std::int64_t> max_cases, workers;
     study::WindowRequest request;
 };
@@ -185,20 +185,43 @@ std::string write_next(const Store& store, const study::ModelCases& cases, const
 void check_run(const WindowArguments& arguments, const study::WindowRequest& request) {
     if (!arguments.run) {
         for (const auto& [given, option] : {std::pair{arguments.width != 0, "--width"},
+                                            {arguments.tolerance != 0, "--tolerance"},
                                             {arguments.max_cases.has_value(), "--max-cases"},
                                             {arguments.workers.has_value(), "-j"}})
             if (given) throw campaign::wrong_question(option, "", "needs --run");
         return;
     }
-    if (request.objective.empty())
+    if (request.objectives.empty())
         throw campaign::wrong_question("--run", "", "needs --maximize or --minimize: --width applies to its mean");
-    if (arguments.width == 0)
+    const bool pair = request.objectives.size() == 2;
+    const std::string option = pair ? "--tolerance" : "--width", other = pair ? "--width" : "--tolerance";
+    const double end = pair ? arguments.tolerance : arguments.width;
+    if ((pair ? arguments.width : arguments.tolerance) != 0)
         throw campaign::wrong_question(
-            "--run", "", "needs --width, the 95 % half-width of the objective's mean at the best setting");
+            other, "",
+            fmt::format("is for {}; here {} ends the run", pair ? "one objective" : "two objectives", option));
+    if (end == 0)
+        throw campaign::wrong_question(
+            "--run", "",
+            pair ? "needs --tolerance, the part of its hypervolume that the computed front may lack: 0.01"
+                 : "needs --width, the 95 % half-width of the objective's mean at the best setting");
     if (!arguments.next_file.empty())
         throw campaign::wrong_question("--next-file", arguments.next_file, "--run runs the next cases itself");
-    if (!(arguments.width > 0) || !std::isfinite(arguments.width))
-        throw campaign::wrong_question("--width", fmt::format("{}", arguments.width), "must be a positive number");
+    if (!(end > 0) || !std::isfinite(end))
+        throw campaign::wrong_question(option, fmt::format("{}", end), "must be a positive number");
+}
+
+std::vector<study::Objective> objectives_of(const WindowArguments& arguments) {
+    std::vector<study::Objective> objectives;
+    for (const auto& name : arguments.maximise) objectives.push_back({name, true});
+    for (const auto& name : arguments.minimise) objectives.push_back({name, false});
+    if (objectives.size() > 2)
+        throw campaign::wrong_question("--minimize", objectives.back().name,
+                                       "at most two objectives: --maximize and --minimize together");
+    if (!arguments.reference.empty() && objectives.size() < 2)
+        throw campaign::wrong_question("--reference", arguments.reference.front(),
+                                       "is for two objectives, by --maximize and --minimize");
+    return objectives;
 }
 
 /// Batches of next cases until the best setting is known; then the window is answered from all of them.
@@ -210,6 +233,7 @@ std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const st
     return run_towards_window({.database = arguments.database,
                                .campaign = arguments.campaign,
                                .width = arguments.width,
+                               .tolerance = arguments.tolerance,
                                .batch = arguments.next > 0 ? arguments.next : usual_batch,
                                .max_cases = arguments.max_cases.value_or(usual_most),
                                .workers = arguments.workers},
@@ -217,23 +241,22 @@ std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const st
 }
 
 int window(const WindowArguments& arguments, Format format) {
-    if (!arguments.maximise.empty() && !arguments.minimise.empty())
-        throw campaign::wrong_question("--minimize", arguments.minimise, "one objective: --maximize or --minimize");
     if (!arguments.next_file.empty() && arguments.next == 0)
         throw campaign::wrong_question("--next-file", arguments.next_file, "needs --next N, the number of cases");
     if (!arguments.next_file.empty()) check_page_file("--next-file", arguments.next_file, arguments.database);
     if (!arguments.output.empty()) check_page_file("-o", arguments.output, arguments.database);
     auto request = arguments.request;
-    request.objective = arguments.maximise.empty() ? arguments.minimise : arguments.maximise;
-    request.maximise = arguments.minimise.empty();
+    request.objectives = objectives_of(arguments);
     request.judged = arguments.single ? stats::Judged::single_run : stats::Judged::mean;
     request.left_out = outcomes_in(arguments.left_out);
     StepLines lines;
     request.progress = [&](std::string_view step, double done) { lines.step(step, done); };
     check_run(arguments, request);
-    if (!arguments.hold.empty()) {
+    if (!arguments.hold.empty() || !arguments.reference.empty()) {
         const Store store(arguments.database, Store::Mode::read);
-        request.held = read_held(study::read_model_cases(store, arguments.campaign).factors, arguments.hold);
+        const auto cases = study::read_model_cases(store, arguments.campaign);
+        request.held = read_held(cases.factors, arguments.hold);
+        read_references(cases, arguments.reference, request.objectives);
     }
     const auto end = run_first(arguments, request);
     request.next = arguments.run ? 0 : static_cast<std::size_t>(arguments.next);
@@ -267,8 +290,17 @@ void declare_window(Parser& parser, WindowArguments& arguments) {
     parser.add_option("--where CONDITION", arguments.request.where,
                       "condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"; \"... for all "
                       "powder\": at every level of that factor");
-    parser.add_option("--maximize NAME", arguments.maximise, "observable or factor to maximise");
-    parser.add_option("--minimize NAME", arguments.minimise, "observable or factor to minimise");
+    parser
+        .add_option("--maximize NAME", arguments.maximise, "observable or factor to maximise; at most two objectives")
+        ->allow_extra_args(false);
+    parser
+        .add_option("--minimize NAME", arguments.minimise, "observable or factor to minimise; at most two objectives")
+        ->allow_extra_args(false);
+    parser
+        .add_option("--reference NAME=VALUE", arguments.reference,
+                    "of two objectives: value of one at the reference point of the hypervolume; default: the worst "
+                    "computed value")
+        ->allow_extra_args(false);
     parser
         .add_option("--risk", arguments.request.risk,
                     "largest probability that a setting in the window violates the condition")
@@ -285,9 +317,11 @@ void declare_window(Parser& parser, WindowArguments& arguments) {
                       "campaign file to write with the proposed cases; run it into the same database");
     parser.add_flag("--run", arguments.run,
                     "run batches of proposed cases (--next N each; default: 8) until the best setting is known to "
-                    "--width; run it again to resume");
+                    "--width, or the front of two objectives to --tolerance; run it again to resume");
     parser.add_option("--width WIDTH", arguments.width,
                       "with --run: wanted 95 % half-width of the objective's mean at the best setting");
+    parser.add_option("--tolerance PART", arguments.tolerance,
+                      "with --run, of two objectives: part of its hypervolume that the computed front may lack (95 %)");
     parser.add_option("--max-cases N", arguments.max_cases, "with --run: run at most N cases; default: 100")
         ->check(whole_number(1));
     parser.add_option("-j N", arguments.workers, "with --run: worker processes; 0: all cores")

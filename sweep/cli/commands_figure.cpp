@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,16 @@ using store::Table;
 struct FigureRequest {
     std::string database, name;
     FigureFile file;
-    std::string campaign, observable, across, up, colour;
+    std::string campaign, observable, across, up, colour, axis;
 };
+
+/// Whether the axis of the observable is logarithmic; nothing: as the figure has it.
+std::optional<bool> log_axis(const std::string& word) {
+    if (word.empty()) return std::nullopt;
+    if (word != "log" && word != "linear")
+        throw campaign::wrong_question("--axis", fmt::format("'{}'", word), "must be log or linear");
+    return word == "log";
+}
 
 /// The one that is named, or the only one.
 store::CampaignRecord campaign_of_figure(const Store& store, const std::string& name) {
@@ -53,6 +62,7 @@ int list_figures(const report::FigureSubject& subject, Format format) {
 
 int figure(const FigureRequest& request, Format format) {
     const double width = width_in_mm(request.file);
+    const auto log = log_axis(request.axis);
     const auto& output = request.file.output;
     if (!request.name.empty()) (void)figure_type(request.file, request.database);
     if (request.name.empty() && !output.empty())
@@ -60,8 +70,8 @@ int figure(const FigureRequest& request, Format format) {
                                        "name a figure; grainsweep figure DB lists them");
     const Store store(request.database, Store::Mode::read);
     const auto responses = study::read_responses(store, campaign_of_figure(store, request.campaign));
-    const report::FigureSubject subject{store,          responses,  responses.observable(request.observable),
-                                        request.across, request.up, request.colour};
+    const report::FigureSubject subject{
+        store, responses, responses.observable(request.observable), request.across, request.up, request.colour, log};
     if (request.name.empty()) return list_figures(subject, format);
     const auto bytes = write_figure(request.file, report::figure_named(subject, request.name), request.database);
     Document shown{.rows = {{"figure", "bytes"}, {{output, static_cast<std::int64_t>(bytes)}}}};
@@ -81,6 +91,9 @@ void declare_figure(Parser& parser, FigureRequest& request) {
                       "scalar observable; default: that of the convergence rule, else the scene's first");
     parser.add_option("--across NAME", request.across, "of cases and map: the variable along the horizontal axis");
     parser.add_option("--up NAME", request.up, "of cases and map: the variable along the vertical axis");
+    parser.add_option("--axis KIND", request.axis,
+                      "axis of the observable, log or linear; default: log where all values are positive and the "
+                      "largest is more than a hundred times the smallest");
     parser.add_option("--colour NAME", request.colour, "of cases and curves: the variable that colours them");
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -127,6 +128,32 @@ study::Held read_held(std::span<const ModelFactor> factors, std::span<const std:
         held.emplace_back(j, *values[j]);
     }
     return held;
+}
+
+void read_references(const study::ModelCases& cases, std::span<const std::string> assignments,
+                     std::span<study::Objective> objectives) {
+    for (const auto& assignment : assignments) {
+        const auto equals = assignment.find('=');
+        if (equals == std::string::npos)
+            throw campaign::wrong_question("--reference", assignment, "must be NAME=VALUE");
+        const std::string name = assignment.substr(0, equals), text = assignment.substr(equals + 1);
+        const auto objective = std::ranges::find(objectives, name, &study::Objective::name);
+        if (objective == objectives.end())
+            throw campaign::wrong_question("--reference", name, "is neither of the two objectives");
+        if (objective->reference) throw campaign::wrong_question("--reference", name, "this objective is given twice");
+        const auto observable = std::ranges::find(cases.observables, name, &study::ResponseColumn::name);
+        const auto factor = std::ranges::find(cases.factors, name, &ModelFactor::name);
+        const auto unit = observable != cases.observables.end() ? observable->unit
+                          : factor != cases.factors.end()       ? factor->unit
+                                                                : std::string();
+        const auto number = campaign::in_si(text, unit);
+        const auto* value = std::get_if<double>(&number);
+        if (value == nullptr || !std::isfinite(*value))
+            throw campaign::wrong_question(
+                "--reference " + name, fmt::format("'{}'", text),
+                value == nullptr ? std::get<std::string>(number) : std::string("must be a finite number"));
+        objective->reference = *value;
+    }
 }
 
 std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::span<const ModelFactor> factors) {

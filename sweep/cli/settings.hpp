@@ -1,7 +1,7 @@
 // Settings in the arguments of a command: one setting by NAME=VALUE for every factor, or a CSV file of settings.
 #pragma once
 
-#include "sweep/study/window_space.hpp"
+#include "sweep/study/window_question.hpp"
 
 #include <filesystem>
 #include <span>
@@ -19,6 +19,11 @@ namespace grainsweep::cli {
 /// outside the range.
 [[nodiscard]] study::Held read_held(std::span<const study::ModelFactor> factors,
                                     std::span<const std::string> assignments);
+
+/// Reads the reference values of objectives, each once. Throws WrongQuestion for another name or a value that is no
+/// finite number.
+void read_references(const study::ModelCases& cases, std::span<const std::string> assignments,
+                     std::span<study::Objective> objectives);
 
 /// Reads a file with a header that names every factor, in any order, then one setting per line.
 [[nodiscard]] std::vector<study::Setting> read_settings_file(const std::filesystem::path& file,

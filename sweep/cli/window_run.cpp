@@ -4,6 +4,7 @@
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/written_campaign.hpp"
+#include "sweep/report/window_tables.hpp"
 #include "sweep/store/campaign_name.hpp"
 
 #include <fmt/format.h>
@@ -36,10 +37,11 @@ std::optional<Batch> unfinished_batch(const Store& store, const std::string& cam
 
 /// State of the window in the database.
 struct Standing {
-    std::string campaign;  ///< the name of the campaign that is asked about
-    double half_width = std::numeric_limits<double>::infinity();
-    double mean = 0;
-    std::size_t cases = 0;  ///< in the objective's model
+    std::string campaign;                                   ///< the name of the campaign that is asked about
+    double wanted = 0;                                      ///< width or tolerance
+    double left = std::numeric_limits<double>::infinity();  ///< half-width, or part of the hypervolume
+    std::string text;                                       ///< one sentence without a full stop
+    std::size_t cases = 0;                                  ///< in the objective's model
     std::optional<Batch> next;
 };
 
@@ -48,16 +50,26 @@ Standing standing_of(const WindowRun& run, study::WindowRequest request, std::in
     const auto cases = study::read_model_cases(store, run.campaign, request.left_out);
     request.next = static_cast<std::size_t>(std::max<std::int64_t>(0, std::min(run.batch, most)));
     const auto window = study::window_of(store, cases, request);
-    if (window.objective_is_factor)
+    const bool pair = window.goals.size() == 2;
+    if (!pair && window.goals.front().factor)
         throw campaign::wrong_question(
-            "--run", request.objective,
+            "--run", request.objectives.front().name,
             "is a factor, whose value is chosen, not measured: --width needs an observable as objective");
     Standing standing;
     standing.campaign = cases.campaign.name;
     standing.cases = window.models.front().cases();
-    if (window.best) {
-        standing.half_width = window.best->predictions.front().mean_half_width();
-        standing.mean = window.best->predictions.front().mean;
+    standing.wanted = pair ? run.tolerance : run.width;
+    if (pair && window.volume->value > 0) {
+        standing.left = window.volume->further / window.volume->value;
+        standing.text = fmt::format("{}, wanted {:.3g} %", report::volume_text(*window.volume), 100 * run.tolerance);
+    } else if (!pair && window.best) {
+        const auto& best = window.best->objectives.front();
+        standing.left = best.mean_half_width();
+        standing.text = fmt::format("best {} {:.6g} +- {:.3g} (95 %), wanted +- {:.3g}",
+                                    request.objectives.front().name, best.mean, standing.left, run.width);
+    } else {
+        standing.text = fmt::format("no {}setting meets the condition with probability {} yet", pair ? "computed " : "",
+                                    1 - request.risk);
     }
     if (auto open = unfinished_batch(store, cases.campaign.name)) {
         standing.next = std::move(open);
@@ -68,13 +80,6 @@ Standing standing_of(const WindowRun& run, study::WindowRequest request, std::in
                               static_cast<std::int64_t>(window.next.size())};
     }
     return standing;
-}
-
-std::string standing_text(const Standing& standing, const study::WindowRequest& request, double width) {
-    if (!std::isfinite(standing.half_width))
-        return fmt::format("no setting meets the condition with probability {} yet", 1 - request.risk);
-    return fmt::format("best {} {:.6g} +- {:.3g} (95 %), wanted +- {:.3g}", request.objective, standing.mean,
-                       standing.half_width, width);
 }
 
 }  // namespace
@@ -92,9 +97,9 @@ WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest
     while (true) {
         const auto left = run.max_cases - end.cases;
         const auto standing = standing_of(run, request, left);
-        const auto text = standing_text(standing, request, run.width);
+        const auto& text = standing.text;
         if (!run.quiet) std::cerr << fmt::format("{} cases: {}\n", standing.cases, text);
-        end.reached = standing.half_width <= run.width;
+        end.reached = standing.left <= standing.wanted;
         end.exit_code = end.reached ? 0 : 1;
         end.says = text;
         if (end.reached) return end;
@@ -118,8 +123,9 @@ WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest
         ++end.batches;
         if (is_end_of_all(report.exit_code)) {
             end.exit_code = report.exit_code;
-            end.says = report.exit_code == interrupted_code ? "interrupted; run it again to resume"
-                                                       : "ended by a signal or a time limit; run it again to resume";
+            end.says = report.exit_code == interrupted_code
+                           ? "interrupted; run it again to resume"
+                           : "ended by a signal or a time limit; run it again to resume";
             return end;
         }
     }

@@ -119,7 +119,7 @@ plot::Figure draw_map(const FigureSubject& subject, const PanelNames&) {
     const auto range = finite_range(cells.means);
     const auto shown = quantity_of("mean " + subject.response.name, subject.response.unit,
                                    std::max(std::abs(range.low), std::abs(range.high)));
-    const auto scale = colour_scale(shown, range);
+    const auto scale = colour_scale(shown, range, has_log_axis(subject, range));
     plot::Cells drawn;
     for (const double x : cells.x_edges) drawn.x_edges.push_back(across.shown(x));
     for (const double y : cells.y_edges) drawn.y_edges.push_back(up.shown(y));
@@ -139,7 +139,7 @@ plot::Figure draw_map(const FigureSubject& subject, const PanelNames&) {
 
 /// The response against a factor: cases, at most `most_dots` of them at random, and their binned mean.
 plot::Panel against_panel(const FigureSubject& subject, plot::Figure& figure, const FactorColumn& factor) {
-    const auto across = variable_of(factor), up = variable_of(subject.response);
+    const auto across = variable_of(factor), up = response_variable(subject);
     plot::Panel panel{across.axis(), up.axis(0.04)};
     std::vector<std::size_t> rows(subject.responses.settled);
     std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -188,15 +188,18 @@ PanelNames against_panels(const FigureSubject& subject) {
 FigureKind cases_figure() {
     return {"cases",      "one variable against another, a point per case, coloured by a third",
             cases_panels, draw_cases,
-            true,         true};
+            true,         true,
+            true};
 }
 
 FigureKind map_figure() {
-    return {"map", "mean response over two factors", map_panels, draw_map, true};
+    return {"map", "mean response over two factors", map_panels, draw_map, true, false, true};
 }
 
 FigureKind against_figure() {
-    return {"against", "response against each factor: cases and binned mean", against_panels, draw_against};
+    return {
+        "against", "response against each factor: cases and binned mean", against_panels, draw_against, false, false,
+        true};
 }
 
 }  // namespace grainsweep::report

@@ -23,6 +23,7 @@ struct FigureKind {
     plot::Figure (*draw)(const FigureSubject& subject, const PanelNames& panels);
     bool has_choice = false;  ///< has the options across and up
     bool has_colour = false;  ///< has the option colour
+    bool has_axis = false;    ///< has the option axis
 };
 
 // Rows, by file.
@@ -48,6 +49,12 @@ struct FigureKind {
 [[nodiscard]] std::vector<const study::FactorColumn*> by_influence(const FigureSubject& subject);
 /// Returns the variable that an option names: factor, response or "point". Throws WrongQuestion with the nearest name.
 [[nodiscard]] Variable named_variable(const FigureSubject& subject, std::string_view option, const std::string& name);
+
+/// Returns whether the axis of the response is logarithmic, over this range. Throws WrongQuestion where that is
+/// requested and the range is not positive.
+[[nodiscard]] bool has_log_axis(const FigureSubject& subject, const NumberRange& range);
+/// Returns the response as a variable, with the requested axis.
+[[nodiscard]] Variable response_variable(const FigureSubject& subject);
 
 /// Returns the rows of failed cases.
 [[nodiscard]] std::vector<std::size_t> failed_rows(const study::Responses& responses);

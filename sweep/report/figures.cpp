@@ -42,6 +42,7 @@ void refuse_useless_choice(const FigureSubject& subject, const FigureKind& kind)
     if (!kind.has_choice && !subject.across.empty()) refuse("--across", subject.across);
     if (!kind.has_choice && !subject.up.empty()) refuse("--up", subject.up);
     if (!kind.has_colour && !subject.colour.empty()) refuse("--colour", subject.colour);
+    if (!kind.has_axis && subject.log) refuse("--axis", *subject.log ? "log" : "linear");
 }
 
 }  // namespace
@@ -113,7 +114,8 @@ Variable named_variable(const FigureSubject& subject, std::string_view option, c
         names.push_back(factor.name);
     }
     for (const auto& response : responses.observables) {
-        if (response.name == name) return variable_of(response);
+        if (response.name == name)
+            return name == subject.response.name ? response_variable(subject) : variable_of(response);
         names.push_back(response.name);
     }
     if (name != "point")
@@ -123,6 +125,21 @@ Variable named_variable(const FigureSubject& subject, std::string_view option, c
     const std::vector<double> points(responses.points.begin(), responses.points.end());
     const auto range = finite_range(points);
     return {name, "1", {}, range.low, range.high, false, points};
+}
+
+bool has_log_axis(const FigureSubject& subject, const NumberRange& range) {
+    if (!subject.log.value_or(spans_decades(range))) return false;
+    if (range.low > 0) return true;
+    throw campaign::wrong_question(
+        "--axis", "'log'",
+        fmt::format("what the figure shows of '{}' reaches down to {:.4g}: it has no logarithmic axis",
+                    subject.response.name, range.low));
+}
+
+Variable response_variable(const FigureSubject& subject) {
+    auto variable = variable_of(subject.response);
+    variable.log = has_log_axis(subject, {variable.low, variable.high});
+    return variable;
 }
 
 std::vector<std::size_t> failed_rows(const study::Responses& responses) {

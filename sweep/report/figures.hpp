@@ -7,6 +7,7 @@
 #include "sweep/store/store.hpp"
 #include "sweep/study/responses.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ struct FigureSubject {
     const study::ResponseColumn& response;
     /// Names of variables, for figures with such options; empty: the response and the two most influential factors.
     std::string across = {}, up = {}, colour = {};
+    /// Whether the axis of the response is logarithmic; empty: where what a figure shows of it spans decades.
+    std::optional<bool> log = {};
 };
 
 struct FigureInfo {

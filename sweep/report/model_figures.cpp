@@ -89,7 +89,7 @@ plot::Figure draw_model(const FigureSubject& subject, const PanelNames& panels) 
     plot::Figure figure;
     for (const auto j : found.pictures.order)
         if (std::ranges::count(panels, found.cases.factors[j].name) > 0)
-            figure.panels.push_back(model_panel(found, j, up, number_axis(up, range)));
+            figure.panels.push_back(model_panel(found, j, up, number_axis(up, range, has_log_axis(subject, range))));
     using enum plot::Key::Kind;
     figure.keys = {{"other factors at mid-range", plot::blue, line},
                    {"95 % of the mean", plot::faded(plot::blue, 0.2), area},
@@ -130,9 +130,10 @@ plot::Figure draw_model_map(const FigureSubject& subject, const PanelNames& pane
     const auto range = finite_range(numbers);
     const auto shown =
         quantity_of(subject.response.name, subject.response.unit, std::max(std::abs(range.low), std::abs(range.high)));
+    const auto scale = colour_scale(shown, range, has_log_axis(subject, range));
     for (const auto& [name, values] : {std::pair("averaged", &map.averaged), {"mid-range", &map.slice}})
         if (std::ranges::count(panels, name) > 0)
-            figure.panels.push_back(model_map_panel(found, *values, shown, colour_scale(shown, range)));
+            figure.panels.push_back(model_map_panel(found, *values, shown, scale));
     if (!found.cases.failed.empty()) figure.keys = {failed_key()};
     return figure;
 }
@@ -150,12 +151,18 @@ PanelNames model_map_panels(const FigureSubject& subject) {
 }  // namespace
 
 FigureKind model_figure() {
-    return {"model", "response model against each factor, with 95 % bands", model_panels, draw_model};
+    return {"model", "response model against each factor, with 95 % bands", model_panels, draw_model, false, false,
+            true};
 }
 
 FigureKind model_map_figure() {
-    return {"model-map", "response model over the two most influential factors; the others averaged, or at mid-range",
-            model_map_panels, draw_model_map};
+    return {"model-map",
+            "response model over the two most influential factors; the others averaged, or at mid-range",
+            model_map_panels,
+            draw_model_map,
+            false,
+            false,
+            true};
 }
 
 }  // namespace grainsweep::report

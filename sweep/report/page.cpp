@@ -13,6 +13,7 @@
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
+#include "sweep/report/print_axes.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/curves.hpp"
 #include "sweep/study/effects.hpp"
@@ -150,6 +151,7 @@ Json page_json(const Responses& responses, const ResponseColumn& response) {
     return {
         {"name", response.name},
         {"unit", response.unit},
+        {"log", spans_decades(finite_range(response.values))},
         {"meaning", response.meaning},
         {"history", page_json(history_of(responses, response, study::shown_levels))},
         {"histogram", {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}}},

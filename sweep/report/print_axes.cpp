@@ -156,7 +156,7 @@ Variable variable_of(const study::FactorColumn& factor) {
 
 Variable variable_of(const study::ResponseColumn& response) {
     const auto range = finite_range(response.values);
-    return {response.name, response.unit, {}, range.low, range.high, false, response.values};
+    return {response.name, response.unit, {}, range.low, range.high, spans_decades(range), response.values};
 }
 
 Variable variable_of(const study::ModelFactor& factor) {
@@ -172,6 +172,11 @@ NumberRange finite_range(std::span<const double> numbers) {
     if (low > high) return {};
     const double room = low == high ? 0.5 * (low == 0 ? 1 : std::abs(low)) : 0;
     return {low - room, high + room};
+}
+
+bool spans_decades(const NumberRange& range) {
+    constexpr double two_decades = 100;
+    return range.low > 0 && range.high > two_decades * range.low;
 }
 
 plot::Axis number_axis(const Quantity& quantity, const NumberRange& range, bool log, double margin) {

@@ -52,6 +52,7 @@ struct Variable {
     [[nodiscard]] double place(std::size_t row) const;
 };
 [[nodiscard]] Variable variable_of(const study::FactorColumn& factor);
+/// A response has a logarithmic axis if it spans decades.
 [[nodiscard]] Variable variable_of(const study::ResponseColumn& response);
 /// Returns the variable of a factor of a response model, without rows.
 [[nodiscard]] Variable variable_of(const study::ModelFactor& factor);
@@ -61,6 +62,8 @@ struct NumberRange {
     double low = 0, high = 1;
 };
 [[nodiscard]] NumberRange finite_range(std::span<const double> numbers);
+/// Returns whether all numbers are positive and the largest is more than a hundred times the smallest.
+[[nodiscard]] bool spans_decades(const NumberRange& range);
 /// Returns an axis of the range, widened by a share of its length.
 [[nodiscard]] plot::Axis number_axis(const Quantity& quantity, const NumberRange& range, bool log = false,
                                      double margin = 0.05);

@@ -15,22 +15,28 @@ namespace {
 using namespace study;
 
 plot::Figure draw_distribution(const FigureSubject& subject, const PanelNames&) {
-    const auto histogram = histogram_of(subject.responses.judged(subject.response));
-    const auto shown = variable_of(subject.response).quantity();
+    const auto variable = response_variable(subject);
+    const auto shown = variable.quantity();
+    const auto at = [&](double x) { return variable.log ? std::log(x) : x; };
+    std::vector<double> values;
+    for (const double x : subject.responses.judged(subject.response)) values.push_back(at(x));
+    const auto histogram = histogram_of(values);
     plot::Bars bars;
     const auto count = static_cast<double>(histogram.counts.size());
     // All values equal: one bar of a width of its own.
     const auto range = histogram.high > histogram.low ? NumberRange{histogram.low, histogram.high}
                                                       : finite_range(std::vector{histogram.low});
     const double width = (range.high - range.low) / count, gap = 0.04 * width;
+    const auto edge = [&](double x) { return shown.of(variable.log ? std::exp(x) : x); };
     for (std::size_t k = 0; k < histogram.counts.size(); ++k) {
         const double left = range.low + static_cast<double>(k) * width;
-        bars.from.push_back(shown.of(left + gap));
-        bars.to.push_back(shown.of(left + width - gap));
+        bars.from.push_back(edge(left + gap));
+        bars.to.push_back(edge(left + width - gap));
         bars.length.push_back(static_cast<double>(histogram.counts[k]));
     }
     const double most = *std::ranges::max_element(bars.length);
-    return {{{number_axis(shown, range, false, 0.02), {"cases", 0, 1.06 * most}, {bars}}}};
+    const NumberRange ends = variable.log ? NumberRange{std::exp(range.low), std::exp(range.high)} : range;
+    return {{{number_axis(shown, ends, variable.log, 0.02), {"cases", 0, 1.06 * most}, {bars}}}};
 }
 
 /// Returns the range of a moment's axis. Bands of the first checks may leave the frame, because their errors can be
@@ -139,11 +145,12 @@ plot::Figure draw_effects(const FigureSubject& subject, const PanelNames& panels
     const auto range = finite_range(ends);
     const auto shown = quantity_of(fmt::format("mean {}", subject.response.name), subject.response.unit,
                                    std::max(std::abs(range.low), std::abs(range.high)));
+    const auto axis = number_axis(shown, range, has_log_axis(subject, range));
     plot::Figure figure;
     for (std::size_t j = 0; j < bins.size(); ++j) {
         const auto& factor = subject.responses.factors[j];
         if (std::ranges::count(panels, factor.name) > 0)
-            figure.panels.push_back(effect_panel(factor, bins[j], number_axis(shown, range), shown));
+            figure.panels.push_back(effect_panel(factor, bins[j], axis, shown));
     }
     return figure;
 }
@@ -159,7 +166,7 @@ PanelNames factors_of_values(const FigureSubject& subject) {
 }  // namespace
 
 FigureKind distribution_figure() {
-    return {"distribution", "distribution of the response", single_of_values, draw_distribution};
+    return {"distribution", "distribution of the response", single_of_values, draw_distribution, false, false, true};
 }
 
 FigureKind convergence_figure() {
@@ -168,7 +175,9 @@ FigureKind convergence_figure() {
 }
 
 FigureKind effects_figure() {
-    return {"effects", "mean response against each factor, with 95 % errors", factors_of_values, draw_effects};
+    return {
+        "effects", "mean response against each factor, with 95 % errors", factors_of_values, draw_effects, false, false,
+        true};
 }
 
 }  // namespace grainsweep::report

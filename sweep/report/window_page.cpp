@@ -4,6 +4,7 @@
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
+#include "sweep/report/window_tables.hpp"
 #include "sweep/study/factor_axis.hpp"
 
 #include <algorithm>
@@ -44,15 +45,20 @@ double width_of(std::span<const Judgement> judged, double (*of)(const Judgement&
     return high > low ? high - low : 0;
 }
 
-bool modelled_objective(const WindowRequest& request, const Window& window) {
-    return !request.objective.empty() && !window.objective_is_factor;
+/// Whether the first objective is an observable.
+bool modelled_objective(const Window& window) {
+    return !window.goals.empty() && window.goals.front().model;
+}
+
+std::string name_of(const Goal& goal, const ModelCases& cases, const Window& window) {
+    return goal.model ? window.models[*goal.model].observable : cases.factors[*goal.factor].name;
 }
 
 double probability_of(const Judgement& one) {
     return one.probability;
 }
 double objective_of(const Judgement& one) {
-    return one.objective.mean;
+    return one.objectives.front().mean;
 }
 
 /// Returns the variance of the means of `values` in groups by a factor: eight groups of equal count, or the factor's
@@ -145,13 +151,13 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
             const Setting& centre, std::size_t a, std::size_t b) {
     const auto settings = settings_of_map(cases.factors, centre, a, b, points_of_curve);
     const auto judged = judge_settings(cases, request, window, admits, settings);
-    const bool modelled = modelled_objective(request, window);
+    const bool modelled = modelled_objective(window);
     Json probability = Json::array(), objective = modelled ? Json::array() : Json();
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
         probability.push_back(there ? Json(judged[i].probability) : Json());
         const bool answers = there && judged[i].believed;
-        if (modelled) objective.push_back(answers ? Json(judged[i].objective.mean) : Json());
+        if (modelled) objective.push_back(answers ? Json(judged[i].objectives.front().mean) : Json());
     }
     return map_json(cases.factors, a, b, points_of_curve).add({{"probability", probability}, {"objective", objective}});
 }
@@ -164,7 +170,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
     std::vector<FactorCurve> curves;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
         curves.push_back(curve_through(cases, request, window, admits, centre.setting, j));
-    const bool objective = !request.objective.empty(), modelled = modelled_objective(request, window);
+    const bool objective = !request.objectives.empty(), modelled = modelled_objective(window);
     double whole_range = 0;
     if (modelled) {
         const auto& model = window.models.front();
@@ -185,8 +191,9 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
             {"campaign", cases.campaign.name},
             {"scene", shown_scene(cases.campaign.scene)},
             {"where", request.where},
-            {"objective", objective ? Json(request.objective) : Json()},
-            {"maximize", request.maximise},
+            {"objective", objective ? Json(request.objectives.front().name) : Json()},
+            {"goal", goal_text(request)},
+            {"volume", window.volume ? Json(volume_text(*window.volume)) : Json()},
             {"single_run", request.judged == stats::Judged::single_run},
             {"risk", request.risk},
             {"share", window.share_of_box},
@@ -204,7 +211,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
             {"map", map},
             {"front", settings(window.front)},
             {"next", settings(window.next)},
-            {"against", window.against ? Json(window.models[*window.against].observable) : Json()},
+            {"against", window.against ? Json(name_of(*window.against, cases, window)) : Json()},
             {"notes", window.notes}};
 }
 

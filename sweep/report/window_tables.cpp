@@ -4,6 +4,10 @@
 #include "sweep/report/model_tables.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -54,7 +58,7 @@ Json window_table_json(const ModelCases& cases, const WindowRequest& request, co
     for (std::size_t k = 0; k < window.models.size(); ++k)
         observables.add(window.models[k].observable, estimate(one.predictions[k]));
     Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
-    if (!request.objective.empty()) object.add(estimate(one.objective));
+    if (!request.objectives.empty()) object.add(estimate(one.objectives[0]));
     const auto near = window.answers->near(one.setting);
     return object.add({{"probability", one.probability},
                        {"answers", one.answers},
@@ -65,28 +69,95 @@ Json window_table_json(const ModelCases& cases, const WindowRequest& request, co
                        {"observables", observables}});
 }
 
-store::Table computed_table(const ModelCases& cases, const WindowRequest& request, const Window& window) {
+/// Columns of a computed front: the goals that are no factors, of two objectives with an error each.
+store::Table computed_table(const ModelCases& cases, const Window& window) {
     store::Table table;
     table.columns = cases.factor_names();
     table.columns.emplace_back("runs");
-    if (!window.objective_is_factor) table.columns.push_back(request.objective);
-    table.columns.push_back(window.models[*window.against].observable);
+    const auto& first = window.goals.front();
+    const bool pair = window.goals.size() == 2;
+    const std::array goals = {first, *window.against};
+    for (const auto& goal : goals) {
+        if (!goal.model) continue;
+        table.columns.push_back(window.models[*goal.model].observable);
+        if (pair) table.columns.push_back(table.columns.back() + "_error");
+    }
     for (const auto& one : window.computed_front) {
         auto row = input_cells(cases.factors, one.setting);
         row.emplace_back(one.runs);
-        if (!window.objective_is_factor) row.push_back(to_cell(one.objective));
-        row.push_back(to_cell(one.against));
+        const std::array means = {one.objective, one.against};
+        for (std::size_t k = 0; k < goals.size(); ++k) {
+            if (!goals[k].model) continue;
+            row.push_back(to_cell(pair ? one.judged->objectives[k].mean : means[k]));
+            if (pair) row.push_back(to_cell(one.judged->objectives[k].mean_error));
+        }
         table.rows.push_back(std::move(row));
     }
     return table;
 }
 
-Json computed_json(const ModelCases& cases, const WindowRequest& request, const Window& window,
-                   const study::ComputedSetting& one) {
-    Json observables = Json::object();
-    if (!window.objective_is_factor) observables.add(request.objective, one.objective);
-    observables.add(window.models[*window.against].observable, one.against);
-    return {{"inputs", inputs_json(cases.factors, one.setting)}, {"runs", one.runs}, {"observables", observables}};
+Json computed_json(const ModelCases& cases, const Window& window, const FrontSetting& one) {
+    Json observables = Json::object(), means = Json::object();
+    const std::array goals = {window.goals.front(), *window.against};
+    const std::array values = {one.objective, one.against};
+    for (std::size_t k = 0; k < goals.size(); ++k) {
+        if (!goals[k].model) continue;
+        const auto& name = window.models[*goals[k].model].observable;
+        observables.add(name, values[k]);
+        if (one.judged)
+            means.add(name,
+                      {{"mean", one.judged->objectives[k].mean}, {"mean_error", one.judged->objectives[k].mean_error}});
+    }
+    Json object = {
+        {"inputs", inputs_json(cases.factors, one.setting)}, {"runs", one.runs}, {"observables", observables}};
+    if (one.judged) object.add({{"means", means}, {"probability", one.judged->probability}});
+    return object;
+}
+
+Json objective_json(const WindowRequest& request, const Window& window, std::size_t k) {
+    Json object = {{window.goals[k].factor ? "factor" : "observable", request.objectives[k].name},
+                   {"maximize", request.objectives[k].maximise}};
+    if (window.goals.size() == 2) object.add("reference", window.goals[k].reference);
+    return object;
+}
+
+Json volume_json(const FrontVolume& volume) {
+    return {{"value", volume.value}, {"error", volume.error}, {"further", volume.further}};
+}
+
+/// State of the search after each of its campaigns.
+store::Table batches_table(const ModelCases& cases, const WindowRequest& request, const Window& window) {
+    store::Table table;
+    table.columns = {"after", "cases"};
+    const bool pair = window.goals.size() == 2, factor = !pair && window.goals[0].factor;
+    if (!pair) std::ranges::move(cases.factor_names(), std::back_inserter(table.columns));
+    const std::string value = pair ? "hypervolume" : request.objectives[0].name;
+    if (!factor) table.columns.insert(table.columns.end(), {value, value + "_error"});
+    std::int64_t sum = 0;
+    for (const auto& batch : window.batches) {
+        sum += batch.cases;
+        std::vector<store::Table::Cell> row = {batch.campaign, sum};
+        if (pair) {
+            row.insert(row.end(), {to_cell(batch.volume->value), to_cell(batch.volume->error)});
+        } else if (batch.best) {
+            for (auto& cell : input_cells(cases.factors, batch.best->setting)) row.push_back(std::move(cell));
+            const auto& objective = batch.best->objectives[0];
+            if (!factor) row.insert(row.end(), {to_cell(objective.mean), to_cell(objective.mean_error)});
+        }
+        row.resize(table.columns.size());
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json batch_json(const ModelCases& cases, const Window& window, const BatchStanding& batch) {
+    Json object = {{"campaign", batch.campaign}, {"cases", batch.cases}};
+    if (window.goals.size() == 2)
+        return object.add({{"hypervolume", batch.volume->value}, {"hypervolume_error", batch.volume->error}});
+    if (!batch.best) return object.add("best", Json());
+    return object.add("best", {{"inputs", inputs_json(cases.factors, batch.best->setting)},
+                               {"mean", batch.best->objectives[0].mean},
+                               {"mean_error", batch.best->objectives[0].mean_error}});
 }
 
 std::string_view judged_text(stats::Judged judged) {
@@ -107,21 +178,53 @@ void say_settings(Document& shown, std::string heading, const ModelCases& cases,
     if (!settings.empty()) shown.say(std::move(heading)).show(settings_table(cases, window, settings)).say();
 }
 
+void say_trade_off(Document& shown, const ModelCases& cases, const WindowRequest& request, const Window& window) {
+    const auto& first = request.objectives.front().name;
+    if (window.volume)
+        shown.say(fmt::format("{}, beyond {} {:.6g} and {} {:.6g}\n\n", volume_text(*window.volume), first,
+                              window.goals[0].reference, request.objectives[1].name, window.goals[1].reference));
+    const auto pair = window.volume ? fmt::format("front of {} and {}", first, request.objectives[1].name)
+                                    : fmt::format("trade-off of {} and {}, whether the condition holds or not", first,
+                                                  window.models[*window.against->model].observable);
+    if (!window.computed_front.empty())
+        shown
+            .say(pair + (window.volume ? ": computed cases, means by the models"
+                                       : ": computed cases, means over the runs of a setting"))
+            .show(computed_table(cases, window))
+            .say();
+    say_settings(shown, pair + ": predictions with a small error", cases, window, window.front);
+}
+
 std::span<const Judgement> list_of(const std::optional<Judgement>& one) {
     return one ? std::span(&*one, 1) : std::span<const Judgement>();
 }
 
 }  // namespace
 
+std::string volume_text(const FrontVolume& volume) {
+    const auto part = volume.value > 0 ? fmt::format(" ({:.2g} %)", 100 * volume.further / volume.value) : "";
+    return fmt::format(
+        "hypervolume of the computed front {:.6g} +- {:.3g} (95 %), of the best front at most {:.3g}{} more",
+        volume.value, volume.error, volume.further, part);
+}
+
+std::string goal_text(const WindowRequest& request) {
+    std::string text;
+    for (const auto& one : request.objectives)
+        text += fmt::format("{}{} {}", text.empty() ? "" : " and ", one.maximise ? "largest" : "smallest", one.name);
+    return request.objectives.size() == 2 ? text + ", as a compromise," : text;
+}
+
 Json window_json(const ModelCases& cases, const WindowRequest& request, const Window& window) {
     const auto json = [&](const Judgement& one) { return window_table_json(cases, request, window, one); };
     Json objective;
-    if (!request.objective.empty())
-        objective = {{window.objective_is_factor ? "factor" : "observable", request.objective},
-                     {"maximize", request.maximise}};
+    if (!request.objectives.empty()) objective = objective_json(request, window, 0);
+    Json objectives = Json::array();
+    for (std::size_t k = 0; k < window.goals.size(); ++k) objectives.push_back(objective_json(request, window, k));
     return {{"campaign", cases.campaign.name},
             {"where", request.where},
             {"objective", objective},
+            {"objectives", objectives},
             {"risk", request.risk},
             {"judged", judged_text(request.judged)},
             {"share_of_box", window.share_of_box},
@@ -131,9 +234,11 @@ Json window_json(const ModelCases& cases, const WindowRequest& request, const Wi
             {"share_failed", window.share_failed},
             {"best", window.best ? json(*window.best) : Json()},
             {"surest", window.surest ? json(*window.surest) : Json()},
-            {"computed_front", Json::list(window.computed_front,
-                                          [&](const auto& one) { return computed_json(cases, request, window, one); })},
+            {"computed_front",
+             Json::list(window.computed_front, [&](const auto& one) { return computed_json(cases, window, one); })},
             {"front", Json::list(window.front, json)},
+            {"hypervolume", window.volume ? volume_json(*window.volume) : Json()},
+            {"batches", Json::list(window.batches, [&](const auto& one) { return batch_json(cases, window, one); })},
             {"next", Json::list(window.next, json)},
             {"models", Json::list(window.models, model_json)},
             {"notes", window.notes}};
@@ -146,20 +251,16 @@ Document window_document(const ModelCases& cases, const WindowRequest& request, 
         "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of {} ({} settings looked at)\n\n",
         1 - request.risk, request.judged == stats::Judged::mean ? "for the mean" : "for a single run",
         100 * window.share_of_box, 100 * window.share_error, share_of(cases.factors), window.searched.size()));
-    const auto goal = request.objective.empty()
-                          ? std::string("where the condition is surest")
-                          : fmt::format("{} {} there", request.maximise ? "largest" : "smallest", request.objective);
+    const auto goal = request.objectives.empty() ? "where the condition is surest" : goal_text(request) + " there";
     say_settings(shown, goal, cases, window, list_of(window.best));
     say_settings(shown, "where the condition is likeliest", cases, window, list_of(window.surest));
-    if (window.against) {
-        const auto pair = fmt::format("{} and {}, whether the condition holds or not", request.objective,
-                                      window.models[*window.against].observable);
-        if (!window.computed_front.empty())
-            shown.say("trade-off of " + pair + ": computed cases, means over the runs of a setting")
-                .show(computed_table(cases, request, window))
-                .say();
-        say_settings(shown, "trade-off of " + pair + ": predictions with a small error", cases, window, window.front);
-    }
+    if (window.against) say_trade_off(shown, cases, request, window);
+    if (!window.batches.empty())
+        shown
+            .say(fmt::format("the search so far, by the models of all cases: {}",
+                             window.volume ? "hypervolume of the computed front" : "best computed setting"))
+            .show(batches_table(cases, request, window))
+            .say();
     say_settings(shown, "to run next", cases, window, window.next);
     for (const auto& model : window.models) shown.say(model_lines(model));
     return shown.say_notes(window.notes);

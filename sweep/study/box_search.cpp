@@ -60,7 +60,8 @@ double number_at(std::span<const ModelFactor> factors, std::size_t j, std::span<
     if (!factor.distribution) return number_along(factor, u[j]);
     const auto joint = campaign::joint_value(
         factors.size(), j, u, [&](std::size_t k) { return campaign::column_of(distribution_of(factors[k])); });
-    return joint ? *joint : factor.distribution->quantile(u[j]);
+    return joint ? *joint
+                 : std::get<double>(campaign::value_at({factor.name, *factor.distribution, factor.step}, u[j]));
 }
 
 /// Puts shares in the place of the coordinates of shares; rounded, they still add to one.

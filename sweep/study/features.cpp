@@ -161,6 +161,10 @@ std::optional<double> sum_of_shares(std::span<const ModelFactor> factors, const 
     return sum;
 }
 
+double ModelFactor::smallest() const {
+    return distribution ? std::get<double>(campaign::value_at({name, *distribution, step}, 0)) : low;
+}
+
 Value ModelFactor::value(double number) const {
     if (is_word()) return words.at(static_cast<std::size_t>(number));
     return number;

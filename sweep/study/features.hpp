@@ -29,7 +29,7 @@ struct ModelFactor {
     std::vector<double> numbers;                           ///< numeric levels, ascending; empty: a range, or words
     std::vector<std::string> words;                        ///< levels that are words; empty: numbers
     std::size_t unlisted = 0;    ///< number of words at the end of `words` that the campaign does not list
-    std::optional<double> step;  ///< the values of the range are multiples of this
+    std::optional<double> step;  ///< the values are multiples of this
     bool share = false;          ///< the factor is a share; all shares add to one
     /// Whether the factor counts at a setting, by its `when`; empty: it always counts.
     std::function<bool(std::span<const double> setting)> counts;
@@ -40,7 +40,7 @@ struct ModelFactor {
     [[nodiscard]] std::size_t choices() const { return words.size() - unlisted; }
     [[nodiscard]] bool is_word() const { return !words.empty(); }
     /// Returns the smallest number that a design can use.
-    [[nodiscard]] double smallest() const { return distribution ? distribution->quantile(0) : low; }
+    [[nodiscard]] double smallest() const;
     [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high > low; }
     /// Returns the value as in the campaign file.
     [[nodiscard]] Value value(double number) const;

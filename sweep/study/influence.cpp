@@ -181,7 +181,7 @@ std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settl
     };
     if (lattice || !factor.continuous()) return different();
     constexpr std::size_t most_bins = 16;
-    if (factor.stepped && different() <= most_bins) return different();
+    if (factor.stepped && !factor.distribution && different() <= most_bins) return different();
     return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, most_bins);
 }
 

@@ -156,6 +156,7 @@ ModelCases read_model_cases(const store::Store& store, std::string_view name,
         const auto before = cases.settings.size();
         add_model_cases(cases, responses, seen);
         if (record.name != cases.campaign.name && cases.settings.size() > before) cases.further.push_back(record.name);
+        cases.sources.resize(cases.settings.size(), cases.further.size());
     }
     cases.left_out.assign(left_out.begin(), left_out.end());
     cases.cases_left_out = std::erase_if(cases.failed, [&](const FailedCase& one) {
@@ -175,6 +176,7 @@ ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* r
         }
         if (cases.case_id.empty()) cases.case_id = responses.case_ids[row];
         cases.settings.push_back(settings[row]);
+        cases.sources.push_back(0);
         for (std::size_t k = 0; k < cases.observables.size(); ++k)
             cases.observables[k].values.push_back(responses.observables[k].values[row]);
         if (rows != nullptr) rows->push_back(row);

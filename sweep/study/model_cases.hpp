@@ -27,6 +27,7 @@ struct ModelCases {
     std::vector<ModelFactor> factors;
     std::vector<std::string> features;        ///< from the campaign file; empty: by default
     std::vector<Setting> settings;            ///< of the answered cases
+    std::vector<std::size_t> sources;         ///< of each setting: 0 this campaign, k the k-th of `further`
     std::vector<ResponseColumn> observables;  ///< one value per setting
     std::string main;                         ///< name of the main observable; empty: no observable has a value
     std::string case_id;                      ///< id of an answered case, which has the fixed values

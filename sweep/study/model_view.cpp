@@ -109,11 +109,11 @@ std::vector<ModelFactor> model_factors(const campaign::Campaign& campaign) {
     for (const auto& given : campaign.space.factors) {
         ModelFactor factor;
         factor.name = given.name;
+        factor.step = given.step;
         if (const auto* range = std::get_if<campaign::Between>(&given.range)) {
             factor.low = range->low;
             factor.high = range->high;
             factor.log = range->scale == campaign::Scale::log;
-            factor.step = given.step;
         } else if (const auto* distribution = std::get_if<stats::Distribution>(&given.range)) {
             std::tie(factor.low, factor.high) = distribution->range();
             factor.log = std::holds_alternative<stats::Lognormal>(distribution->form());

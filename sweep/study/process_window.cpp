@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <numeric>
 
 namespace grainsweep::study {
@@ -18,6 +19,8 @@ namespace {
 constexpr std::size_t candidates_of_next = 192, points_of_front = 12;
 constexpr std::size_t points_about_best = 64, rounds_about_best = 8;
 constexpr double first_reach = 0.15;
+constexpr std::array reaches_about_front = {0.1, 0.04, 0.016};  // of the range of a factor
+constexpr std::size_t centres_of_gain = 8, points_about_front = 32;
 constexpr std::size_t share_of_doubted = 4;                // of the settings searched, one in so many
 constexpr double widest_apart = 0.1, least_apart = 0.025;  // of the range of a factor
 constexpr double enough_gain = 0.5;                        // of the best gain
@@ -50,34 +53,6 @@ std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& ques
     return {std::move(best), std::move(seen)};
 }
 
-/// Values of the objective in the answered cases.
-std::vector<double> objective_values(const ModelCases& cases, const WindowQuestion& question,
-                                     const WindowRequest& request) {
-    if (!question.objective_is_factor()) return cases.observable(request.objective).values;
-    const auto names = cases.factor_names();
-    const auto j = static_cast<std::size_t>(std::ranges::find(names, request.objective) - names.begin());
-    std::vector<double> values;
-    for (const auto& setting : cases.settings) values.push_back(setting[j]);
-    return values;
-}
-
-/// Means over the runs of each setting with both values, in the order of the first run.
-std::vector<ComputedSetting> computed_settings(const ModelCases& cases, std::span<const double> objective,
-                                               std::span<const double> against) {
-    std::map<Setting, std::size_t> known;
-    std::vector<ComputedSetting> computed;
-    for (std::size_t i = 0; i < cases.settings.size(); ++i) {
-        if (!std::isfinite(objective[i]) || !std::isfinite(against[i])) continue;
-        const auto [found, is_new] = known.try_emplace(cases.settings[i], computed.size());
-        if (is_new) computed.push_back({.setting = cases.settings[i]});
-        auto& one = computed[found->second];
-        ++one.runs;
-        one.objective += (objective[i] - one.objective) / static_cast<double>(one.runs);
-        one.against += (against[i] - one.against) / static_cast<double>(one.runs);
-    }
-    return computed;
-}
-
 /// Returns at most points_of_front of the indices, the first and the last among them.
 std::vector<std::size_t> thinned_front(std::span<const std::size_t> front) {
     const auto shown = std::min(front.size(), points_of_front);
@@ -87,74 +62,103 @@ std::vector<std::size_t> thinned_front(std::span<const std::size_t> front) {
     return chosen;
 }
 
-std::vector<std::size_t> front_of(std::span<const double> first, std::span<const double> second, const Window& window,
-                                  const WindowRequest& request) {
-    return thinned_front(stats::trade_off_front(first, request.maximise, second, window.against_maximised));
+/// The second objective, or the first other observable that the condition bounds from one side.
+std::optional<Goal> against_of(const WindowQuestion& question) {
+    const auto& goals = question.goals();
+    if (goals.size() == 2) return goals[1];
+    if (goals.empty() || !question.condition()) return std::nullopt;
+    for (std::size_t k = goals[0].model ? 1 : 0; k < question.models().size(); ++k)
+        if (const int direction = question.condition()->direction(question.name_of_model(k)); direction != 0)
+            return Goal{.sign = direction > 0 ? 1.0 : -1.0, .factor = {}, .model = k};
+    return std::nullopt;
 }
 
-/// Trade-off of the objective and the first other observable that the condition bounds from one side: of the computed
-/// cases, then of predictions with a small error.
-void find_front(Window& window, const ModelCases& cases, const WindowQuestion& question, const WindowRequest& request,
-                std::span<const Judgement> judged) {
-    if (request.objective.empty() || !question.condition()) return;
-    int direction = 0;
-    const std::size_t others = question.modelled_objective() ? 1 : 0;
-    for (std::size_t k = others; k < window.models.size() && direction == 0; ++k) {
-        direction = question.condition()->direction(question.name_of_model(k));
-        if (direction != 0) window.against = k;
-    }
-    if (!window.against) return;
-    window.against_maximised = direction > 0;
-    const auto computed = computed_settings(cases, objective_values(cases, question, request),
-                                            cases.observable(window.models[*window.against].observable).values);
+/// Trade-off of the objective and `against`: of the computed cases, then of predictions with a small error. Of two
+/// objectives, only of settings that meet the condition. `known`: the computed settings, judged; of two objectives.
+void find_front(Window& window, const WindowQuestion& question, std::span<const ComputedSetting> settings,
+                std::span<const Judgement> known, std::span<const Judgement> judged) {
+    const auto& goal = question.goals().front();
+    const bool pair = question.goals().size() == 2;
+    const auto front_of = [&](std::span<const double> first, std::span<const double> second) {
+        return stats::trade_off_front(first, goal.sign > 0, second, window.against->sign > 0);
+    };
+    std::vector<FrontSetting> computed;
+    for (const auto& one : settings) computed.push_back({one});
     std::vector<double> first, second;
     for (const auto& one : computed) {
         first.push_back(one.objective);
         second.push_back(one.against);
     }
-    for (const auto i : front_of(first, second, window, request)) window.computed_front.push_back(computed[i]);
     const auto error_allowed = [](const std::vector<double>& values) {
         return values.empty() ? 0 : small_error * (std::ranges::max(values) - std::ranges::min(values));
     };
     const double largest = error_allowed(first), largest_against = error_allowed(second);
+    if (pair) {
+        for (std::size_t i = 0; i < computed.size(); ++i) {
+            computed[i].judged = known[i];
+            const bool counts = question.meets(known[i]);
+            first[i] = counts ? known[i].objectives[0].mean : std::numeric_limits<double>::quiet_NaN();
+            second[i] = known[i].objectives[1].mean;
+        }
+        window.volume = front_volume(question, known, judged);
+    }
+    const auto on_front = front_of(first, second);
+    for (const auto i : pair ? on_front : thinned_front(on_front)) window.computed_front.push_back(computed[i]);
     first.clear();
     second.clear();
     std::vector<std::size_t> usable;
     for (std::size_t i = 0; i < judged.size(); ++i) {
-        const auto& defined = judged[i].defined;
-        const auto& against = judged[i].predictions[*window.against];
-        const double least = std::min({judged[i].answers, defined.front(), defined[*window.against]});
-        if (!judged[i].believed || least < 1 - request.risk || judged[i].objective.mean_error > largest ||
+        const auto& one = judged[i];
+        const auto &objective = one.objectives[0],
+                   &against = pair ? one.objectives[1] : one.predictions[*window.against->model];
+        const double least =
+            pair ? one.probability : std::min({one.answers, one.defined.front(), one.defined[*window.against->model]});
+        if (!one.believed || !question.meets(least) || objective.mean_error > largest ||
             against.mean_error > largest_against)
             continue;
         usable.push_back(i);
-        first.push_back(judged[i].objective.mean);
+        first.push_back(objective.mean);
         second.push_back(against.mean);
     }
-    for (const auto i : front_of(first, second, window, request)) window.front.push_back(judged[usable[i]]);
+    for (const auto i : thinned_front(front_of(first, second))) window.front.push_back(judged[usable[i]]);
 }
 
 /// P (x_j - x_j*) of the header; where nothing is in the window yet, P.
 std::vector<double> gains_of_factor(const WindowQuestion& question, std::span<const Judgement> judged, double sign) {
     std::optional<double> best;
     for (const auto& one : judged)
-        if (question.meets(one)) best = std::max(best.value_or(sign * one.objective.mean), sign * one.objective.mean);
+        if (question.meets(one))
+            best = std::max(best.value_or(sign * one.objectives[0].mean), sign * one.objectives[0].mean);
     std::vector<double> gain;
     for (const auto& one : judged)
-        gain.push_back(one.probability * (best ? std::max(sign * one.objective.mean - *best, 0.0) : 1));
+        gain.push_back(one.probability * (best ? std::max(sign * one.objectives[0].mean - *best, 0.0) : 1));
     return gain;
 }
 
+/// Expected growth of the hypervolume, see the header.
+std::vector<double> gains_of_pair(std::span<const Judgement> judged, const stats::Hypervolume& front) {
+    std::vector<double> gain;
+    for (const auto& one : judged) {
+        const auto &first = one.objectives[0], &second = one.objectives[1];
+        const double learned = std::max(stats::learned(first), stats::learned(second));
+        gain.push_back(one.believed ? one.probability * learned * front.expected_gain(first, second) : 0);
+    }
+    return gain;
+}
+
+/// Gains of further cases. `front`: what the computed settings dominate, of two objectives.
 std::vector<double> gains(const WindowQuestion& question, std::span<const Judgement> judged,
-                          const WindowRequest& request) {
-    if (question.objective_is_factor()) return gains_of_factor(question, judged, request.maximise ? 1 : -1);
+                          const std::optional<stats::Hypervolume>& front) {
+    const auto& goals = question.goals();
+    if (front) return gains_of_pair(judged, *front);
+    if (!goals.empty() && goals[0].factor) return gains_of_factor(question, judged, goals[0].sign);
     std::vector<stats::Prediction> objective;
     std::vector<double> probability;
     for (const auto& one : judged) {
         probability.push_back(one.probability);
-        if (!request.objective.empty()) objective.push_back(one.objective);
+        if (!goals.empty()) objective.push_back(one.objectives[0]);
     }
-    if (!objective.empty()) return stats::expected_improvement(objective, probability, request.maximise);
+    if (!objective.empty()) return stats::expected_improvement(objective, probability, goals[0].sign > 0);
     for (double& p : probability) p = std::min(p, 1 - p);  // where the condition is least decided
     return probability;
 }
@@ -198,18 +202,44 @@ double distance_from(std::span<const ModelFactor> factors, const Setting& settin
     return nearest;
 }
 
-/// Settings of the largest gains, none a twin of another.
-std::vector<Setting> promising(std::span<const ModelFactor> factors, std::span<const Judgement> judged,
-                               std::span<const double> gain, std::size_t count) {
+/// Indices of the settings of the largest gains, none a twin of another.
+std::vector<std::size_t> promising(std::span<const ModelFactor> factors, std::span<const Judgement> judged,
+                                   std::span<const double> gain, std::size_t count) {
     std::vector<std::size_t> order(judged.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });
+    std::vector<std::size_t> chosen;
     std::vector<Setting> settings;
     for (const auto i : order) {
         if (settings.size() == count) break;
-        if (distance_from(factors, judged[i].setting, settings) >= least_apart) settings.push_back(judged[i].setting);
+        if (distance_from(factors, judged[i].setting, settings) < least_apart) continue;
+        settings.push_back(judged[i].setting);
+        chosen.push_back(i);
     }
-    return settings;
+    return chosen;
+}
+
+/// Adds settings about those of the largest gains and about the front of predictions.
+void search_about_front(const WindowQuestion& question, const ModelCases& cases, const stats::Hypervolume& front,
+                        std::vector<BoxPoint>& points, std::vector<Judgement>& judged) {
+    const auto& goals = question.goals();
+    for (const double reach : reaches_about_front) {
+        auto centres = promising(cases.factors, judged, gains_of_pair(judged, front), centres_of_gain);
+        std::vector<double> first, second;
+        for (const auto& one : judged) {
+            first.push_back(question.meets(one) ? one.objectives[0].mean : std::numeric_limits<double>::quiet_NaN());
+            second.push_back(one.objectives[1].mean);
+        }
+        const auto predicted = stats::trade_off_front(first, goals[0].sign > 0, second, goals[1].sign > 0);
+        std::ranges::move(thinned_front(predicted), std::back_inserter(centres));
+        for (const auto i : centres) {
+            auto near = question.space().about(points[i], reach, points_about_front);
+            std::vector<Setting> settings;
+            for (const auto& point : near) settings.push_back(point.setting);
+            std::ranges::move(question.judge(settings), std::back_inserter(judged));
+            std::ranges::move(near, std::back_inserter(points));
+        }
+    }
 }
 
 /// Returns the candidate with the largest gain among those that differ most from the ones chosen (see the header);
@@ -229,17 +259,19 @@ std::optional<std::size_t> most_promising(std::span<const double> gain, std::spa
 
 /// Cases to run next: the largest gain, added to the models with its predicted responses, then the next.
 std::vector<Judgement> next_of(const WindowQuestion& question, const ModelCases& cases, const WindowRequest& request,
-                               std::vector<Judgement> judged) {
+                               std::vector<Judgement> judged, std::optional<stats::Hypervolume> front) {
     std::erase_if(judged, [](const auto& one) { return !one.believed; });
-    auto gain = gains(question, judged, request);
-    const auto settings = promising(cases.factors, judged, gain, std::max(candidates_of_next, 4 * request.next));
+    auto gain = gains(question, judged, front);
+    std::vector<Setting> settings;
+    for (const auto i : promising(cases.factors, judged, gain, std::max(candidates_of_next, 4 * request.next)))
+        settings.push_back(judged[i].setting);
     auto models = question.models();
     std::vector<Judgement> chosen;
     std::vector<Setting> taken;
     while (chosen.size() < request.next) {
         question.report("next cases", static_cast<double>(chosen.size()) / static_cast<double>(request.next));
         const auto now = question.judge_by(models, settings);
-        gain = gains(question, now, request);
+        gain = gains(question, now, front);
         std::vector<double> distance;
         for (const auto& setting : settings) distance.push_back(distance_from(cases.factors, setting, taken));
         const auto best = most_promising(gain, distance);
@@ -249,6 +281,7 @@ std::vector<Judgement> next_of(const WindowQuestion& question, const ModelCases&
         chosen.push_back(question.judge_by(models, std::span(&asked, 1)).front());
         for (std::size_t k = 0; k < models.size(); ++k)
             models[k] = models[k].with_case(asked, chosen.back().predictions[k].mean);
+        if (front) front->add({now[*best].objectives[0].mean, now[*best].objectives[1].mean});
     }
     return chosen;
 }
@@ -288,15 +321,16 @@ void say_what_was_found(Window& window, const WindowRequest& request) {
         window.notes.push_back(fmt::format(
             "the condition holds nowhere with probability {}; where it is most likely it holds with probability {:.3f}",
             1 - request.risk, window.surest->probability));
-    if (window.best && !request.objective.empty())
+    if (window.best && !request.objectives.empty())
         window.notes.emplace_back(
             "a search favours errors in its favour: run the best setting with several seeds before relying on it");
     for (const auto& model : window.models)
         if (model.undefined > 0)
-            window.notes.push_back(
-                fmt::format("where '{}' is undefined the condition does not hold; how likely that is comes from where "
-                            "cases have it and where not",
-                            model.observable));
+            window.notes.push_back(fmt::format(
+                "'{}' is undefined in {} of {} cases that have an answer, such as a jam: there it counts as "
+                "beyond any limit and the condition does not hold; how likely that is comes from where "
+                "cases have it and where not",
+                model.observable, model.undefined, model.undefined + model.cases()));
     if (request.next > window.next.size())
         window.notes.push_back(
             fmt::format("{} of {} next cases: no further one that differs from them promises anything",
@@ -306,20 +340,20 @@ void say_what_was_found(Window& window, const WindowRequest& request) {
 }  // namespace
 
 Window window_of(const store::Store& store, const ModelCases& cases, const WindowRequest& request) {
-    if (request.where.empty() && request.objective.empty())
+    if (request.where.empty() && request.objectives.empty())
         throw campaign::wrong_question("window", "", "give a condition by --where, or --maximize or --minimize NAME");
     if (!(request.risk > 0 && request.risk < 1))
         throw campaign::wrong_question("--risk", fmt::format("{}", request.risk), "must lie between 0 and 1");
     const WindowQuestion question(cases, request, admission(store, cases));
-    const auto points =
-        question.space().spread(question.space().averages() ? request.candidates / 4 : request.candidates);
+    auto points = question.space().spread(question.space().averages() ? request.candidates / 4 : request.candidates);
     if (points.empty())
         throw campaign::wrong_question("window", "", "the campaign's `where` leaves no setting of the box");
     Window window;
     window.risk = request.risk;
     window.models = question.models();
     window.answers = question.answers();
-    window.objective_is_factor = question.objective_is_factor();
+    window.goals = question.goals();
+    window.against = against_of(question);
     for (const auto& point : points) window.searched.push_back(point.setting);
     auto judged = question.judge(window.searched, "settings of the box", window.searched.size() / share_of_doubted);
 
@@ -345,10 +379,21 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     window.share_high = std::min(1.0, window.share_of_box + window.share_error);
     auto [best, seen] = improved(question, points, judged);
     (question.meets(best) ? window.best : window.surest) = best;
-    find_front(window, cases, question, request, judged);
+    std::optional<stats::Hypervolume> front;
+    if (window.against) {
+        const auto computed = computed_settings(cases, question, window.goals[0], *window.against);
+        std::vector<Judgement> known;
+        if (window.goals.size() == 2) {
+            known = judge_computed(question, computed);
+            front = dominated(question, known);
+            search_about_front(question, cases, *front, points, judged);
+        }
+        find_front(window, question, computed, known, judged);
+    }
+    window.batches = standings(cases, question);
     if (request.next > 0) {
         std::ranges::move(seen, std::back_inserter(judged));
-        window.next = next_of(question, cases, request, std::move(judged));
+        window.next = next_of(question, cases, request, std::move(judged), std::move(front));
     }
     say_what_failed(window, cases);
     if (const auto noise = question.space().noise_names(); !noise.empty())

@@ -17,6 +17,11 @@
 // The front of computed cases has the observed values, averaged over the runs of a setting. The front of predictions
 // has only settings at which both errors of the mean are at most a tenth of the range of the computed values.
 //
+// Of two objectives, the front has settings where the condition holds (trade_off.hpp). The best setting has the largest
+// product of both gains over the reference point. The next cases maximise P(x) EHVI(x) (stats/hypervolume.hpp) times
+// the part of the error that one run removes, the larger of the two objectives. The box is searched further about the
+// settings of the largest such gain and about the front of predictions.
+//
 // The cases of a batch differ: by at least a tenth of the range of a searched factor, or as much as is possible with
 // half the gain of the best case, at least a fortieth.
 //
@@ -28,6 +33,7 @@
 // a share of points is a probability. No random numbers are used: the same cases give the same window.
 #pragma once
 
+#include "sweep/study/trade_off.hpp"
 #include "sweep/study/window_question.hpp"
 
 #include <cstddef>
@@ -41,28 +47,27 @@
 namespace grainsweep::study {
 
 /// Computed setting of a front.
-struct ComputedSetting {
-    Setting setting;
-    std::int64_t runs = 0;
-    double objective = 0, against = 0;  ///< means over the runs
+struct FrontSetting : ComputedSetting {
+    std::optional<Judgement> judged{};  ///< by the models; of two objectives
 };
 
 struct Window {
-    std::vector<ObservableModel> models;  ///< the model of the objective first, if it is an observable
+    std::vector<ObservableModel> models;  ///< the models of the objectives first
     std::shared_ptr<const Answers> answers;
-    bool objective_is_factor = false;
-    double risk = 0.05;                           ///< of WindowRequest
-    std::vector<Setting> searched;                ///< settings searched in the box
-    double share_of_box = 0;                      ///< share of the searched points with P >= 1 - risk
-    double share_error = 0;                       ///< its 95 % half-width, with the errors of the models
-    double share_low = 0, share_high = 0;         ///< the ends of its 95 % interval
-    double share_failed = 0;                      ///< share of the searched points where P(answer) is below 1 - risk
-    std::optional<Judgement> best;                ///< best setting with P >= 1 - risk; empty: there is no such setting
-    std::optional<Judgement> surest;              ///< setting of largest P, if there is no best
-    std::vector<ComputedSetting> computed_front;  ///< trade-off between objective and `against`, of the cases
-    std::vector<Judgement> front;                 ///< the same of predictions, by ascending objective
-    std::optional<std::size_t> against;           ///< index of a model
-    bool against_maximised = false;
+    std::vector<Goal> goals;                   ///< one per objective
+    double risk = 0.05;                        ///< of WindowRequest
+    std::vector<Setting> searched;             ///< settings searched in the box
+    double share_of_box = 0;                   ///< share of the searched points with P >= 1 - risk
+    double share_error = 0;                    ///< its 95 % half-width, with the errors of the models
+    double share_low = 0, share_high = 0;      ///< the ends of its 95 % interval
+    double share_failed = 0;                   ///< share of the searched points where P(answer) is below 1 - risk
+    std::optional<Judgement> best;             ///< best setting with P >= 1 - risk; empty: there is no such setting
+    std::optional<Judgement> surest;           ///< setting of largest P, if there is no best
+    std::vector<FrontSetting> computed_front;  ///< trade-off between objective and `against`, of the cases
+    std::vector<Judgement> front;              ///< the same of predictions, by ascending objective
+    std::optional<Goal> against;               ///< the second objective, or a bounded observable
+    std::optional<FrontVolume> volume;         ///< of two objectives
+    std::vector<BatchStanding> batches;        ///< of a search of several campaigns
     std::vector<Judgement> next;
     std::vector<std::string> notes;
 };

@@ -21,7 +21,7 @@ struct FactorColumn {
     double low = 0, high = 0;         ///< continuous: the range (stats::Distribution::range)
     bool log = false;                 ///< the range is divided logarithmically
     std::optional<stats::Distribution> distribution = {};  ///< empty: levels, or a range
-    bool stepped = false;                                  ///< values of the range are multiples of a step
+    bool stepped = false;                                  ///< values are multiples of a step
     bool conditional = false;         ///< where the factor does not count, its value is its default, which may lie
                                       ///< outside the range
     std::vector<double> values;       ///< one per row

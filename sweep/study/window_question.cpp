@@ -62,10 +62,13 @@ WindowQuestion::WindowQuestion(const ModelCases& cases, const WindowRequest& req
     names_ = cases.observable_names();
     for (const auto& name : cases.factor_names()) names_.push_back(name);
     if (!stated_.condition.empty()) condition_ = Condition::read(stated_.condition, names_);
-    if (!request.objective.empty()) find_objective(learned);
+    if (request.objectives.size() == 2 && request.objectives[0].name == request.objectives[1].name)
+        throw campaign::wrong_question("--minimize", request.objectives[1].name, "is named twice: one goal for each");
+    for (const auto& objective : request.objectives) goals_.push_back(goal_of(objective, learned));
+    if (goals_.size() == 2) find_references();
     if (condition_)
         for (const auto name : condition_->compared())
-            if (name < cases.observables.size()) add_model(name, learned);
+            if (name < cases.observables.size()) (void)add_model(name, learned);
     if (models_.empty()) return;
     std::vector<double> freedom;
     std::vector<std::vector<double>> scores;
@@ -77,31 +80,61 @@ WindowQuestion::WindowQuestion(const ModelCases& cases, const WindowRequest& req
 }
 
 /// An observable goes before a factor of the same name, as in the condition.
-void WindowQuestion::find_objective(std::span<const ObservableModel> learned) {
-    const auto& name = request_->objective;
+Goal WindowQuestion::goal_of(const Objective& objective, std::span<const ObservableModel> learned) {
+    const auto& name = objective.name;
+    const double sign = objective.maximise ? 1 : -1;
     const auto place = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
     const auto observables = cases_->observables.size();
-    if (place < observables) return add_model(place, learned);
-    const auto* const option = request_->maximise ? "--maximize" : "--minimize";
+    if (place < observables) return {.sign = sign, .factor = {}, .model = add_model(place, learned)};
+    const auto* const option = objective.maximise ? "--maximize" : "--minimize";
     if (place == names_.size())
         throw campaign::wrong_question(option, name, "is neither observable nor factor of the campaign",
                                        campaign::nearest_word(name, names_));
     if (cases_->factors[place - observables].is_word())
         throw campaign::wrong_question(option, name, "is a factor whose levels are words: none is the largest");
-    if (!condition_)
+    if (!condition_ && request_->objectives.size() == 1)
         throw campaign::wrong_question(option, name, "is a factor: it needs a condition by --where that limits it");
     if (!space_.searches(place - observables))
         throw campaign::wrong_question(option, name, "is not searched: it is noise, held, or named by 'for all'");
-    factor_ = place - observables;
+    return {.sign = sign, .factor = place - observables, .model = {}};
 }
 
-void WindowQuestion::add_model(std::size_t name, std::span<const ObservableModel> learned) {
-    if (std::ranges::find(name_of_model_, name) != name_of_model_.end()) return;
+std::vector<double> WindowQuestion::values_of(const Goal& goal) const {
+    if (goal.model) return cases_->observables[name_of_model_[*goal.model]].values;
+    std::vector<double> values;
+    for (const auto& setting : cases_->settings) values.push_back(setting[*goal.factor]);
+    return values;
+}
+
+void WindowQuestion::find_references() {
+    if (goals_[0].factor && goals_[1].factor)
+        throw campaign::wrong_question("window", request_->objectives[1].name,
+                                       "is a factor like the first objective: one of two is an observable");
+    for (std::size_t k = 0; k < goals_.size(); ++k) {
+        auto& goal = goals_[k];
+        double worst = std::numeric_limits<double>::infinity();
+        for (const double x : values_of(goal))
+            if (std::isfinite(x)) worst = std::min(worst, goal.sign * x);
+        goal.reference = request_->objectives[k].reference.value_or(goal.sign * worst);
+    }
+}
+
+std::size_t WindowQuestion::add_model(std::size_t name, std::span<const ObservableModel> learned) {
+    if (const auto found = std::ranges::find(name_of_model_, name); found != name_of_model_.end())
+        return static_cast<std::size_t>(found - name_of_model_.begin());
     const auto& column = cases_->observables[name];
     const auto known = std::ranges::find(learned, column.name, &ObservableModel::observable);
     if (known == learned.end()) report("model of " + column.name, 0);
     models_.push_back(known != learned.end() ? *known : learn_or_refuse(*cases_, column, Unexplained::scatter));
     name_of_model_.push_back(name);
+    return models_.size() - 1;
+}
+
+void WindowQuestion::add_objectives(Judgement& one) const {
+    for (const auto& goal : goals_)
+        one.objectives.push_back(
+            goal.model ? one.predictions[*goal.model]
+                       : stats::Prediction{.mean = one.setting[*goal.factor], .mean_error = 0, .scatter = 0});
 }
 
 std::vector<Judgement> WindowQuestion::judge(std::span<const Setting> settings, std::string_view step,
@@ -168,10 +201,7 @@ std::vector<Judgement> WindowQuestion::judge_each(std::span<const ObservableMode
         const bool known = is_finite(one) && std::isfinite(one.answers);
         one.believed = known && one.answers >= 0.5;
         one.probability = known ? one.answers * probability(one) : 0;
-        if (factor_)
-            one.objective = {.mean = one.setting[*factor_], .mean_error = 0, .scatter = 0};
-        else if (modelled_objective())
-            one.objective = one.predictions.front();
+        add_objectives(one);
     }
     for (auto& one : std::span(judged).first(std::min(doubted, judged.size()))) add_ends(one);
     return judged;
@@ -221,10 +251,7 @@ Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::
     }
     one.believed = !behind.empty() && is_finite(one) && one.answers >= 0.5;
     if (behind.empty()) one.probability = 0;
-    if (factor_)
-        one.objective = {.mean = setting[*factor_], .mean_error = 0, .scatter = 0};
-    else if (modelled_objective())
-        one.objective = one.predictions.front();
+    add_objectives(one);
     return one;
 }
 
@@ -246,15 +273,24 @@ bool WindowQuestion::better(const Judgement& a, const Judgement& b) const {
     if (a.believed != b.believed) return a.believed;
     const bool a_sure = a.answers_low >= 1 - request_->risk, b_sure = b.answers_low >= 1 - request_->risk;
     if (a_sure != b_sure) return a_sure;
-    if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
-    // The objective less one standard error: the largest mean alone is as often an error as a peak.
-    const double sign = request_->maximise ? 1 : -1;
-    return sign * a.objective.mean - a.objective.mean_error > sign * b.objective.mean - b.objective.mean_error;
+    if (!a_meets || goals_.empty()) return a.probability > b.probability;
+    return worth(a) > worth(b);
+}
+
+double WindowQuestion::worth(const Judgement& one) const {
+    const auto cautious = [&](std::size_t k) {
+        return goals_[k].sign * one.objectives[k].mean - one.objectives[k].mean_error;
+    };
+    if (goals_.size() == 1) return cautious(0);
+    double product = 1;
+    for (std::size_t k = 0; k < goals_.size(); ++k)
+        product *= std::max(0.0, cautious(k) - goals_[k].sign * goals_[k].reference);
+    return product;
 }
 
 double WindowQuestion::probability_given(const Judgement& one, std::size_t undefined) const {
-    const bool objective_lost = modelled_objective() && (undefined & 1U) != 0;
-    if (objective_lost) return 0;
+    for (const auto& goal : goals_)
+        if (goal.model && (undefined >> *goal.model & 1U) != 0) return 0;
     if (!condition_) return 1;
     std::vector<double> values(names_.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t j = 0; j < one.setting.size(); ++j) values[cases_->observables.size() + j] = one.setting[j];

@@ -28,10 +28,16 @@
 
 namespace grainsweep::study {
 
-struct WindowRequest {
-    std::string where{};      ///< condition; empty: holds everywhere; may end with "for all NAME"
-    std::string objective{};  ///< observable or factor; empty: the setting with the largest probability is best
+struct Objective {
+    std::string name;  ///< observable or factor
     bool maximise = true;
+    /// Of two objectives: a value that is no better does not count. Empty: the worst value of the computed cases.
+    std::optional<double> reference{};
+};
+
+struct WindowRequest {
+    std::string where{};                  ///< condition; empty: holds everywhere; may end with "for all NAME"
+    std::vector<Objective> objectives{};  ///< at most two; empty: the setting with the largest probability is best
     double risk = 0.05;
     stats::Judged judged = stats::Judged::mean;
     std::size_t next = 0;           ///< number of next cases to propose
@@ -44,19 +50,25 @@ struct WindowRequest {
 
 /// Setting with the predictions of the models.
 struct Judgement {
-    Setting setting;                             ///< NaN: the factor is averaged over
-    std::vector<stats::Prediction> predictions;  ///< one per model
-    std::vector<double> defined;                 ///< one per model: probability that the observable is defined
-    stats::Prediction objective{};               ///< prediction of the objective, if there is one; for a factor its
-                                                 ///< value, without error
-    double answers = 1;                          ///< probability that a case has an answer
-    double answers_low = 1, answers_high = 1;    ///< ends of its 95 % interval
-    bool believed = true;                        ///< an answer is more likely than a failure, and every feature is
-                                                 ///< defined
+    Setting setting;                              ///< NaN: the factor is averaged over
+    std::vector<stats::Prediction> predictions;   ///< one per model
+    std::vector<double> defined;                  ///< one per model: probability that the observable is defined
+    std::vector<stats::Prediction> objectives{};  ///< one per objective; of a factor its value, without error
+    double answers = 1;                           ///< probability that a case has an answer
+    double answers_low = 1, answers_high = 1;     ///< ends of its 95 % interval
+    bool believed = true;                         ///< an answer is more likely than a failure, and every feature is
+                                                  ///< defined
     double probability = std::numeric_limits<double>::quiet_NaN();
     /// Where asked for: the probability if the mean of a model is known, and lies at the lower and at the upper end of
     /// its 95 % interval; two for each model.
     std::vector<double> at_ends = {};
+};
+
+/// Objective and the origin of its value: a factor or a model.
+struct Goal {
+    double sign = 1;  ///< -1: minimised
+    std::optional<std::size_t> factor, model;
+    double reference = 0;  ///< of two objectives
 };
 
 class WindowQuestion {
@@ -80,11 +92,14 @@ public:
     /// largest error of the first model, or the probability nearest to 1/2.
     [[nodiscard]] Setting least_known(std::span<const ObservableModel> by, const Setting& setting) const;
 
-    /// Returns whether `a` is better than `b`: by the objective if the condition holds with probability 1 - risk, else
-    /// by the probability. Settings with a certain answer, answers_low >= 1 - risk, come before all others. Reason: if
+    /// Returns whether `a` is better than `b`: by worth() if the condition holds with probability 1 - risk, else by the
+    /// probability. Settings with a certain answer, answers_low >= 1 - risk, come before all others. Reason: if
     /// cases fail beyond a sharp border and the objective grows towards it, the best setting would be where P has just
     /// fallen to 1 - risk. One of 20 such settings lies beyond the border.
     [[nodiscard]] bool better(const Judgement& a, const Judgement& b) const;
+    /// Returns the objective less one standard error, because the largest mean alone is as often an error as a peak. Of
+    /// two objectives, the product of the gains of both over the reference.
+    [[nodiscard]] double worth(const Judgement& one) const;
     [[nodiscard]] bool meets(const Judgement& one) const { return meets(one.probability); }
     [[nodiscard]] bool meets(double probability) const { return probability >= 1 - request_->risk; }
 
@@ -93,13 +108,16 @@ public:
     [[nodiscard]] const std::optional<Condition>& condition() const { return condition_; }
     [[nodiscard]] const std::vector<ObservableModel>& models() const { return models_; }
     [[nodiscard]] std::size_t name_of_model(std::size_t model) const { return name_of_model_[model]; }
-    [[nodiscard]] bool objective_is_factor() const { return factor_.has_value(); }
-    /// Returns whether the objective is an observable; the first model is then its model.
-    [[nodiscard]] bool modelled_objective() const { return !request_->objective.empty() && !factor_; }
+    /// Returns one goal per objective of the request.
+    [[nodiscard]] const std::vector<Goal>& goals() const { return goals_; }
+    /// Returns the values of a goal in the answered cases.
+    [[nodiscard]] std::vector<double> values_of(const Goal& goal) const;
 
 private:
-    void find_objective(std::span<const ObservableModel> learned);
-    void add_model(std::size_t name, std::span<const ObservableModel> learned);
+    [[nodiscard]] Goal goal_of(const Objective& objective, std::span<const ObservableModel> learned);
+    void find_references();
+    std::size_t add_model(std::size_t name, std::span<const ObservableModel> learned);
+    void add_objectives(Judgement& one) const;
     [[nodiscard]] std::vector<Judgement> judge_each(std::span<const ObservableModel> by,
                                                     std::span<const Setting> settings, std::size_t doubted) const;
     void add_ends(Judgement& one) const;
@@ -115,7 +133,7 @@ private:
     std::shared_ptr<const Answers> answers_;
     std::vector<std::string> names_;  ///< observables, then factors
     std::optional<Condition> condition_;
-    std::optional<std::size_t> factor_;  ///< factor of the objective, if it is a factor
+    std::vector<Goal> goals_;
     std::vector<ObservableModel> models_;
     std::vector<std::size_t> name_of_model_;
     std::optional<stats::SampledErrors> errors_;  ///< empty: there is no model

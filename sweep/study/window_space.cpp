@@ -204,6 +204,14 @@ std::vector<std::vector<Setting>> WindowSpace::behind(const Setting& setting) co
     return groups;
 }
 
+std::optional<Setting> WindowSpace::searched_part(const Setting& full) const {
+    Setting part = empty_;
+    for (std::size_t j = 0; j < part.size(); ++j)
+        if (!std::isnan(part[j]) && part[j] != full[j]) return std::nullopt;
+    for (const auto j : searched_) part[j] = full[j];
+    return part;
+}
+
 bool WindowSpace::searches(std::size_t factor) const {
     return std::ranges::find(searched_, factor) != searched_.end();
 }

@@ -15,6 +15,7 @@
 #include "sweep/study/model_cases.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,6 +47,8 @@ public:
     /// Returns one list of full settings for each combination of levels of `for all`, without settings that are not
     /// admitted.
     [[nodiscard]] std::vector<std::vector<Setting>> behind(const Setting& setting) const;
+    /// Returns the part of a full setting that is searched; nothing if a held factor has another value.
+    [[nodiscard]] std::optional<Setting> searched_part(const Setting& full) const;
     [[nodiscard]] bool averages() const { return !noise_.empty() || !every_.empty(); }
     [[nodiscard]] bool searches(std::size_t factor) const;
     [[nodiscard]] std::vector<std::string> noise_names() const;

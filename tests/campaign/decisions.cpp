@@ -204,6 +204,46 @@ TEST(Window, RunsBatchesUntilTheBestSettingIsKnownAndGoesOnWhereItStopped) {
     EXPECT_FALSE(std::filesystem::exists(ran / "c_next.json")) << "the batch's file is gone";
 }
 
+TEST(Window, OfTwoObjectivesRunsUntilItsFrontIsKnown) {
+    const Folder folder;
+    folder.write("f.py", R"(import json, sys
+for line in sys.stdin:
+    x, y = (json.loads(line)["inputs"][name] for name in ("x", "y"))
+    print(json.dumps({"observables": {"a": x**2 + y**2, "b": (x - 1)**2 + (y - 1)**2}}), flush=True)
+)");
+    folder.write("c.json", R"({"campaign": "c", "scene": "program",
+      "program": {"command": ["python3", "f.py"], "files": ["f.py"], "protocol": "lines",
+                  "observables": {"a": {"unit": "m"}, "b": {"unit": "1"}}},
+      "factors": [{"name": "x", "between": [-1, 2]}, {"name": "y", "between": [-1, 2]}],
+      "design": {"kind": "halton", "points": 16}})");
+    ASSERT_EQ(run_program({"run", "c.json", "-j", "1", "--quiet"}, folder.path()).code, 0);
+    const auto run = [&](const std::string& tolerance, const std::string& most) {
+        const auto ended = run_program(
+            {"window",      "c.db",        "--campaign",  "c",   "--minimize", "a",           "--minimize", "b",
+             "--reference", "a=2000 mm",   "--reference", "b=2", "--run",      "--tolerance", tolerance,    "--next",
+             "4",           "--max-cases", most,          "-j",  "1",          "--format",    "json"},
+            folder.path());
+        return std::pair{ended.code, json::parse(ended.out, nullptr, false)};
+    };
+    // The true front: x = y in [0, 1], b = (sqrt(2) - sqrt(a))^2; it dominates 2 * 2 - 2/3.
+    constexpr double truth = 4 - 2.0 / 3;
+    const auto [code, first] = run("1e-6", "4");
+    EXPECT_EQ(code, 1) << "not reached";
+    EXPECT_EQ(first["run"]["cases"], 4);
+    EXPECT_EQ(first["objectives"][0]["reference"], 2);
+    const auto [again, second] = run("0.02", "60");
+    EXPECT_EQ(again, 0) << second.dump();
+    EXPECT_EQ(second["run"]["reached"], true);
+    EXPECT_LE(second["run"]["cases"], 40);
+    EXPECT_EQ(second["batches"].size(), 2 + second["run"]["batches"].get<std::size_t>());
+    const auto& volume = second["hypervolume"];
+    EXPECT_LE(volume["further"].get<double>(), 0.02 * volume["value"].get<double>());
+    EXPECT_GE(volume["value"].get<double>(), 0.98 * truth);
+    EXPECT_LE(volume["value"].get<double>() - volume["error"].get<double>(), truth);
+    for (std::size_t k = 1; k < second["batches"].size(); ++k)
+        EXPECT_GE(second["batches"][k]["hypervolume"], second["batches"][k - 1]["hypervolume"]);
+}
+
 TEST(Window, ABatchThatWasInterruptedIsFinishedFirst) {
     const Ran ran("spreading_a", 4, 100);
     (void)ran.answer({"window", "c.db", "--maximize", "y", "--next", "5", "--next-file", "next.json"});
@@ -272,8 +312,22 @@ TEST(Window, RefusesInOneSentence) {
     EXPECT_NE(ran.refusal({"window", "c.db"}).find("--where"), std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y * 2 > 1"}).find("is expected at '* 2 > 1'"),
               std::string::npos);
-    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--minimize", "y"}).find("one objective"),
-              std::string::npos);
+    const auto refused_pair = [&](std::vector<std::string> more, const char* sentence) {
+        more.insert(more.begin(), {"window", "c.db", "--maximize", "y"});
+        EXPECT_NE(ran.refusal(more).find(sentence), std::string::npos) << ran.refusal(more);
+    };
+    refused_pair({"--minimize", "y"}, "is named twice");
+    refused_pair({"--minimize", "x1", "--minimize", "x2"}, "at most two objectives");
+    refused_pair({"--minimize", "x1", "--run"}, "needs --tolerance");
+    refused_pair({"--minimize", "x1", "--run", "--width", "1"}, "--width: is for one objective; here --tolerance");
+    refused_pair({"--minimize", "x1", "--run", "--tolerance", "-1"}, "must be a positive number");
+    refused_pair({"--run", "--tolerance", "0.1"}, "--tolerance: is for two objectives; here --width");
+    refused_pair({"--reference", "y=1"}, "is for two objectives");
+    refused_pair({"--minimize", "x1", "--reference", "x2=1"}, "is neither of the two objectives");
+    refused_pair({"--minimize", "x1", "--reference", "y"}, "must be NAME=VALUE");
+    refused_pair({"--minimize", "x1", "--reference", "y=low"}, "'low'");
+    refused_pair({"--minimize", "x1", "--reference", "y=1", "--reference", "y=2"}, "given twice");
+    refused_pair({"--minimize", "x1", "--reference", "y=1e999"}, "'1e999'");
     EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y > 1", "--run"}).find("needs --maximize"), std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--run"}).find("needs --width"), std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--width", "1"}).find("needs --run"),

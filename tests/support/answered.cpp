@@ -11,6 +11,16 @@ namespace grainsweep::tests {
 
 campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula, std::size_t cases,
                              const std::function<bool(const campaign::PlacedCase&)>& wanted) {
+    const Formulas all = [&](const Inputs& inputs) -> std::optional<std::map<std::string, double>> {
+        const auto y = formula(inputs);
+        if (!y) return std::nullopt;
+        return std::map<std::string, double>{{"y", *y}};
+    };
+    return answer_all_by(store, text, all, cases, wanted);
+}
+
+campaign::Campaign answer_all_by(store::Store& store, const std::string& text, const Formulas& formulas,
+                                 std::size_t cases, const std::function<bool(const campaign::PlacedCase&)>& wanted) {
     auto campaign = campaign::parse_campaign(text, std::filesystem::temp_directory_path());
     campaign.space.when = store::when_clauses(campaign.space);
     const auto placed =
@@ -25,8 +35,8 @@ campaign::Campaign answer_by(store::Store& store, const std::string& text, const
             if (known || !settled.insert(question.id).second) continue;
             campaign::CaseResult result;
             result.attempt = {question.id, states[i].attempts + 1};
-            if (const auto y = formula(question.inputs)) {
-                result.observations.scalars["y"] = *y;
+            if (const auto all = formulas(question.inputs)) {
+                for (const auto& [name, y] : *all) result.observations.scalars[name] = y;
             } else {
                 result.outcome = campaign::Outcome::unstable;
                 result.message = "the formula has no answer";

@@ -6,6 +6,7 @@
 #include "tests/support/archive.hpp"
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,12 @@ using Formula = std::function<std::optional<double>(const Inputs&)>;
 campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula,
                              std::size_t cases = static_cast<std::size_t>(-1),
                              const std::function<bool(const campaign::PlacedCase&)>& wanted = {});
+
+/// Observables of a case by name; nothing: the case ends as unstable.
+using Formulas = std::function<std::optional<std::map<std::string, double>>(const Inputs&)>;
+campaign::Campaign answer_all_by(store::Store& store, const std::string& text, const Formulas& formulas,
+                                 std::size_t cases = static_cast<std::size_t>(-1),
+                                 const std::function<bool(const campaign::PlacedCase&)>& wanted = {});
 
 /// A real input of a case.
 [[nodiscard]] double input(const Inputs& inputs, std::string_view name);

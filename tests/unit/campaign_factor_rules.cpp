@@ -81,6 +81,49 @@ TEST(Step, OfALogarithmicRangeHasTheProbabilityOfItsCell) {
         EXPECT_NEAR(count, points * std::log((x + 0.5) / (x - 0.5)) / std::log(4.5 / 0.5), 1) << x;
 }
 
+TEST(Step, OfADistributionHasTheProbabilityOfItsCell) {
+    const stats::Distribution normal(stats::Normal{10, 2});
+    std::map<double, int> counts;
+    constexpr int points = 100'000;
+    for (int i = 0; i < points; ++i) ++counts[stepped(normal, 1, (i + 0.5) / points)];
+    EXPECT_GE(counts.size(), 15U);
+    for (const auto& [x, count] : counts) {
+        EXPECT_EQ(x, std::round(x));
+        EXPECT_NEAR(count, points * (normal.cumulative(x + 0.5) - normal.cumulative(x - 0.5)), 1) << x;
+    }
+    const stats::Distribution cut(stats::Normal{10, 2}, 8.2, 11.7);  // no value outside of its ends
+    counts.clear();
+    for (int i = 0; i < points; ++i) ++counts[stepped(cut, 1, (i + 0.5) / points)];
+    ASSERT_EQ(counts.size(), 3U);
+    EXPECT_NEAR(counts.at(9), points * cut.cumulative(9.5), 1);
+    EXPECT_NEAR(counts.at(11), points * (1 - cut.cumulative(10.5)), 1);
+}
+
+TEST(Step, OfADistributionIsReadStoredAndRefused) {
+    auto text = sound();
+    text["factors"] = json::parse(R"([{"name": "x1", "normal": {"mean": 0.5, "sd": 0.1}, "step": "5 %"},
+                                      {"name": "x2", "triangular": {"low": 0, "mode": 0.5, "high": 1}}])");
+    const auto campaign = read(text);
+    EXPECT_EQ(campaign.space.factors[0].step, 0.05);
+    const auto stated = factors_in(factors_line(campaign.space.factors));
+    ASSERT_EQ(stated.size(), 2U);
+    EXPECT_EQ(stated[0].step, 0.05);
+    EXPECT_EQ(stated[0].distribution, stats::Distribution(stats::Normal{0.5, 0.1}, 0, 1));
+    EXPECT_EQ(stated[1].step, std::nullopt);
+    const auto cases = cases_of(campaign);
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        EXPECT_TRUE(is_multiple(0.05, std::get<double>(cases.question(i).inputs.at("x1")))) << i;
+    EXPECT_LT(different(cases), cases.size() + 1);
+    text = json::parse(R"({"campaign": "c", "scene": "powder_spreading", "design": {"kind": "halton", "points": 4},
+        "factors": [{"name": "time_step_fraction", "lognormal": {"median": 0.1, "ratio": 2}, "step": 0.2}]})");
+    try {
+        (void)read(text);
+        FAIL() << "a fraction of 0";
+    } catch (const WrongQuestion& wrong) {
+        EXPECT_THAT(wrong.what(), testing::HasSubstr("values round to 0, where 'time_step_fraction' has no value"));
+    }
+}
+
 TEST(Step, MakesCasesOfOneValueOneCase) {
     auto text = sound();
     text["factors"] = json::parse(R"([{"name": "x1", "between": ["0 %", "100 %"], "step": "25 %"},

@@ -50,7 +50,7 @@ struct FailedCases : testing::Test {
 TEST_F(FailedCases, NoSettingIsRecommendedAmongThem) {
     const auto known = cases(jams);
     EXPECT_THAT(failed_text(known), testing::MatchesRegex("2[3-5] of 80 cases failed \\(2[3-5] unstable\\)"));
-    const WindowRequest request{.where = "y >= 0.5", .objective = "y", .next = 5};
+    const WindowRequest request{.where = "y >= 0.5", .objectives = {{"y"}}, .next = 5};
     const auto window = window_of(store, known, request);
     ASSERT_TRUE(window.best);
     EXPECT_GE(window.best->setting[0], 0.29) << "the largest y of the model is at x1 = 0";
@@ -78,9 +78,9 @@ TEST_F(FailedCases, NoSettingIsRecommendedAmongThem) {
 TEST_F(FailedCases, AFactorAsTheObjectiveStopsBeforeThem) {
     const auto known = cases(jams);
     for (const bool by_factor_alone : {false, true}) {
-        const auto window = window_of(
-            store, known,
-            {.where = by_factor_alone ? "x2 >= 0" : "y >= 0.1", .objective = "x1", .maximise = false, .next = 3});
+        const auto window =
+            window_of(store, known,
+                      {.where = by_factor_alone ? "x2 >= 0" : "y >= 0.1", .objectives = {{"x1", false}}, .next = 3});
         ASSERT_TRUE(window.best);
         EXPECT_NEAR(window.best->setting[0], 0.33, 0.04);
         for (const auto& one : window.next) EXPECT_GT(one.setting[0], 0.25);
@@ -89,7 +89,7 @@ TEST_F(FailedCases, AFactorAsTheObjectiveStopsBeforeThem) {
 
 TEST_F(FailedCases, WithoutOneTheShareThatMayFailIsSaid) {
     const auto known = cases([](const Inputs& inputs) { return 1 - input(inputs, "x1"); });
-    const WindowRequest request{.where = "y >= 0.5", .objective = "y"};
+    const WindowRequest request{.where = "y >= 0.5", .objectives = {{"y"}}};
     const auto window = window_of(store, known, request);
     EXPECT_EQ(window.share_failed, 0);
     EXPECT_THAT(window.notes,
@@ -107,7 +107,7 @@ TEST_F(FailedCases, WhereNearlyAllFailedThereIsNoWindow) {
         },
         96);
     try {
-        const auto window = window_of(store, known, {.where = "y >= 0.5", .objective = "y"});
+        const auto window = window_of(store, known, {.where = "y >= 0.5", .objectives = {{"y"}}});
         EXPECT_LT(window.share_of_box, 0.1);
         EXPECT_GT(window.share_failed, 0.8);
     } catch (const campaign::WrongQuestion& wrong) {
@@ -162,7 +162,7 @@ TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
     EXPECT_TRUE(page["map"]["slice"][0].is_null());
     EXPECT_TRUE(page["map"]["averaged"][0].is_null());
 
-    const WindowRequest request{.where = "y >= 0.5", .objective = "y"};
+    const WindowRequest request{.where = "y >= 0.5", .objectives = {{"y"}}};
     const auto window = window_of(store, known, request);
     const auto drawn = tests::parsed(window_page_data(known, request, window, {}));
     EXPECT_EQ(drawn["failed"].size(), known.failed.size());
@@ -225,7 +225,7 @@ TEST_F(FailedCases, ABatchHasNoTwinsAndAFrontBeginsWithComputedCases) {
                    0.3 * (u - 0.5);
         },
         80);
-    const WindowRequest request{.where = "y >= 0.5", .objective = "y", .next = 6};
+    const WindowRequest request{.where = "y >= 0.5", .objectives = {{"y"}}, .next = 6};
     const auto window = window_of(store, known, request);
     ASSERT_EQ(window.next.size(), 6U);
     for (std::size_t i = 0; i < 6; ++i)
@@ -234,7 +234,7 @@ TEST_F(FailedCases, ABatchHasNoTwinsAndAFrontBeginsWithComputedCases) {
                                std::abs(window.next[i].setting[1] - window.next[j].setting[1])),
                       0.025);
 
-    const WindowRequest trade{.where = "y >= 0.5", .objective = "x1"};
+    const WindowRequest trade{.where = "y >= 0.5", .objectives = {{"x1"}}};
     const auto front = window_of(store, known, trade);
     ASSERT_FALSE(front.computed_front.empty());
     const auto& column = known.observable("y").values;

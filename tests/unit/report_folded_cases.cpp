@@ -171,7 +171,7 @@ TEST_F(Study, AWindowSuggestsSettingsThatCanBeSet) {
               });
     const auto cases = study::read_model_cases(store, "w");
     study::WindowRequest request;
-    request.objective = "y";
+    request.objectives = {{"y"}};
     request.next = 6;
     const auto window = study::window_of(store, cases, request);
     ASSERT_TRUE(window.best);

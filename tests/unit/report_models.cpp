@@ -152,7 +152,7 @@ TEST(ModelFeatures, WithoutANumberThereIsNoPredictionAndNoRecommendation) {
     EXPECT_THAT(said(0.5, 0.5), HasSubstr("x1 = 0.5, x2 = 0.5; the feature '1/(x1 - 0.5)' of the model has no number"));
     EXPECT_THAT(said(0.2, 0), HasSubstr("the feature 'log(x2)' of the model has no number there"));
     // The first point searched is the corner x1 = x2 = 0, where log(x2) is undefined.
-    const auto window = window_of(store, cases, {.where = "y >= 100", .objective = "y", .next = 3});
+    const auto window = window_of(store, cases, {.where = "y >= 100", .objectives = {{"y"}}, .next = 3});
     ASSERT_TRUE(window.surest);
     EXPECT_GT(window.surest->setting[1], 0);
     EXPECT_TRUE(window.surest->believed);
@@ -271,13 +271,13 @@ TEST_F(Learned, WindowKeepsAwayFromWhereTheObservableIsUndefined) {
     answer_by(store, campaign_of("c"), response);
     const auto cases = read_model_cases(store, "c");
     // y is smallest where x1 is: just above 0.3, where it begins to be defined.
-    const auto window = window_of(store, cases, {.where = "y >= 0", .objective = "y", .maximise = false});
+    const auto window = window_of(store, cases, {.where = "y >= 0", .objectives = {{"y", false}}});
     ASSERT_TRUE(window.best);
     EXPECT_GE(window.best->probability, 0.95);
     EXPECT_GT(window.best->setting[0], 0.28);
     EXPECT_LT(window.best->setting[0], 0.5);
     EXPECT_NEAR(window.share_of_box, 0.7, 0.06);
-    const auto again = window_of(store, cases, {.where = "y >= 0", .objective = "y", .maximise = false});
+    const auto again = window_of(store, cases, {.where = "y >= 0", .objectives = {{"y", false}}});
     EXPECT_EQ(again.best->setting, window.best->setting);
 }
 

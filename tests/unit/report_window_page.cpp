@@ -24,7 +24,7 @@ using testing::Not;
 struct WindowPage : testing::Test {
     Folder folder;
     store::Store store{folder / "a.db", store::Store::Mode::create};
-    WindowRequest request{.where = "x1 <= 0.5 and y >= -0.2", .objective = "y", .next = 2};
+    WindowRequest request{.where = "x1 <= 0.5 and y >= -0.2", .objectives = {{"y"}}, .next = 2};
 
     ModelCases cases(const std::string& more = "") {
         answer_by(store,
@@ -72,18 +72,18 @@ TEST_F(WindowPage, FactorsThatDecideTheConditionComeBeforeThoseOfTheObjective) {
 TEST_F(WindowPage, AFactorMayBeTheObjective) {
     const auto known = cases();
     request.where = "y <= 0.3";
-    request.objective = "x1";
+    request.objectives = {{"x1"}};
     const auto window = window_of(store, known, request);
-    ASSERT_TRUE(window.objective_is_factor);
+    ASSERT_TRUE(window.goals[0].factor);
     ASSERT_TRUE(window.best);
     EXPECT_NEAR(window.best->setting[0], 0.8, 0.02);
     EXPECT_NEAR(window.best->setting[1], 1, 0.02);
     EXPECT_GE(window.best->probability, 0.95);
-    EXPECT_EQ(window.best->objective.mean, window.best->setting[0]);
-    EXPECT_EQ(window.best->objective.mean_error, 0);
+    EXPECT_EQ(window.best->objectives[0].mean, window.best->setting[0]);
+    EXPECT_EQ(window.best->objectives[0].mean_error, 0);
     ASSERT_EQ(window.models.size(), 1U);
     for (const auto& one : window.next) EXPECT_GT(one.setting[0], window.best->setting[0]) << "no gain below";
-    ASSERT_EQ(window.against, 0U);
+    ASSERT_EQ(window.against->model, 0U);
     for (std::size_t k = 1; k < window.front.size(); ++k) {
         EXPECT_GT(window.front[k].setting[0], window.front[k - 1].setting[0]);
         EXPECT_GT(window.front[k].predictions[0].mean, window.front[k - 1].predictions[0].mean);
@@ -93,7 +93,7 @@ TEST_F(WindowPage, AFactorMayBeTheObjective) {
     EXPECT_EQ(json["best"]["mean"], window.best->setting[0]);
     const auto data = tests::parsed(window_page_data(known, request, window, {}));
     EXPECT_TRUE(data["map"]["objective"].is_null()) << "it would be the factor's own axis";
-    request.maximise = false;
+    request.objectives[0].maximise = false;
     request.where = "y >= 0.3";
     const auto least = window_of(store, known, request);
     ASSERT_TRUE(least.best);

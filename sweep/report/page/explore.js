@@ -131,7 +131,7 @@ function scatter(model, factor, bins, response) {
         { data: bins.map(([x, y]) => ({ x: across.of(x), y: y === null ? null : up.of(y) })), type: "line", showLine: factor.levels.length === 0, borderColor: colour("two"),
           backgroundColor: colour("two"), borderWidth: 2, pointRadius: factor.levels.length > 0 ? 5 : 0, pointStyle: "rectRot" },
         { data: points, backgroundColor: colour("dot"), borderWidth: 0, pointRadius: dotSize(points.length), clip: 6 }] },
-      options: { scales: { x: variableAxis(factor), y: axis(up.title, aroundOne(rows.map((row) => values.values[row]), up.of)) },
+      options: { scales: { x: variableAxis(factor), y: values.log ? variableAxis(values) : axis(up.title, aroundOne(rows.map((row) => values.values[row]), up.of)) },
         onClick: (event, hits) => { const hit = hits.find((one) => one.datasetIndex === 1); if (hit) selectCase(model, points[hit.index].row); },
         plugins: { tooltip: { callbacks: { label: (item) => `${show(item.raw.x)}: ${show(item.raw.y)}` } } } },
     };

@@ -17,7 +17,7 @@ function withWidth(k, mean, width) { const s = responseScale(k); return withErro
 function settingSection() {
   const { best } = data;
   const says = data.meets
-    ? `${data.objective ? `Setting with the ${data.maximize ? "largest" : "smallest"} ${data.objective}` : "Most probable setting"} where ${data.where ? `"${data.where}" holds` : "the response is defined"} with probability ${sure} or more. The probability is that of ${data.single_run ? "a single run" : "the mean of many runs"}.`
+    ? `${data.objective ? `Setting with the ${data.goal}` : "Most probable setting"} where ${data.where ? `"${data.where}" holds` : "the response is defined"} with probability ${sure} or more. The probability is that of ${data.single_run ? "a single run" : "the mean of many runs"}.`
     : `No setting meets "${wanted}" with probability ${sure}. This one has the largest probability.`;
   const near = data.failed_near ? ` Here ${data.failed_near}.` : "";
   const set = table([["factor"], ["value", "number"]], factors.map((f, j) => [f.name, settingText(best, j)]));
@@ -79,7 +79,7 @@ function start() {
   document.title = `${data.campaign}: process window`;
   for (const id of ["campaign-choice", "other-choice", "observable-choice"]) document.getElementById(id).hidden = true;
   showPage(() => [el("h1", {}, `${data.campaign}: process window`), el("p", { class: "says" }, `${data.scene} · ${wanted}`), settingSection(), mapSection(), curvesSection(),
-    listSection("front", "Trade-off", `Settings where ${data.objective} cannot improve unless ${data.against} worsens. The condition need not hold.`, data.front),
+    listSection("front", "Trade-off", `Settings where ${data.objective} cannot improve unless ${data.against} worsens. ${data.volume ? `Here: ${data.volume}.` : "The condition need not hold."}`, data.front),
     listSection("next", "To run next", "The most promising cases.", data.next),
     section("basis", "Basis", null, el("div", { class: "card" }, data.models.concat(data.notes).map((text) => el("p", { class: "notes" }, text))))]);
 }
