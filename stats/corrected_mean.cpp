@@ -1,10 +1,9 @@
 #include "stats/corrected_mean.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/least_squares.hpp"
 #include "stats/response/fit.hpp"
 #include "stats/response/kriging.hpp"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
@@ -74,7 +73,7 @@ PairPrediction regression(const Sample& sample, PairPredictor by, Eigen::Index c
         std::vector<Eigen::Index> teachers;
         for (const auto row : sample.pairs)
             if (sample.of(row) != s) teachers.push_back(row);
-        const Eigen::VectorXd b = terms(teachers, Eigen::all).colPivHouseholderQr().solve(sample.expensive(teachers));
+        const Eigen::VectorXd b = least_squares(terms(teachers, Eigen::all), sample.expensive(teachers));
         for (Eigen::Index i = 0; i < sample.size(); ++i)
             if (sample.of(i) == s) found.g(i) = terms.row(i) * b;
     }
@@ -185,7 +184,7 @@ double corrected_scatter(const Sample& sample, const Eigen::VectorXd& g) {
     Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(sample.size(), 1 + width);
     terms.rightCols(width) = sample.factors;
     if (sample.size() < 2 * terms.cols()) return corrected_half_width(g, 1);
-    const Eigen::VectorXd residuals = g - terms * terms.colPivHouseholderQr().solve(g).eval();
+    const Eigen::VectorXd residuals = g - terms * least_squares(terms, g);
     const auto n = static_cast<double>(sample.size()), freedom = n - static_cast<double>(terms.cols());
     return corrected_half_width(residuals, terms.cols()) * std::sqrt((n - 1) / freedom);
 }

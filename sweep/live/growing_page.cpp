@@ -30,6 +30,26 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Does the work and returns the processor time. Low priority takes a thread of its own: a thread may lower its
+/// priority, but not raise it again.
+template <class Work>
+double seconds_of(bool low_priority, const Work& work) {
+    double seconds = 0;
+    const auto timed = [&] {
+        const double start = thread_seconds();
+        work();
+        seconds = thread_seconds() - start;
+    };
+    if (low_priority)
+        std::thread([&] {
+            ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
+            timed();
+        }).join();
+    else
+        timed();
+    return seconds;
+}
+
 }  // namespace
 
 GrowingPage::GrowingPage(std::vector<std::filesystem::path> databases, std::function<bool()> ended)
@@ -97,8 +117,8 @@ void GrowingPage::publish() {
     latest_ = std::move(page);
 }
 
-bool GrowingPage::renew(std::unique_lock<std::mutex>& lock, const std::stop_token& stop,
-                        std::chrono::milliseconds at_most) {
+bool GrowingPage::renew(const std::stop_token& stop, std::chrono::milliseconds at_most) {
+    std::unique_lock lock(mutex_);
     const auto start = Clock::now();
     while (!stop.stop_requested() && Clock::now() - start < at_most) {
         // Each once: a run that commits all the time is no reason to read all the time.
@@ -133,7 +153,6 @@ bool GrowingPage::renew(std::unique_lock<std::mutex>& lock, const std::stop_toke
 }
 
 void GrowingPage::keep_up(const std::stop_token& stop) {
-    bool lowered = false;
     std::unique_lock lock(mutex_);
     auto last = Clock::now() - std::chrono::hours(1);
     while (!stop.stop_requested()) {
@@ -146,17 +165,19 @@ void GrowingPage::keep_up(const std::stop_token& stop) {
             wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return false; });
             continue;
         }
-        const double start = thread_seconds();
         busy_ = true;
         grown_ = false;
-        grown_ = renew(lock, stop, longest_renewal) || grown_;
+        const bool beside_run = computing_ && !first;  // the first figures are waited for
+        lock.unlock();
+        bool left = false;
+        const double seconds = seconds_of(beside_run, [&] { left = renew(stop, longest_renewal); });
+        lock.lock();
+        grown_ = left || grown_;
         busy_ = false;
-        last_seconds_ = thread_seconds() - start;
-        spent_ += last_seconds_;
+        last_seconds_ = seconds;
+        spent_ += seconds;
         last = Clock::now();
         publish();
-        if (!std::exchange(lowered, true))  // the first figures are waited for; of this thread alone
-            ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
         wake_.notify_all();
     }
 }

@@ -1,7 +1,7 @@
 // Data of the report for growing databases, renewed by a thread, database by database.
 //
 // Figures of a campaign (moments, indices, models) take longer than the interval between results. They are computed
-// again after commits; while a run computes, only for a second plus a four-hundredth of the time. A
+// again after commits; while a run computes, at low priority and only for a second plus a four-hundredth of the time. A
 // database that cannot be read keeps its last figures, and is tried again.
 #pragma once
 
@@ -55,7 +55,7 @@ private:
     };
     void keep_up(const std::stop_token& stop);
     /// Renews stale parts for at most this time. Returns whether one is left.
-    bool renew(std::unique_lock<std::mutex>& lock, const std::stop_token& stop, std::chrono::milliseconds at_most);
+    bool renew(const std::stop_token& stop, std::chrono::milliseconds at_most);
     void publish();
 
     std::function<bool()> ended_;

@@ -266,7 +266,7 @@ TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
 
     const std::string row_1 = query("SELECT case_id FROM first ORDER BY point, replicate LIMIT 1 OFFSET 1");
     ASSERT_EQ(seen["events"].size(), 2u);
-    EXPECT_EQ(seen["events"][0], Json({{"campaign", "first"}, {"case_id", row_1.substr(0, 32)}}));
+    EXPECT_EQ(seen["events"][0], Json({{"database", "c.db"}, {"campaign", "first"}, {"case_id", row_1.substr(0, 32)}}));
     EXPECT_EQ(seen["events"][1]["campaign"], "first");
     const std::string first_point = seen["events"][1]["case_id"];
     EXPECT_EQ(query("SELECT count(*) FROM first WHERE case_id = '" + first_point + "'"), "1\n");

@@ -98,6 +98,37 @@ TEST_F(ServedInABrowser, FitsAPhoneAndTheDark) {
     EXPECT_EQ(page.complaints(), std::vector<std::string>());
 }
 
+// Two databases of a folder hold a campaign of the same name. A film is of the case that the reader sees.
+TEST_F(ServedInABrowser, FilmsAreOfTheChosenDatabase) {
+    ASSERT_EQ(
+        run_program({"run", "a.json", "--db", "b.db", "--quiet", "--max-cases", "3", "-j", "1"}, folder.path()).code,
+        1);
+    const LiveServer server(folder, ".");
+    DrivenBrowser page(server.address(), folder, {});
+    ASSERT_TRUE(page.until("document.getElementById('campaign').options.length === 2"));
+    page.value(
+        "window.asked = []; const send = window.fetch; window.fetch = (address, ...more) => {"
+        " window.asked.push(String(address)); return send(address, ...more); }; 0");
+    for (const std::string title : {"a (b.db)", "a (a.db)"}) {
+        page.value("window.asked.length = 0");
+        page.value(
+            "(() => { const select = document.getElementById('campaign'); select.value = "
+            "[...select.options].find((one) => one.textContent === '" +
+            title +
+            "').value; "
+            "select.dispatchEvent(new Event('change')); })()");
+        ASSERT_TRUE(page.until("document.querySelector('.rows tr[data-row]')"));
+        page.value("document.querySelector('.rows tr[data-row]').click()");
+        EXPECT_TRUE(page.until("document.querySelector('#case-panel .says').textContent.startsWith('" + title + "')"));
+        page.value("document.querySelector('#case-panel .watch button').click()");
+        EXPECT_TRUE(page.until("window.asked.some((one) => one.startsWith('film?'))"));
+        EXPECT_EQ(
+            page.value(
+                "new URLSearchParams(window.asked.find((one) => one.startsWith('film?')).slice(5)).get('database')"),
+            title.substr(3, 4));
+    }
+}
+
 TEST_F(ServedInABrowser, SaysThatTheServerIsGone) {
     std::optional<LiveServer> server(std::in_place, folder, "a.db");
     DrivenBrowser page(server->address(), folder, {});

@@ -1,5 +1,6 @@
 #include "tests/support/served_rounds.hpp"
 
+#include "tests/support/driven_browser.hpp"
 #include "tests/support/event_reader.hpp"
 #include "tests/support/failing_call.hpp"
 #include "tests/support/live_server.hpp"
@@ -46,6 +47,11 @@ std::int64_t settled_in(const Json& data) {
             if (outcome != "not yet" && outcome != "abandoned") count += cases;
     return count;
 }
+
+/// Number of settled cases that a page shows.
+constexpr std::string_view settled_tiles = R"([...document.querySelectorAll('.outcomes .tile')]
+    .filter((one) => !/not yet|to be resumed/.test(one.textContent))
+    .reduce((sum, one) => sum + Number(one.querySelector('b').textContent), 0))";
 
 }  // namespace
 
@@ -101,9 +107,14 @@ ServedRounds served_rounds(const Folder& folder, int most, std::chrono::seconds 
         ++rounds.done;
     }
     rounds.settled = stored(file);
-    // Its figures are computed at low priority: on a busy machine, late.
-    for (const auto last = Clock::now() + 300s; settled_in(data()) != rounds.settled;) {
-        if (Clock::now() > last) return complain("a page opened now shows old counts"), rounds;
+    // Results since the last figures are events that a page opened now gets at once.
+    {
+        DrivenBrowser now_opened(server.address(), folder, {});
+        if (!now_opened.until(fmt::format("{} === {}", settled_tiles, rounds.settled)))
+            complain("a page opened now shows old counts");
+    }
+    for (const auto last = Clock::now() + 60s; settled_in(data()) != rounds.settled;) {
+        if (Clock::now() > last) return complain("the figures stay old"), rounds;
         std::this_thread::sleep_for(500ms);
     }
     server.process().signal(SIGINT);

@@ -41,7 +41,7 @@ function selectCase(model, row) {
   casePanel().hidden = false;
   document.body.classList.add("with-panel");
   selectionChanged.forEach((changed) => changed());
-  document.dispatchEvent(new CustomEvent("grainsweep:case", { detail: { campaign: campaign.name, case_id: id } }));
+  document.dispatchEvent(new CustomEvent("grainsweep:case", { detail: { database: campaign.database, campaign: campaign.name, case_id: id } }));
 }
 
 document.addEventListener("keydown", (event) => { if (event.key === "Escape" && selected) closeCase(); });

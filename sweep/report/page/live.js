@@ -233,13 +233,13 @@ function sqlConsole() {
 // ---- films
 
 document.addEventListener("grainsweep:case", (event) => {
-  const { campaign, case_id: id } = event.detail, found = data.campaigns.find((one) => one.name === campaign);
-  const place = placeOf(found.database, id), unfinished = place && ["not yet", "abandoned"].includes(place.model.outcome(place.row));
+  const { database, case_id: id } = event.detail;  // several databases may hold a campaign of one name
+  const place = placeOf(database, id), unfinished = place && ["not yet", "abandoned"].includes(place.model.outcome(place.row));
   const said = el("span", { class: "says" });
   const show = button(unfinished ? "Picture of the last checkpoint" : "▶ Film", async () => {
     said.textContent = unfinished ? " …" : " computing it again, at low priority …";
     try {
-      const begun = await ask("film", { database: found.database, case: id }, "");
+      const begun = await ask("film", { database, case: id }, "");
       await endOf(begun);
       said.replaceChildren(" ", el("a", { href: begun.film, target: "_blank", rel: "noopener" }, "open it"));
     } catch (error) {
