@@ -82,6 +82,21 @@ const ut_visitor& powers_visitor() {
     return visitor;
 }
 
+/// Sets a flag to false for a unit with a factor or an offset.
+const ut_visitor& scale_visitor() {
+    static const ut_visitor visitor = {
+        [](const ut_unit*, void*) { return UT_SUCCESS; },
+        [](const ut_unit*, int, const ut_unit* const*, const int*, void*) { return UT_SUCCESS; },
+        [](const ut_unit*, double scale, const ut_unit*, double offset, void* plain) {
+            *static_cast<bool*>(plain) = scale == 1 && offset == 0;
+            return UT_SUCCESS;
+        },
+        [](const ut_unit*, const ut_unit*, double, void*) { return UT_MEANINGLESS; },  // a date
+        [](const ut_unit*, double, const ut_unit*, void*) { return UT_MEANINGLESS; },  // decibels
+    };
+    return visitor;
+}
+
 /// value = factor * number + offset.
 struct Conversion {
     double factor = 1;
@@ -269,11 +284,22 @@ std::string advice(const UnitDatabase& database, std::string_view unit, const ut
     return fmt::format(", these fit: {}", listed(fitting));
 }
 
+struct LockedUnits {
+    std::unique_lock<std::mutex> lock;
+    const UnitDatabase& database;
+};
+
+LockedUnits locked_units() {
+    static std::mutex one_at_a_time;
+    std::unique_lock lock(one_at_a_time);
+    static const UnitDatabase database;
+    return {std::move(lock), database};
+}
+
 std::variant<double, std::string> with_unit(std::string_view number, double x, std::string_view given,
                                             std::string_view unit) {
-    static std::mutex one_at_a_time;
-    const std::scoped_lock lock(one_at_a_time);
-    static const UnitDatabase database;
+    const auto units = locked_units();
+    const auto& database = units.database;
     if (!database.found())
         return "no unit can be read without the file udunits2.xml (package libudunits2-data; UDUNITS2_XML_PATH can "
                "name the file)";
@@ -336,6 +362,24 @@ std::variant<double, std::string> in_si(std::string_view text, std::string_view 
 std::string_view unit_of_quantity(std::string_view text) {
     const Written written(text);
     return written.number && written.error == std::errc() ? written.unit : std::string_view();
+}
+
+bool resembles_united_number(std::string_view text) {
+    const Written written(text);
+    if (!written.number || written.error != std::errc() || written.unit.empty()) return false;
+    const bool blank = written.unit.data() != written.digits.data() + written.digits.size();
+    if (std::ranges::find(usual_units, written.unit) != usual_units.end()) return blank || written.unit.size() > 1;
+    if (!blank || !sound_unit(written.unit)) return false;
+    const auto units = locked_units();
+    return units.database.found() && units.database.parsed(written.unit) != nullptr;
+}
+
+bool is_si_unit(std::string_view unit) {
+    if (unit.empty() || unit == "1" || !sound_unit(unit)) return true;
+    const auto units = locked_units();
+    const Unit parsed = units.database.found() ? units.database.parsed(unit) : nullptr;
+    bool plain = true;
+    return !parsed || (ut_accept_visitor(parsed.get(), &scale_visitor(), &plain) == UT_SUCCESS && plain);
 }
 
 }  // namespace grainsweep::campaign

@@ -20,4 +20,12 @@ namespace grainsweep::campaign {
 /// Returns the unit of a quantity as written, a part of `text`; empty without one or without a number.
 [[nodiscard]] std::string_view unit_of_quantity(std::string_view text);
 
+/// Returns whether a text whose parameter states no unit is a number and a unit all the same: "2 mm", "35kPa". "2d" and
+/// "3rd" are words.
+[[nodiscard]] bool resembles_united_number(std::string_view text);
+
+/// Returns whether numbers in `unit` are those in SI units: true for "m", "N", "1" and for words that are no unit;
+/// false for "mm", "%" and "degC".
+[[nodiscard]] bool is_si_unit(std::string_view unit);
+
 }  // namespace grainsweep::campaign
