@@ -358,10 +358,12 @@ void declare_run(Parser& parser, RunArguments& request) {
         ->check(whole_number(0, 4096));
     parser.add_option("-k N", request.stop_after_failures, "start no more cases after N failed cases; 0: no limit")
         ->check(whole_number(0));
+    parser.add_flag("--keep-going", request.keep_going,
+                    "compute the other cases, too, when the first 8 all fail for one reason");
     parser.add_option("--again OUTCOME", request.outcome,
                       "rerun cases with this outcome, for example unstable or crashed");
     parser.add_option("--adopt CAMPAIGN", request.adopt,
-                      "take over the answers of a campaign whose program differs only in the contents of its files");
+                      "take over the answers of a campaign whose program has changed without a change of its results");
     parser.add_option("--max-cases N", request.max_cases, "finish at most N cases in this run; 0: all")
         ->check(whole_number(0));
     parser

@@ -21,6 +21,7 @@ struct RunRequest {
                                           ///< database
     std::optional<std::int64_t> workers;  ///< overrides the campaign file
     std::optional<std::int64_t> stop_after_failures;  ///< start no case after so many failed cases
+    bool keep_going = false;                          ///< go on although the first cases all fail for one reason
     std::optional<campaign::Outcome> again;           ///< rerun cases with this outcome
     std::optional<std::int64_t> max_cases;            ///< settle at most so many cases
     std::optional<std::int64_t> points;               ///< points of the design, instead of the number in the file

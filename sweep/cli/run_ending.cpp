@@ -27,6 +27,11 @@ std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const 
             return left("stopped");
         case Ending::too_many_failures:
             return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
+        case Ending::failed_alike:
+            return fmt::format(
+                "stopped, because the first {} cases all failed for one reason ({}), with {} cases left; run again to "
+                "try all of them, --keep-going computes the others, too{}",
+                tally.failed_now, tally.failed_alike, tally.questions - tally.decided, standing(judge));
         case Ending::out_of_time:
             return left("out of time");
         case Ending::asked_to_end:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <utility>
 
 namespace grainsweep::schedule {
@@ -21,6 +22,38 @@ bool good(Outcome outcome) {
     return outcome == Outcome::completed || outcome == Outcome::skipped;
 }
 
+/// Returns a reason without what differs from case to case: words with digits, such as numbers, ids and addresses. The
+/// status of an exit stays.
+std::string without_numbers(std::string_view reason) {
+    const auto is_sign = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '+' || c == '-';
+    };
+    std::string plain;
+    while (!reason.empty()) {
+        const auto end = static_cast<std::size_t>(std::ranges::find_if_not(reason, is_sign) - reason.begin());
+        const auto word = reason.substr(0, end);
+        const bool is_status = plain.ends_with("exit code ") || plain.ends_with("signal ");
+        plain += is_status || word.find_first_of("0123456789") == std::string_view::npos ? word : "#";
+        if (end < reason.size()) plain += reason[end];
+        reason.remove_prefix(std::min(end + 1, reason.size()));
+    }
+    return plain;
+}
+
+/// Returns the first and the last line of a text, shortened.
+std::string in_one_line(std::string_view text) {
+    constexpr std::size_t longest = 240;
+    const auto shortened = [](std::string_view line) {
+        return line.size() <= longest ? std::string(line) : std::string(line.substr(0, longest)) + "...";
+    };
+    while (text.ends_with('\n')) text.remove_suffix(1);
+    const auto first = std::min(text.find('\n'), text.size());
+    const auto last = text.rfind('\n');
+    return last == std::string_view::npos
+               ? shortened(text)
+               : shortened(text.substr(0, first)) + " ... " + shortened(text.substr(last + 1));
+}
+
 }  // namespace
 
 Plan::Plan(Questions questions, const Rules& rules)
@@ -31,10 +64,14 @@ Plan::Plan(Questions questions, const Rules& rules)
     entries_.reserve(histories.size());
     decided_.resize(histories.size());
     queue_.reserve(histories.size());
+    const bool anew = failed_before(histories);
     for (std::size_t i = 0; i < histories.size(); ++i) {
         Entry entry{questions.predicted[i], histories[i].attempts, histories[i].failures};
         const auto& known = histories[i].outcome;
-        const bool asked_again = known && rules_.again == known;
+        if (known && good(*known)) may_be_alike_ = false;
+        const bool asked_again = known && (rules_.again == known || anew);
+        if (anew && histories[i].asked && (entry.failures >= rules_.attempts || (known && settles(*known))))
+            ++tried_again_;
         if (asked_again) entry.failures = 0;
         const bool exhausted = entry.failures >= rules_.attempts;
         const bool decided = known && !asked_again && (settles(*known) || exhausted);
@@ -48,6 +85,18 @@ Plan::Plan(Questions questions, const Rules& rules)
         entries_.push_back(entry);
     }
     order_the_end(questions.blocks);
+}
+
+bool Plan::failed_before(std::span<const History> histories) const {
+    std::size_t failed = 0, open = 0;
+    for (const auto& one : histories) {
+        if (one.outcome && good(*one.outcome)) return false;
+        if (one.outcome && (settles(*one.outcome) || one.failures >= rules_.attempts))
+            ++failed;
+        else if (one.asked)
+            ++open;
+    }
+    return rules_.stop_after_alike && failed >= *rules_.stop_after_alike && open > 0;
 }
 
 void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
@@ -84,7 +133,7 @@ void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
 std::optional<double> Plan::next_predicted() const {
     if (closed_ || queue_is_empty()) return std::nullopt;
     if (rules_.max_cases && std::cmp_greater_equal(begun(), *rules_.max_cases)) return std::nullopt;
-    if (too_many_failures()) return std::nullopt;
+    if (too_many_failures() || failed_alike()) return std::nullopt;
     return entries_[front()].predicted;
 }
 
@@ -142,7 +191,18 @@ Plan::UnderWay::iterator Plan::find(const campaign::Attempt& attempt) {
     return found != under_way_.end() && found->second.number == attempt.number ? found : under_way_.end();
 }
 
-Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
+void Plan::compare_failure(Outcome outcome, std::string_view reason) {
+    if (!rules_.stop_after_alike || !may_be_alike_ || failed_alike()) return;
+    auto plain = std::string(campaign::to_string(outcome)) + ": " + without_numbers(reason);
+    if (alike_++ == 0) {
+        tally_.failed_alike = std::string(campaign::to_string(outcome)) + ": " + in_one_line(reason);
+        first_failure_ = std::move(plain);
+    } else if (plain != first_failure_) {
+        may_be_alike_ = false;
+    }
+}
+
+Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome, std::string_view reason) {
     const auto found = find(attempt);
     if (found == under_way_.end()) return Verdict::stale;
     const Running one = found->second;
@@ -150,12 +210,17 @@ Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
     Entry& entry = entries_[one.question];
     if (settles(outcome)) {
         ++(good(outcome) ? tally_.settled_now : tally_.failed_now);
+        if (good(outcome))
+            may_be_alike_ = false;
+        else
+            compare_failure(outcome, reason);
         decide(one.question, outcome);
         return Verdict::settled;
     }
     const bool given_up = outcome == Outcome::abandoned ? comes_no_further(one) : ++entry.failures >= rules_.attempts;
     if (given_up) {
         ++tally_.failed_now;
+        compare_failure(outcome, reason);
         decide(one.question, outcome);
         return Verdict::gave_up;
     }

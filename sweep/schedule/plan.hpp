@@ -13,6 +13,8 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -35,7 +37,13 @@ struct Rules {
     std::optional<std::int64_t> max_cases = {};            ///< settle at most so many in this run
     std::optional<campaign::Outcome> again = {};           ///< rerun cases with this outcome
     std::size_t workers = 1;                               ///< cases computed at the same time
+    /// Start no case after the first so many all failed for one reason, if no case has an answer. Cases of such a run
+    /// are tried again by the next one.
+    std::optional<std::size_t> stop_after_alike = {};
 };
+
+/// Number of cases that must fail for one reason before a run stops.
+inline constexpr std::size_t enough_alike = 8;
 
 /// Distinct cases of a plan: a repeated case stands here once.
 struct Questions {
@@ -77,8 +85,8 @@ public:
     void advanced(const campaign::Attempt& attempt, double share);
 
     enum class Verdict { settled, again, gave_up, stale };
-    /// Stores the outcome of an attempt that ended.
-    Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome);
+    /// Stores the outcome of an attempt that ended, and the reason of a failure.
+    Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome, std::string_view reason = {});
     /// Returns an unfinished case to the head of the queue; its attempt does not count. A case given back too often
     /// without progress is given up in this run.
     Verdict given_back(const campaign::Attempt& attempt);
@@ -95,6 +103,12 @@ public:
     [[nodiscard]] bool too_many_failures() const {
         return rules_.stop_after_failures && std::cmp_greater_equal(tally_.failed_now, *rules_.stop_after_failures);
     }
+    /// Returns whether the first cases of this run all failed for one reason; Tally::failed_alike is the reason.
+    [[nodiscard]] bool failed_alike() const {
+        return rules_.stop_after_alike && alike_ >= *rules_.stop_after_alike && may_be_alike_;
+    }
+    /// Returns how many cases that failed in an earlier run are tried again, because none of that run had an answer.
+    [[nodiscard]] std::size_t tried_again() const { return tried_again_; }
     /// Returns whether no case is running and none can be started.
     [[nodiscard]] bool over() const { return under_way_.empty() && !next_predicted(); }
     /// Returns the length of the longest prefix of the placed cases in which every question is decided.
@@ -107,6 +121,7 @@ public:
         std::size_t failed_now = 0;    ///< given up, unstable or rejected in this run
         std::size_t failed = 0;        ///< given up or settled as unstable or rejected, in all runs
         double predicted_waiting = 0;  ///< seconds, of what this run may still start
+        std::string failed_alike;      ///< reason of the first failure, in one line
     };
     [[nodiscard]] const Tally& tally() const { return tally_; }
 
@@ -126,6 +141,10 @@ private:
         double furthest = 0;  ///< share done when it was given back
     };
 
+    /// Returns whether an earlier run stopped because its cases failed alike.
+    [[nodiscard]] bool failed_before(std::span<const History> histories) const;
+    /// Compares a failure with the first one.
+    void compare_failure(campaign::Outcome outcome, std::string_view reason);
     /// Puts long cases first near the end of the queue, or near the last case that this run may settle.
     void order_the_end(std::span<const std::uint32_t> blocks);
     [[nodiscard]] std::size_t question_at(std::size_t placed) const {
@@ -157,6 +176,10 @@ private:
     std::size_t left_out_ = 0;
     double shortest_left_out_ = 0;
     bool closed_ = false;
+    bool may_be_alike_ = true;   ///< no case has an answer, and no failure differs from the first
+    std::size_t alike_ = 0;      ///< failed cases
+    std::string first_failure_;  ///< its outcome and reason without numbers
+    std::size_t tried_again_ = 0;
 };
 
 }  // namespace grainsweep::schedule

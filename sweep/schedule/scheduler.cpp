@@ -60,6 +60,7 @@ Ending Scheduler::ending() const {
     if (early_ == Ending::converged) return *early_;
     if (tally.decided == tally.questions) return Ending::finished;  // a stop that comes when nothing is left is none
     if (early_) return *early_;
+    if (plan_.failed_alike()) return Ending::failed_alike;
     if (plan_.left_out() > 0) {
         const bool hopeless = tally.decided + plan_.left_out() == tally.questions && !walltime_.cases_go_on &&
                               plan_.shortest_left_out() > walltime_.whole;
@@ -145,7 +146,7 @@ void Scheduler::handle_finished(workers::Finished& finished) {
     const auto& result = finished.result;
     time_left_.ended(result.attempt, result.cost.wall_seconds, seconds());
     progress_.under_way.erase(result.attempt.case_id);
-    if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
+    if (plan_.ended(result.attempt, result.outcome, result.message) == Plan::Verdict::stale) return;
     if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected) {
         watchers_.note(
             fmt::format("{} {}: {}", result.attempt.case_id.substr(0, 12), to_string(result.outcome), result.message));
@@ -162,7 +163,7 @@ void Scheduler::handle_failure(campaign::CaseResult result) {
     const auto& attempt = result.attempt;
     progress_.under_way.erase(attempt.case_id);
     time_left_.taken_back(attempt.case_id);
-    const auto verdict = plan_.ended(attempt, result.outcome);
+    const auto verdict = plan_.ended(attempt, result.outcome, result.message);
     if (verdict == Plan::Verdict::stale) return;
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(result.outcome),
                                attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",

@@ -24,6 +24,7 @@ enum class Ending {
     converged,  ///< the statistics reached their tolerance
     limited,    ///< the run reached its limit of cases
     too_many_failures,
+    failed_alike,  ///< the first cases all failed for one reason
     interrupted,
     out_of_time,   ///< the remaining cases do not fit into the time left
     asked_to_end,  ///< by a batch system that will continue the run later

@@ -8,6 +8,10 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace grainsweep::tests::schedule_plan_test {
 
@@ -278,6 +282,63 @@ TEST(Plan, LimitsOfThisRun) {
     Plan fragile = make_plan(10, {.stop_after_failures = 1});
     fragile.ended(fragile.next()->attempt, Outcome::rejected);
     EXPECT_FALSE(fragile.next());
+}
+
+/// Ends the next case with an outcome and a reason.
+void end_next(Plan& plan, Outcome outcome, std::string_view reason) {
+    const auto start = plan.next();
+    ASSERT_TRUE(start);
+    (void)plan.ended(start->attempt, outcome, reason);
+}
+
+TEST(Plan, StopsWhereTheFirstCasesFailAlike) {
+    const Rules rules{.attempts = 1, .stop_after_alike = 3};
+    Plan alike = make_plan(10, rules);
+    for (const char* reason :
+         {"exit code 3; it wrote: at 0.5\nno module a1", "exit code 3; it wrote: at 1e-3\nno module b2"})
+        end_next(alike, Outcome::crashed, reason);
+    EXPECT_FALSE(alike.failed_alike());
+    end_next(alike, Outcome::crashed, "exit code 3; it wrote: at -7\nno module 0");
+    EXPECT_TRUE(alike.failed_alike());
+    EXPECT_FALSE(alike.next());
+    EXPECT_EQ(alike.waiting(), 0U);
+    EXPECT_EQ(alike.tally().failed_alike, "crashed: exit code 3; it wrote: at 0.5 ... no module a1");
+
+    const auto goes_on = [&](const std::vector<std::pair<Outcome, std::string>>& ends) {
+        Plan plan = make_plan(10, rules);
+        for (const auto& [outcome, reason] : ends) end_next(plan, outcome, reason);
+        return plan.next().has_value();
+    };
+    const auto crashed = Outcome::crashed;
+    EXPECT_FALSE(goes_on({{crashed, "a"}, {crashed, "a"}, {crashed, "a"}}));
+    EXPECT_TRUE(goes_on({{crashed, "a"}, {crashed, "b"}, {crashed, "a"}, {crashed, "a"}, {crashed, "a"}}));
+    EXPECT_TRUE(goes_on({{crashed, "exit code 1"}, {crashed, "exit code 2"}, {crashed, "exit code 1"}}));
+    EXPECT_TRUE(goes_on({{crashed, "a"}, {Outcome::rejected, "a"}, {crashed, "a"}}));
+    EXPECT_TRUE(goes_on({{Outcome::completed, ""}, {crashed, "a"}, {crashed, "a"}, {crashed, "a"}}));
+    EXPECT_TRUE(goes_on({{Outcome::skipped, ""}, {crashed, "a"}, {crashed, "a"}, {crashed, "a"}}));
+
+    Plan resumed = make_plan(10, rules, {{1, 0, Outcome::completed}});
+    for (int k = 0; k < 5; ++k) end_next(resumed, crashed, "a");
+    EXPECT_TRUE(resumed.next()) << "an earlier case has an answer";
+}
+
+TEST(Plan, CasesOfARunThatFailedAlikeAreTriedAgain) {
+    const Rules rules{.attempts = 2, .stop_after_alike = 3};
+    const std::vector<History> failed = {{2, 2, Outcome::crashed}, {2, 2, Outcome::crashed}, {1, 0, Outcome::rejected}};
+    Plan anew = make_plan(5, rules, failed);
+    EXPECT_EQ(anew.tally().decided, 0U);
+    EXPECT_EQ(anew.tried_again(), 3U);
+    const auto first = anew.next();
+    EXPECT_EQ(first->question.id, "case0");
+    EXPECT_EQ(first->attempt.number, 3);
+    EXPECT_EQ(anew.ended(first->attempt, Outcome::crashed, "a"), Plan::Verdict::again);
+
+    Plan finished = make_plan(3, rules, failed);
+    EXPECT_EQ(finished.tally().decided, 3U) << "nothing is left, so it had not stopped";
+    EXPECT_EQ(make_plan(5, {.attempts = 2}, failed).tally().decided, 3U) << "--keep-going";
+    auto with_answer = failed;
+    with_answer.push_back({1, 0, Outcome::completed});
+    EXPECT_EQ(make_plan(5, rules, with_answer).tally().decided, 4U);
 }
 
 TEST(Plan, OneQuestionAtSeveralPlacesIsAskedOnce) {
