@@ -7,6 +7,7 @@
 #include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/adopt.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/program_case.hpp"
@@ -435,6 +436,7 @@ double plan_one(const PlanRequest& request, std::string_view experiment, Format 
     std::optional<store::Store> archive;
     if (database.empty() && std::filesystem::exists(file)) database = file;
     if (!database.empty()) archive.emplace(database, store::Store::Mode::read);
+    if (archive) campaign::asked_in(config, [&] { return refuse_another_program(*archive, campaign, database), 0; });
     auto outlook =
         campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr, request.probe); });
     outlook.database = database;

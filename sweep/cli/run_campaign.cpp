@@ -4,6 +4,7 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/folder_beside.hpp"
@@ -134,110 +135,6 @@ spool::Collected import_answers(const fs::path& spool, const campaign::Campaign&
     const auto collected = spool::collect(spool / "cases", campaign, cases, collector);
     flush();
     return collected;
-}
-
-// ---- --adopt: answers of an earlier version of a program whose files alone have other contents
-
-constexpr std::size_t shown_digits = 12;
-
-campaign::WrongQuestion not_adopted(const std::string& old, const std::string& why) {
-    return campaign::wrong_question("--adopt", fmt::format("'{}'", old), why);
-}
-
-/// Returns the first difference apart from the contents of files; empty: none.
-std::string other_difference(const campaign::Program& before, const campaign::Program& now) {
-    const auto names = [](const campaign::Program& program) {
-        std::vector<std::pair<std::string, bool>> list;
-        for (const auto& file : program.files) list.emplace_back(file.name, file.is_template);
-        return list;
-    };
-    if (before.command != now.command) return "the command";
-    if (names(before) != names(now)) return "which files the program has";
-    if (before.protocol != now.protocol) return "the protocol";
-    if (before.environment != now.environment) return "the environment";
-    if (before.version != now.version)
-        return fmt::format("the version of the program ('{}', before '{}')", now.version, before.version);
-    auto with_old_files = now;
-    for (std::size_t k = 0; k < now.files.size(); ++k) with_old_files.files[k].hash = before.files[k].hash;
-    const bool same = campaign::program_scene_name(with_old_files) == campaign::program_scene_name(before);
-    return same ? "" : "the parameters or observables";
-}
-
-/// Returns the id of the same case under the old program.
-campaign::CaseId id_under(const campaign::Program& old_program, const campaign::Campaign& campaign,
-                          const campaign::Case& question, std::int64_t replicate) {
-    const auto& scene = campaign.scene();
-    const auto text = [&](std::optional<std::uint64_t> seed) {
-        return campaign::canonical_text(campaign::program_scene_name(old_program), scene.revision, question.inputs,
-                                        scene.defaults(), seed);
-    };
-    return campaign::content_hash(text(campaign::case_seed(campaign.seed, text({}), replicate)));
-}
-
-/// Returns a line for each file with other contents in two programs with the same files: "script.sh: 1f0c -> 93ab",
-/// with the beginnings of the hashes.
-std::vector<std::string> changed_files(const campaign::Program& old_program, const campaign::Program& program) {
-    std::vector<std::string> changed;
-    for (std::size_t k = 0; k < program.files.size(); ++k)
-        if (const auto& before = old_program.files[k], &now = program.files[k]; before.hash != now.hash)
-            changed.push_back(fmt::format("{}: {} -> {}", now.name, before.hash.substr(0, shown_digits),
-                                          now.hash.substr(0, shown_digits)));
-    return changed;
-}
-
-/// Returns the program of the campaign `old` in the database. Throws WrongQuestion if there is no such campaign, one of
-/// the campaigns has no program, or more than the contents of files changed.
-std::shared_ptr<const campaign::Program> adopted_program(const store::Store& store, const campaign::Campaign& campaign,
-                                                         const std::string& old) {
-    const auto records = store.campaigns();
-    const auto record = std::ranges::find(records, old, [](const auto& one) { return one.name; });
-    if (record == records.end()) {
-        const auto names = campaign::names_of(records);
-        throw campaign::wrong_question(
-            "--adopt", fmt::format("'{}'", old),
-            fmt::format("the database has no such campaign; it has {}", campaign::listed(names)),
-            campaign::nearest_word(old, names));
-    }
-    const auto now = campaign::known_program(campaign.scene().name);
-    if (now == nullptr) throw not_adopted(old, "only answers of a program are adopted (\"scene\": \"program\")");
-    const auto before = store.program(record->scene);
-    if (before == nullptr) throw not_adopted(old, "this campaign has no program");
-    if (record->scene == campaign.scene().name)
-        throw not_adopted(old, "its program is this one: equal cases are shared without --adopt");
-    if (const auto differs = other_difference(*before, *now); !differs.empty())
-        throw not_adopted(old, fmt::format("more than the contents of files changed: {}", differs));
-    return before;
-}
-
-/// Stores the answers of `old` to the same inputs as answers of the campaign, unless it has its own. Each is an attempt
-/// whose message names its original case and program. The campaign must be enrolled. Returns their number.
-std::size_t adopt_answers(store::Store& store, const campaign::Campaign& campaign, const campaign::Cases& cases,
-                          const campaign::Program& old_program) {
-    while (store.enrols()) store.enrol_more(std::numeric_limits<std::uint32_t>::max());
-    std::vector<std::pair<campaign::CaseResult, campaign::Computer>> adopted;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        const auto question = cases.question(i);
-        if (!cases.is_first(i) || !store.attempts(question.id).empty()) continue;
-        const auto old_id = id_under(old_program, campaign, question, cases.place(i).replicate);
-        auto result = store.result(old_id);
-        if (!result || !campaign::settles(result->outcome)) continue;
-        campaign::Computer computer;
-        for (const auto& attempt : store.attempts(old_id))
-            if (attempt.number == result->attempt.number)
-                computer = attempt.computer, result->program = attempt.program;
-        result->attempt = {question.id, 1};
-        result->message =
-            fmt::format("{}{}adopted from case {} of {}", result->message, result->message.empty() ? "" : "; ", old_id,
-                        campaign::program_scene_name(old_program));
-        adopted.emplace_back(std::move(*result), std::move(computer));
-    }
-    store.group([&] {
-        for (const auto& [result, computer] : adopted) {
-            store.begin(result.attempt, computer);
-            store.finish(result);
-        }
-    });
-    return adopted.size();
 }
 
 // ---- run
@@ -375,7 +272,8 @@ schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& r
             .stop_after_failures = request.stop_after_failures,
             .max_cases = request.max_cases,
             .again = request.again,
-            .workers = workers};
+            .workers = workers,
+            .stop_after_alike = request.keep_going ? std::nullopt : std::optional(schedule::enough_alike)};
 }
 
 /// Removes half-written files of dead processes; the lock is held, so no other run owns them. Removes checkpoints of
@@ -463,7 +361,14 @@ public:
     }
 
     RunReport operator()() {
+        campaign::asked_in(request_.config, [&] {
+            refuse_another_program(*store_, campaign_, database_);
+            return 0;
+        });
         if (!request_.adopt.empty()) adopted_ = adopted_program(*store_, campaign_, request_.adopt);
+        adopted_.cases = folder_beside(request_.artefacts.empty() ? database_ : artefacts_, of_cases);
+        const bool is_new = store_->factor_order(campaign_.name).empty();
+        if (is_new) state_absent_version();
         if (campaign::reorder_factors(campaign_, store_->factor_order(campaign_.name))) {
             line_->note(fmt::format("note: the factors of '{}' keep their stored order: {}", campaign_.name,
                                     campaign::factor_list(campaign_.space)));
@@ -516,7 +421,7 @@ private:
         states_ = campaign::asked_in(request_.config,
                                      [&] { return store_->enrol(campaign_, placed_, provenance(), entered_first); });
         for (const auto& note : store_->notes()) line_->note(note);
-        if (adopted_ != nullptr) adopt();
+        if (adopted_.program != nullptr) adopt();
         if (!request_.spool.empty())
             collected_ =
                 import_answers(request_.spool, campaign_, placed_, *store_, states_, [](const std::string& text) {
@@ -531,18 +436,32 @@ private:
             request_.config, [&] { return make_judge(campaign_, *store_, placement.placed, placement.candidates); });
         questions_ = questions_of(campaign_, placement);
     }
+    /// States once that versions of a program are not told apart.
+    void state_absent_version() {
+        const auto program = campaign::known_program(campaign_.scene().name);
+        if (program != nullptr && program->version_command.empty())
+            line_->note(fmt::format("note: without program.version, results of two versions of '{}' are not told apart",
+                                    program->command.front()));
+    }
     /// Adopts answers of the earlier program, then updates the states of the cases.
     void adopt() {
-        for (const auto& changed : changed_files(*adopted_, *campaign::known_program(campaign_.scene().name)))
-            line_->note("note: " + changed);
-        line_->note(fmt::format("note: {} answers of '{}' are adopted",
-                                adopt_answers(*store_, campaign_, placed_, *adopted_), request_.adopt));
+        for (const auto& change : adopted_.changes) line_->note("note: " + change.line());
+        const auto counts = adopt_answers(*store_, campaign_, placed_, adopted_);
+        std::string more;
+        if (counts.read_again > 0)
+            more +=
+                fmt::format(", {} of them with further observables from the folders of their cases", counts.read_again);
+        if (counts.without > 0)
+            more += fmt::format("; {} cases without such a folder are computed again", counts.without);
+        line_->note(fmt::format("note: {} answers of '{}' are adopted{}", counts.answers, request_.adopt, more));
         states_ = store_->enrol(campaign_, placed_, provenance(), entered_first);
     }
     RunReport collect() {
         enrol(true);
         walltime_ = {};
-        schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
+        auto rules = rules_of(campaign_, request_, workers_);
+        rules.stop_after_alike.reset();
+        schedule::Plan plan(std::move(questions_), rules);
         plan.close();
         NoCrew crew;
         settle(plan, crew, {});
@@ -569,6 +488,9 @@ private:
     }
     void compute() {
         schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
+        if (const auto count = plan.tried_again(); count > 0)
+            line_->note(fmt::format("note: {} failed cases of '{}' are tried again, because none has an answer yet",
+                                    count, campaign_.name));
         // Where workers on other nodes see the artefacts, they see the folders of a program's cases, too.
         const auto cases = folder_beside(request_.artefacts.empty() ? database_ : artefacts_, of_cases);
         const StagedProgram staged(campaign::known_program(campaign_.scene().name), cases);
@@ -598,7 +520,7 @@ private:
     fs::path database_, artefacts_;
     std::optional<ProgressLine> line_;
     std::optional<store::Store> store_;
-    std::shared_ptr<const campaign::Program> adopted_;  ///< whose answers are taken over; nullptr: none are
+    Adopted adopted_;
     campaign::Cases placed_;
     campaign::Forecast forecast_;
     std::vector<store::CaseState> states_;

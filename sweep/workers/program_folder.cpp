@@ -125,6 +125,11 @@ ProgramFolder::ProgramFolder(fs::path path) : path_(std::move(path)) {
     if (!folder_.is_open()) broken(path_, errno);
 }
 
+ProgramFolder::ProgramFolder(Kept, fs::path path)
+    : path_(std::move(path)),
+      folder_(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)),
+      kept_(true) {}
+
 ProgramFolder::~ProgramFolder() {
     (void)folder_.close();
     if (!kept_) clear_away(path_);

@@ -16,6 +16,9 @@ class ProgramFolder {
 public:
     /// Makes a new empty folder; an older one with its name is removed first. Throws BrokenWorld if it cannot be made.
     explicit ProgramFolder(std::filesystem::path path);
+    struct Kept {};
+    /// Opens the folder of an earlier case for reading; is_open() is false if there is none.
+    ProgramFolder(Kept, std::filesystem::path path);
     ProgramFolder(const ProgramFolder&) = delete;
     ProgramFolder& operator=(const ProgramFolder&) = delete;
     /// Removes the folder with its contents, unless it was kept.
@@ -23,6 +26,7 @@ public:
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] int descriptor() const { return folder_.number(); }
+    [[nodiscard]] bool is_open() const { return folder_.is_open(); }
 
     /// Writes a file of the case, and makes the folders in its name. Throws BrokenWorld.
     void write(const std::string& name, std::string_view contents, bool executable) const;

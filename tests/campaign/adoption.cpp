@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -79,28 +81,118 @@ TEST_F(Adoption, TakesAnswersOverAndSaysWhereTheyComeFrom) {
     EXPECT_THAT(program({"dump", "p.db"}).out, Not(HasSubstr("adopted")));
 }
 
-TEST_F(Adoption, IsRefusedWhereMoreChanged) {
+TEST_F(Adoption, IsRefusedWhereAnAnswerMayBeAnother) {
     ASSERT_EQ(run_script(folder, script("first"), named("p", 4)).code, 0);
     const std::vector<std::string> adopt = {"--db", "p.db", "--adopt", "p"};
     expect_refused(
         run_script(folder, script("second"), named("q", 4, {{"command", {"sh", "script.sh", "{x}", "more"}}}), adopt),
-        "more than the contents of files changed: the command");
+        "its answers are those of another program: $.program.command[3] changed ($.program.command[3]: new)");
     expect_refused(run_script(folder, script("second"), named("q", 4, {{"environment", {{"A", "b"}}}}), adopt),
-                   "more than the contents of files changed: the environment");
-    expect_refused(
-        run_script(folder, script("second"),
-                   named("q", 4, {{"observables", {{"z", {{"from", {{"json", "out.json"}, {"path", "/y"}}}}}}}}),
-                   adopt),
-        "more than the contents of files changed: the parameters or observables");
+                   "$.program.environment.A changed (A: new)");
+    expect_refused(run_script(folder, script("second"),
+                              named("q", 4, {{"observables", {{"y", {{"from", {{"path", "/z"}}}}}}}}), adopt),
+                   "$.program.observables.y changed");
     expect_refused(run_script(folder, script("first"), named("q", 4), adopt), "its program is this one");
     expect_refused(run_script(folder, script("second"), named("q", 4), {"--db", "p.db", "--adopt", "pp"}),
                    "Did you mean 'p'?");
-    expect_refused(run_script(folder, script("second"), named("p", 4), adopt),
-                   "another version of program sh, whose command or files have changed");
     expect_refused(run_script(folder, script("second"), named("q", 4), {"--db", "n.db", "--adopt", "p"}),
                    "there is no database 'n.db'");
     EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM campaign")[0]["n"], 1);
     EXPECT_EQ(runs(), 4);
+}
+
+/// The refusal names the change and the ways on, in run and in plan.
+TEST_F(Adoption, AChangedProgramIsNamed) {
+    ASSERT_EQ(run_script(folder, script("first"), named("p", 4)).code, 0);
+    expect_refused(run_script(folder, script("second"), named("p", 4)),
+                   "c.json: $.program.files: script.sh changed since 'p.db' (");
+    const auto planned = program({"plan", "c.json"});
+    expect_refused(
+        planned,
+        "): give the campaign a new name, which computes every case, or a new name and --adopt p, which takes "
+        "over its results, if the change alters none");
+    EXPECT_THAT(planned.err, Not(HasSubstr("program:"))) << "no hash of a scene";
+    expect_refused(
+        run_script(folder, script("first"), named("p", 4, {{"command", {"sh", "script.sh", "{x}", "-v"}}})),
+        "$.program.command[3]: it is new since 'p.db': give the campaign a new name, which computes every case, "
+        "or set this back to continue campaign 'p'");
+    EXPECT_EQ(runs(), 4);
+}
+
+TEST_F(Adoption, AFurtherObservableIsReadFromKeptFolders) {
+    const json output = {{"from", {{"output", "e = (.*)"}}}};
+    const std::string both = script("first") + "echo e = $1\n";
+    ASSERT_EQ(run_script(folder, both, named("p", 4, {{"keep", "all"}})).code, 0);
+    ASSERT_EQ(runs(), 4);
+    const auto ended = run_script(folder, both, named("q", 6, {{"keep", "all"}, {"observables", {{"e", output}}}}),
+                                  {"--db", "p.db", "--adopt", "p"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("note: e: new"));
+    EXPECT_THAT(ended.err,
+                HasSubstr("4 answers of 'p' are adopted, 4 of them with further observables from the folders"));
+    EXPECT_EQ(runs(), 6) << "two new points";
+    EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM q WHERE e = x AND y = 2 * x")[0]["n"], 6);
+    EXPECT_THAT(rows_of(folder,
+                        "SELECT message FROM q JOIN sim_case USING (case_id) JOIN attempt USING (case_key) WHERE "
+                        "point = 0")[0]["message"]
+                    .get<std::string>(),
+                HasSubstr("further observables read from its folder"));
+    EXPECT_EQ(program({"verify", "p.db"}).code, 0);
+}
+
+TEST_F(Adoption, AFurtherObservableIsComputedWhereNoFolderHasIt) {
+    const json output = {{"from", {{"output", "e = (.*)"}}}};
+    const std::string both = script("first") + "echo e = $1\n";
+    ASSERT_EQ(run_script(folder, both, named("p", 4, {{"keep", "all"}})).code, 0);
+    // One folder is gone, one has other values than the database.
+    const auto folder_of = [&](int point) {
+        const auto id = rows_of(folder, "SELECT case_id FROM p WHERE point = " + std::to_string(point))[0]["case_id"];
+        return folder / "p.cases" / (id.get<std::string>() + ".1");
+    };
+    std::filesystem::remove_all(folder_of(0));
+    std::ofstream(folder_of(1) / "out.json") << "{\"y\": 77}";
+    const auto ended =
+        run_script(folder, both, named("q", 4, {{"observables", {{"e", output}}}}), {"--db", "p.db", "--adopt", "p"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("2 answers of 'p' are adopted"));
+    EXPECT_THAT(ended.err, HasSubstr("2 cases without such a folder are computed again"));
+    EXPECT_EQ(runs(), 6);
+    EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM q WHERE e = x AND y = 2 * x")[0]["n"], 4);
+}
+
+TEST_F(Adoption, AnotherFolderOfTheProgramAndFilesThatDoNotCountAreNoChange) {
+    folder.write("readme.txt", "one\n");
+    const json with_notes = {{"files", {"script.sh", "readme.txt"}}};
+    ASSERT_EQ(run_script(folder, script("first"), named("p", 4, with_notes)).code, 0);
+    const auto ended = run_script(folder, script("first"),
+                                  named("q", 4,
+                                        {{"files", {"script.sh", "readme.txt"}},
+                                         {"does_not_count", {"readme.txt"}},
+                                         {"command", {"/bin/sh", "script.sh", "{x}"}}}),
+                                  {"--db", "p.db", "--adopt", "p"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("note: $.program.command[0]: sh -> /bin/sh"));
+    EXPECT_THAT(ended.err, HasSubstr("note: readme.txt: counts -> does not count"));
+    EXPECT_EQ(runs(), 4);
+    // From now on its contents are free.
+    folder.write("readme.txt", "two\n");
+    EXPECT_EQ(program({"run", "c.json", "--db", "p.db"}).code, 0);
+    EXPECT_EQ(runs(), 4);
+    const auto id = rows_of(folder, "SELECT case_id FROM q LIMIT 1")[0]["case_id"].get<std::string>();
+    EXPECT_EQ(program({"replay", "p.db", id}).code, 0);
+    EXPECT_EQ(program({"verify", "p.db"}).code, 0);
+}
+
+/// A program with files and templates whose names are not in one order.
+TEST_F(Adoption, TemplatesAreFilesToo) {
+    folder.write("a.deck", "x {{ x }}\n");
+    const json deck = {{"templates", {"a.deck"}}};
+    ASSERT_EQ(run_script(folder, script("first"), named("p", 3, deck)).code, 0);
+    folder.write("a.deck", "x {{x}}\n");
+    const auto ended = run_script(folder, script("first"), named("q", 3, deck), {"--db", "p.db", "--adopt", "p"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("3 answers of 'p' are adopted"));
+    EXPECT_EQ(runs(), 3);
 }
 
 TEST_F(Adoption, IsForProgramsOnly) {
