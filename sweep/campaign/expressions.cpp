@@ -1,5 +1,6 @@
 #include "sweep/campaign/expressions.hpp"
 
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -23,6 +25,14 @@ double as_number(const Value& value) {
 
 [[noreturn]] void refuse_expression(const Expression& expression, std::string_view rule) {
     throw wrong_question(path_of("$.fixed", expression.name), fmt::format("\"{}\"", expression.formula.text()), rule);
+}
+
+/// Whether a parameter of a program is declared to be whole.
+bool is_whole_of_program(std::string_view scene, const std::string& name) {
+    const auto program = known_program(scene);
+    if (program == nullptr) return false;
+    const auto parameter = std::ranges::find(program->parameters, name, &ProgramParameter::name);
+    return parameter != program->parameters.end() && parameter->whole;
 }
 
 /// Refuses expressions that all wait for one another, at one of a circle.
@@ -65,6 +75,23 @@ std::vector<Expression> in_order(std::vector<Expression> expressions) {
     return ordered;
 }
 
+void refuse_mixed_units(const Expression& expression, const SceneInfo& scene) {
+    auto names = expression.formula.names();
+    names.push_back(expression.name);
+    std::set<std::string> units;
+    std::string listed;
+    for (const auto& name : names) {
+        const auto& unit = scene.find_parameter(name)->unit;
+        if (unit.empty() || unit == "1") continue;
+        units.insert(unit);
+        listed += fmt::format("{}{} is in {}", listed.empty() ? "" : ", ", name, unit);
+    }
+    if (units.size() < 2 || std::ranges::all_of(units, is_si_unit)) return;
+    refuse_expression(expression, fmt::format("an expression takes the numbers as they are, and {}: state one unit for "
+                                              "all in program.parameters, or SI units",
+                                              listed));
+}
+
 void evaluate_expressions(std::span<const Expression> expressions, Inputs& inputs) {
     for (const auto& [name, formula, whole] : expressions) {
         const double x = formula([&](std::string_view other) { return as_number(inputs.find(other)->second); });
@@ -80,14 +107,17 @@ void check_expressions(const ParameterSpace& space, const Inputs& inputs) {
         const Value& value = inputs.find(expression.name)->second;
         const bool fits = value.index() == parameter.default_value.index() &&
                           std::get<Interval>(parameter.bounds).contains(as_number(value));
-        if (fits) continue;
+        const bool counts = is_whole_of_program(space.scene->name, expression.name);
+        if (fits && !(counts && as_number(value) != std::floor(as_number(value)))) continue;
         std::string where;
         for (const auto& name : expression.formula.names())
             where +=
                 fmt::format("{}{} = {}", where.empty() ? " where " : ", ", name, to_text(inputs.find(name)->second));
-        refuse_expression(expression,
-                          fmt::format("{}, and it is {}{}", rule_of(parameter),
-                                      std::isnan(as_number(value)) ? "not a number" : to_text(value), where));
+        refuse_expression(
+            expression,
+            fmt::format("{}, and it is {}{}",
+                        fits ? fmt::format("'{}' must be a whole number", parameter.name) : rule_of(parameter),
+                        std::isnan(as_number(value)) ? "not a number" : to_text(value), where));
     }
 }
 

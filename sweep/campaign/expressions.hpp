@@ -18,6 +18,9 @@ namespace grainsweep::campaign {
 /// through others.
 [[nodiscard]] std::vector<Expression> in_order(std::vector<Expression> expressions);
 
+/// Refuses an expression of a program's parameters if its numbers are in different units, not all of them SI units.
+void refuse_mixed_units(const Expression& expression, const SceneInfo& scene);
+
 /// Evaluates the expressions in complete inputs, without checks: a result may be out of bounds, or not finite.
 void evaluate_expressions(std::span<const Expression> expressions, Inputs& inputs);
 /// Refuses evaluated inputs in which an expression gives a value that its parameter cannot take.

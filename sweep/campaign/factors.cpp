@@ -1,6 +1,7 @@
 // "factors" and "fixed": varied parameters and fixed parameters.
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/joint_column.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -154,11 +155,13 @@ void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesyste
             here.refuse(fmt::format("'{}' is also a factor; it is either varied or fixed", key));
         }
         auto formula = read_formula(here, *parameter, *space.scene);
-        if (formula)
-            space.expressions.push_back(
-                {key, std::move(*formula), std::holds_alternative<std::int64_t>(parameter->default_value)});
-        else
+        if (!formula) {
             space.fixed[key] = read_value(here, *parameter, folder);
+            continue;
+        }
+        space.expressions.push_back(
+            {key, std::move(*formula), std::holds_alternative<std::int64_t>(parameter->default_value)});
+        if (is_program(space.scene->name)) refuse_mixed_units(space.expressions.back(), *space.scene);
     }
     space.expressions = in_order(std::move(space.expressions));
 }

@@ -164,12 +164,12 @@ void warn_of_counts(const Campaign& campaign, std::vector<std::string>& warnings
     for (const auto& factor : campaign.space.factors) {
         const auto* range = std::get_if<Between>(&factor.range);
         const auto& unit = campaign.scene().find_parameter(factor.name)->unit;
-        if (range == nullptr || !(unit.empty() || unit == "1") || range->scale == Scale::log) continue;
+        if (range == nullptr || factor.step || !unit.empty() || range->scale == Scale::log) continue;
         const bool whole = range->low == std::floor(range->low) && range->high == std::floor(range->high);
         if (whole && range->high - range->low >= 2)
             warnings.push_back(fmt::format(
                 "{0} takes every real number from {1} to {2}; a whole number is varied by \"levels\" and declared by "
-                "\"whole\": true in program.parameters.{0}, another quantity by its \"unit\"",
+                "\"whole\": true in program.parameters.{0}, another quantity by its \"unit\" (\"1\" for a pure number)",
                 factor.name, range->low, range->high));
     }
 }

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -30,8 +31,9 @@ struct ProgramFile {
     std::string hash;          ///< content_hash of its contents
     bool is_template = false;  ///< {{ name }} is replaced
     bool executable = false;
-    std::string contents;        ///< if they are in memory
-    std::filesystem::path path;  ///< otherwise the file with them; empty: none
+    bool counts = true;               ///< its contents are part of the cases' identity
+    std::string contents = {};        ///< if they are in memory
+    std::filesystem::path path = {};  ///< otherwise the file with them; empty: none
 };
 
 /// Source: number or list at a JSON pointer (RFC 6901); `over`: pointer to the list of places; empty: none.
@@ -62,6 +64,8 @@ struct ProgramObservable {
 struct ProgramParameter {
     std::string name, unit, meaning;
     std::variant<Interval, Words> bounds;
+    bool whole = false;
+    std::optional<Value> standard = {};  ///< value where the `when` of its factor is false; empty: 0, or no word
     [[nodiscard]] bool is_word() const { return bounds.index() == 1; }
 };
 
@@ -93,8 +97,13 @@ struct Program {
 /// text.
 [[nodiscard]] std::string program_text(const Program& program);
 [[nodiscard]] Program program_in(std::string_view text);
-/// Returns a value as text for commands, templates and environment: a whole number below 1e15 without exponent.
-[[nodiscard]] std::string program_value(const Value& value);
+/// Returns the part of an observable that changes an answer, as JSON.
+[[nodiscard]] std::string observable_text(const ProgramObservable& observable);
+/// Returns a value as text for commands, templates and environment: a whole number below 1e15 without exponent; with a
+/// `format` ("%.3e"; placeholders.hpp) in this format.
+[[nodiscard]] std::string program_value(const Value& value, std::string_view format = {});
+/// Returns a prime of 31 bits above 10 000, for programs that demand one as a seed.
+[[nodiscard]] std::uint64_t prime_of(std::uint64_t seed);
 /// Returns {"case", "seed", "threads", "inputs"} as one line of JSON without its line end.
 [[nodiscard]] std::string program_question(std::string_view case_id, std::uint64_t seed, std::int64_t threads,
                                            const Inputs& inputs);

@@ -37,7 +37,7 @@ fs::path source_of(const Cursor& place, const std::string& name, const fs::path&
 }
 
 void read_file(const Cursor& place, const fs::path& folder, bool is_template, Program& program) {
-    ProgramFile file{read_file_name(place), {}, is_template, false, {}, {}};
+    ProgramFile file{read_file_name(place), {}, is_template};
     if (std::ranges::find(names_of_ours, file.name) != names_of_ours.end())
         place.refuse("a file of this name is written into every case's folder");
     for (const auto& other : program.files) {
@@ -102,6 +102,15 @@ void read_program_files(const Section& section, const fs::path& folder, Program&
         }
     }
     std::ranges::sort(program.files, {}, &ProgramFile::name);
+    const auto others = section.find("does_not_count");
+    if (!others) return;
+    for (const auto& place : others->elements()) {
+        const auto file = std::ranges::find(program.files, place.text(), &ProgramFile::name);
+        if (file == program.files.end())
+            place.refuse("names no file of \"files\" or \"templates\"",
+                         nearest_word(place.text(), names_of(program.files)));
+        file->counts = false;
+    }
 }
 
 }  // namespace grainsweep::campaign

@@ -20,13 +20,17 @@ std::span<const Field> program_keys() {
     static constexpr auto keys = std::to_array<Field>({
         needed({"command", KeyKind::words,
                 "the program and its arguments, no shell: {name} is replaced by the value of a factor or fixed "
-                "value, {seed}, {seed31} (1 to 2^31 - 2), {case}, {threads}; {{name}} stays as {name}"}),
+                "value, {seed}, {seed31} (1 to 2^31 - 2), {seed_prime} (a prime of 31 bits), {case}, {threads}; "
+                "{name:%.3e} in a format of C; {{name}} stays as {name}"}),
         {"files", KeyKind::words,
          "files beside the campaign file that are copied into the folder of every case, under the same names; their "
          "contents are part of the case's identity",
          "[]"},
         {"templates", KeyKind::words, "the same, text files in which {{ name }} is replaced as in the command", "[]"},
-        {"parameters", KeyKind::object, "of factors and fixed values: unit, bounds, meaning, whole", "{}"},
+        {"does_not_count", KeyKind::words,
+         "files and templates whose contents change no result, such as a read-me: they are no part of the identity",
+         "[]"},
+        {"parameters", KeyKind::object, "of factors and fixed values: unit, bounds, meaning, whole, default", "{}"},
         {"observables", KeyKind::object, "what a case measures, by name, and where its value is found", "{}"},
         {"version", KeyKind::object, "a command that says which version of the program it is"},
         {"protocol",
@@ -63,11 +67,14 @@ std::span<const Field> program_keys() {
 
 std::span<const Field> program_parameter_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        {"unit", KeyKind::text, "of its values"},
+        {"unit", KeyKind::text,
+         "of its values; texts with other units are converted to it, and expressions are numbers in it"},
         {"bounds", KeyKind::array, "of a number [low, high], null: open; of a word the list of what it may be"},
         {"meaning", KeyKind::text, "in words"},
         {"whole", KeyKind::flag,
          "true: a number of whole things; it is varied by \"levels\", and another number is refused", "false"},
+        {"default", KeyKind::value,
+         "what is sent where the \"when\" of its factor is false; without it 0, of a word the empty text"},
     });
     return keys;
 }

@@ -2,6 +2,7 @@
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/program_section.hpp"
+#include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -95,7 +96,7 @@ ProgramObservable read_output(const std::string& name, const Section& section, P
     observable.name = name;
     if (const auto unit = section.find("unit")) observable.unit = unit->text();
     if (const auto meaning = section.find("meaning")) observable.meaning = meaning->text();
-    if (const auto bounds = section.find("bounds")) observable.bounds = read_program_bounds(*bounds);
+    if (const auto bounds = section.find("bounds")) observable.bounds = read_program_bounds(*bounds, observable.unit);
     const auto from = section.find("from");
     const bool files = protocol == Program::Protocol::files;
     if (files != from.has_value())
@@ -128,12 +129,20 @@ std::string read_output_pattern(const Cursor& place, std::string_view what) {
     return pattern;
 }
 
-Interval read_program_bounds(const Cursor& place) {
+Interval read_program_bounds(const Cursor& place, const std::string& unit) {
     const auto ends = place.elements();
     if (ends.size() != 2) place.refuse("must be [low, high]");
+    const auto end = [&](const Cursor& here, double open) {
+        if (here.json().is_null()) return open;
+        if (!here.json().is_string()) return here.number();
+        const auto number = in_si(here.text(), unit);
+        if (const auto* why = std::get_if<std::string>(&number))
+            here.refuse(fmt::format("must be null or a number{}{}: {}", unit.empty() ? "" : " in ", unit, *why));
+        return std::get<double>(number);
+    };
     Interval bounds;
-    if (!ends[0].json().is_null()) bounds.low = ends[0].number();
-    if (!ends[1].json().is_null()) bounds.high = ends[1].number();
+    bounds.low = end(ends[0], bounds.low);
+    bounds.high = end(ends[1], bounds.high);
     if (!(bounds.low < bounds.high)) place.refuse("low must be below high");
     return bounds;
 }

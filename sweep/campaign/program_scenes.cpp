@@ -29,7 +29,7 @@ SceneInfo scene_of(const Program& program, std::string name) {
     scene.summary = "answered by " + program.command.front();
     for (const auto& parameter : program.parameters) {
         // Part of every id, so that the value of a default asks for nothing.
-        const Value standard = parameter.is_word() ? Value{std::string()} : Value{0.0};
+        const Value standard = parameter.standard.value_or(parameter.is_word() ? Value{std::string()} : Value{0.0});
         scene.parameters.push_back({parameter.name, parameter.unit, parameter.meaning, standard, parameter.bounds, {}});
     }
     for (const auto& observable : program.observables)

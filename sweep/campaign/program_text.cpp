@@ -1,5 +1,7 @@
 // A program's definition as JSON, and the hash of the part of it that changes an answer.
+#include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_file_name.hpp"
 
@@ -37,6 +39,10 @@ Interval interval_in(const Json& ends) {
     return bounds;
 }
 
+Json json_of(const Value& value) {
+    return std::visit([](const auto& one) { return Json(one); }, value);
+}
+
 Json json_of(const decltype(ProgramObservable::from)& from) {
     if (const auto* json = std::get_if<FromJson>(&from))
         return {{"json", json->file}, {"path", json->path}, {"over", json->over}};
@@ -60,6 +66,12 @@ decltype(ProgramObservable::from) source_in(const Json& from) {
     return FromOutput{text("output")};
 }
 
+Json answer_json(const ProgramObservable& observable) {
+    return {{"shape", shape_words[static_cast<std::size_t>(observable.shape)]},
+            {"bounds", json_of(observable.bounds)},
+            {"from", json_of(observable.from)}};
+}
+
 /// Returns the parts of the program that change an answer.
 Json answer_json(const Program& program) {
     Json identity = {{"command", program.command},
@@ -67,13 +79,14 @@ Json answer_json(const Program& program) {
                      {"environment", program.environment},
                      {"version", program.version}};
     identity["files"] = identity["templates"] = identity["parameters"] = identity["observables"] = Json::object();
-    for (const auto& file : program.files) identity[file.is_template ? "templates" : "files"][file.name] = file.hash;
+    for (const auto& file : program.files)
+        if (file.counts) identity[file.is_template ? "templates" : "files"][file.name] = file.hash;
     for (const auto& parameter : program.parameters)
         identity["parameters"][parameter.name] = parameter.is_word() ? "word" : "number";
+    for (const auto& parameter : program.parameters)
+        if (parameter.standard) identity["defaults"][parameter.name] = json_of(*parameter.standard);
     for (const auto& observable : program.observables)
-        identity["observables"][observable.name] = {{"shape", shape_words[static_cast<std::size_t>(observable.shape)]},
-                                                    {"bounds", json_of(observable.bounds)},
-                                                    {"from", json_of(observable.from)}};
+        identity["observables"][observable.name] = answer_json(observable);
     return identity;
 }
 
@@ -94,12 +107,15 @@ Json settings_of(const Program& program) {
     settings["parameters"] = settings["observables"] = Json::object();
     for (const auto& file : program.files)
         if (file.executable) settings["executables"].push_back(file.name);
+    for (const auto& file : program.files)
+        if (!file.counts) settings["does_not_count"][file.is_template ? "templates" : "files"][file.name] = file.hash;
     for (const auto& parameter : program.parameters) {
         auto& told = settings["parameters"][parameter.name] = notes_of(parameter.unit, parameter.meaning);
         if (const auto* words = std::get_if<Words>(&parameter.bounds))
             told["words"] = words->allowed;
         else
             told["bounds"] = json_of(std::get<Interval>(parameter.bounds));
+        if (parameter.whole) told["whole"] = true;
     }
     for (const auto& observable : program.observables) {
         settings["observables"][observable.name] = notes_of(observable.unit, observable.meaning);
@@ -110,13 +126,14 @@ Json settings_of(const Program& program) {
 
 void read_files(const Json& named, bool templates, const Json& executables, Program& program) {
     for (const auto& [name, hash] : named.items()) {
-        ProgramFile file{name, hash.get<std::string>(), templates, false, {}, {}};
+        ProgramFile file{name, hash.get<std::string>(), templates};
         for (const auto& other : executables) file.executable = file.executable || other == name;
         program.files.push_back(std::move(file));
     }
 }
 
-void read_parameters(const Json& types, const Json& told, Program& program) {
+void read_parameters(const Json& answer, const Json& told, Program& program) {
+    const auto& types = answer.at("parameters");
     for (const auto& [name, type] : types.items()) {
         const auto& more = told.at(name);
         ProgramParameter parameter{name, more.at("unit").get<std::string>(), more.at("meaning").get<std::string>(), {}};
@@ -124,6 +141,12 @@ void read_parameters(const Json& types, const Json& told, Program& program) {
             parameter.bounds = Words{more.at("words").get<std::vector<std::string>>()};
         else
             parameter.bounds = interval_in(more.at("bounds"));
+        parameter.whole = more.value("whole", false);
+        if (answer.contains("defaults") && answer.at("defaults").contains(name)) {
+            const auto& standard = answer.at("defaults").at(name);
+            parameter.standard =
+                parameter.is_word() ? Value{standard.get<std::string>()} : Value{standard.get<double>()};
+        }
         program.parameters.push_back(std::move(parameter));
     }
 }
@@ -168,6 +191,10 @@ std::string program_scene_name(const Program& program) {
     return std::string(program_prefix) + content_hash(answer_json(program).dump());
 }
 
+std::string observable_text(const ProgramObservable& observable) {
+    return answer_json(observable).dump();
+}
+
 std::string program_text(const Program& program) {
     return Json{{"answer", answer_json(program)}, {"settings", settings_of(program)}}.dump();
 }
@@ -184,7 +211,14 @@ Program program_in(std::string_view text) {
         program.version = answer.at("version").get<std::string>();
         read_files(answer.at("files"), false, settings.at("executables"), program);
         read_files(answer.at("templates"), true, settings.at("executables"), program);
-        read_parameters(answer.at("parameters"), settings.at("parameters"), program);
+        if (const auto others = settings.find("does_not_count"); others != settings.end()) {
+            const auto counted = program.files.size();
+            for (const char* kind : {"files", "templates"})
+                read_files(others->value(kind, Json::object()), std::string_view(kind) == "templates",
+                           settings.at("executables"), program);
+            for (std::size_t k = counted; k < program.files.size(); ++k) program.files[k].counts = false;
+        }
+        read_parameters(answer, settings.at("parameters"), program);
         read_observables(answer.at("observables"), settings, program);
         program.cores = settings.at("cores").get<std::int64_t>();
         if (const auto memory = settings.at("memory").get<std::int64_t>(); memory != 0) program.memory = memory;
@@ -201,12 +235,27 @@ Program program_in(std::string_view text) {
     }
 }
 
-std::string program_value(const Value& value) {
+std::string program_value(const Value& value, std::string_view format) {
     constexpr double longest_whole = 1e15;
-    if (const auto* number = std::get_if<double>(&value);
-        number != nullptr && *number == std::floor(*number) && std::abs(*number) < longest_whole)
+    const Value real = coerced(value, Value{0.0});
+    const auto* number = std::get_if<double>(&real);
+    if (number == nullptr) return to_text(value);
+    if (const auto form = NumberFormat::parse(format)) return (*form)(*number);
+    if (*number == std::floor(*number) && std::abs(*number) < longest_whole)
         return std::to_string(static_cast<std::int64_t>(*number));
     return to_text(value);
+}
+
+std::uint64_t prime_of(std::uint64_t seed) {
+    constexpr std::uint64_t least = 10'007, most = 0x7FFF'FFFF;  // both are primes
+    const auto is_prime = [](std::uint64_t n) {
+        for (std::uint64_t d = 3; d * d <= n; d += 2)
+            if (n % d == 0) return false;
+        return n % 2 == 1;
+    };
+    std::uint64_t n = least + seed % (most - least + 1);
+    while (!is_prime(n)) ++n;
+    return n;
 }
 
 std::string program_question(std::string_view case_id, std::uint64_t seed, std::int64_t threads, const Inputs& inputs) {

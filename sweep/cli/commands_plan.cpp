@@ -65,21 +65,25 @@ std::string density_text(const stats::Distribution& distribution) {
     return "|" + text + "|";
 }
 
-/// "multiples of 0.5, when tool = 'roller'".
-std::string factor_rules(const campaign::Factor& factor) {
+/// "multiples of 0.5, when tool = 'roller'"; of a program also what it gets otherwise: ", else 0".
+std::string factor_rules(const campaign::Factor& factor, const SceneInfo& scene) {
     std::vector<std::string> rules;
     if (factor.step) rules.push_back(fmt::format("multiples of {}", campaign::shortest(*factor.step)));
     if (factor.share) rules.emplace_back("share");
     if (!factor.group.empty()) rules.push_back("group " + factor.group);
     if (!factor.when.empty()) rules.push_back("when " + factor.when);
+    if (!factor.when.empty() && campaign::is_program(scene.name)) {
+        const auto standard = campaign::to_text(campaign::default_of(scene, factor.name));
+        rules.back() += ", else " + (standard.empty() ? "''" : standard);
+    }
     return fmt::format("{}", fmt::join(rules, ", "));
 }
 
 /// Adds a column for the rules of factors besides their values, if a factor has one.
-void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors) {
-    if (std::ranges::all_of(factors, [](const auto& factor) { return factor_rules(factor).empty(); })) return;
+void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors, const SceneInfo& scene) {
+    if (std::ranges::all_of(factors, [&](const auto& factor) { return factor_rules(factor, scene).empty(); })) return;
     table.columns.emplace_back("rules");
-    for (std::size_t j = 0; j < factors.size(); ++j) table.rows[j].emplace_back(factor_rules(factors[j]));
+    for (std::size_t j = 0; j < factors.size(); ++j) table.rows[j].emplace_back(factor_rules(factors[j], scene));
 }
 
 store::Table factors_of(const Campaign& campaign) {
@@ -100,7 +104,7 @@ store::Table factors_of(const Campaign& campaign) {
             table.rows.push_back({factor.name, unit, Cell{}, Cell{}, Cell{}, levels});
         }
     }
-    add_rules(table, campaign.space.factors);
+    add_rules(table, campaign.space.factors, campaign.scene());
     return table;
 }
 

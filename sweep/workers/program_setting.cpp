@@ -26,16 +26,27 @@ constexpr std::size_t largest_in_memory = 1U << 20U;
 constexpr double version_seconds = 20;
 constexpr std::size_t longest_version = 200, longest_answer = 1U << 20U;
 
-std::string value_named(std::string_view name, const Program& program, const campaign::Case* question) {
+std::string formatted(std::uint64_t number, std::string_view format) {
+    const auto form = campaign::NumberFormat::parse(format);
+    return form ? (*form)(number) : std::to_string(number);
+}
+
+/// Value of a placeholder; nothing for braces of the command's own, which have no name of the case.
+std::optional<std::string> value_named(std::string_view name, std::string_view format, const Program& program,
+                                       const campaign::Case* question) {
     constexpr std::uint64_t most_of_31_bits = 0x7FFFFFFE;
-    if (name == "threads") return std::to_string(program.cores);
+    if (name == "threads") return formatted(static_cast<std::uint64_t>(program.cores), format);
+    const bool own = !format.empty() && !campaign::NumberFormat::parse(format);
+    if (question == nullptr && own) return std::nullopt;
     if (question == nullptr) throw std::logic_error("a program that stays alive has no case");
-    if (name == "seed") return std::to_string(question->seed);
-    if (name == "seed31") return std::to_string(1 + question->seed % most_of_31_bits);
+    if (const auto input = question->inputs.find(name); input != question->inputs.end())
+        return campaign::program_value(input->second, format);
+    if (name == "seed") return formatted(question->seed, format);
+    if (name == "seed31") return formatted(1 + question->seed % most_of_31_bits, format);
+    if (name == "seed_prime") return formatted(campaign::prime_of(question->seed), format);
     if (name == "case") return question->id;
-    const auto input = question->inputs.find(name);
-    if (input == question->inputs.end()) throw BrokenWorld(fmt::format("the case has no '{}'", name));
-    return campaign::program_value(input->second);
+    if (own) return std::nullopt;
+    throw BrokenWorld(fmt::format("the case has no '{}'", name));
 }
 
 fs::path place_of(std::string_view scene, const fs::path& cases) {
@@ -62,7 +73,7 @@ void put(const fs::path& file, std::string_view text) {
 }  // namespace
 
 std::vector<std::string> program_argv(const Program& program, const campaign::Case* question) {
-    const auto value = [&](std::string_view name) { return value_named(name, program, question); };
+    const auto value = [&](auto name, auto format) { return value_named(name, format, program, question); };
     std::vector<std::string> argv;
     for (const auto& word : program.command) argv.push_back(campaign::filled_command(word, value));
     if (argv.front().find('/') != std::string::npos) return argv;  // its own file, or where the user says
@@ -73,7 +84,7 @@ std::vector<std::string> program_argv(const Program& program, const campaign::Ca
 }
 
 std::vector<std::string> program_environment(const Program& program, const campaign::Case* question) {
-    const auto value = [&](std::string_view name) { return value_named(name, program, question); };
+    const auto value = [&](auto name, auto format) { return value_named(name, format, program, question); };
     std::vector<std::string> environment;
     for (const auto& [name, text] : program.environment)
         environment.push_back(fmt::format("{}={}", name, campaign::filled_command(text, value)));
@@ -83,7 +94,7 @@ std::vector<std::string> program_environment(const Program& program, const campa
 void fill_folder(const ProgramFolder& folder, const Program& program, const campaign::Case* question) {
     for (const auto& file : program.files) {
         if (file.is_template) {
-            const auto value = [&](std::string_view name) { return value_named(name, program, question); };
+            const auto value = [&](auto name, auto format) { return value_named(name, format, program, question); };
             const auto text = file.path.empty() ? file.contents : text_of(file.path);
             folder.write(file.name, campaign::filled_template(text, value), file.executable);
         } else if (file.path.empty()) {

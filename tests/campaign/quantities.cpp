@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -179,18 +180,98 @@ TEST_F(Expressions, AreEvaluatedWhereAPredictionIsMade) {
     EXPECT_THAT(predict("0.85").err, HasSubstr("x2 < 0.4"));
 }
 
-/// Of a program, a text is a word wherever it was one: its cases keep their ids.
+/// Of a program, a text without unit or number is a word.
 TEST_F(Quantities, OfAProgramsWordsStayWords) {
     folder.write("answer.sh", "printf '{\"y\": 1}' > out.json\n");
     const json campaign = json::parse(R"({"campaign": "c", "scene": "program",
         "program": {"command": ["sh", "answer.sh", "{mode}", "{gap}"], "files": ["answer.sh"],
-                    "parameters": {"gap": {"unit": "mm"}}, "observables": {"y": {"from": {"json": "out.json", "path": "/y"}}}},
+                    "parameters": {"gap": {"unit": "mm"}, "mode": {"bounds": ["60 um"]}},
+                    "observables": {"y": {"from": {"json": "out.json", "path": "/y"}}}},
         "factors": [{"name": "gap", "between": ["60 um", "0.2 mm"]}], "fixed": {"mode": "60 um"},
         "design": {"kind": "lattice", "levels": [2]}})");
     folder.write("c.json", campaign.dump());
     out({"run", "c.json", "--quiet"});
     EXPECT_EQ(inputs("c.db", "SELECT gap FROM c ORDER BY gap"), "gap\n0.06\n0.2\n");
     EXPECT_EQ(inputs("c.db", "SELECT DISTINCT value FROM inputs WHERE name = 'mode'"), "value\n60 um\n");
+}
+
+/// A pipe whose volume a script computes from what reaches it.
+struct ProgramQuantities : Quantities {
+    json pipe = json::parse(R"json({"campaign": "pipe", "scene": "program",
+        "program": {"command": ["sh", "solve.sh", "{radius:%.6e}", "{length}", "{n:%03d}", "{seed_prime}"],
+          "files": ["solve.sh"], "keep": "all",
+          "parameters": {"radius": {"unit": "m"}, "length": {"unit": "m"}, "gap": {"unit": "m"}, "n": {"whole": true}},
+          "observables": {"volume": {"unit": "m3", "from": {"output": "volume (.*)"}}}},
+        "factors": [{"name": "gap", "between": ["1 mm", "3 mm"]}],
+        "fixed": {"radius": "2 mm", "length": "2*gap", "n": 7},
+        "design": {"kind": "lattice", "levels": [2]}})json");
+    void SetUp() override {
+        folder.write("solve.sh",
+                     "awk -v r=\"$1\" -v l=\"$2\" 'BEGIN{printf \"volume %.9g\\n\", 3.14159265*r*r*l}'\n"
+                     "echo \"$@\" > ../said_$2.txt\n");
+        folder.write("pipe.json", pipe.dump());
+    }
+};
+
+TEST_F(ProgramQuantities, AreNumbersInTheUnitOfTheParameter) {
+    out({"run", "pipe.json", "--quiet"});
+    EXPECT_EQ(inputs("pipe.db", "SELECT gap, volume FROM pipe ORDER BY gap"),
+              "gap,volume\n0.001,2.5132741e-08\n0.003,7.53982236e-08\n");
+    EXPECT_EQ(inputs("pipe.db", "SELECT DISTINCT value FROM inputs WHERE name = 'radius'"), "value\n0.002\n");
+    EXPECT_EQ(inputs("pipe.db",
+                     "SELECT count(*) AS n FROM inputs AS l JOIN inputs AS g USING (case_id) WHERE l.name = "
+                     "'length' AND g.name = 'gap' AND l.value = 2 * g.value"),
+              "n\n2\n");
+    const auto said =
+        Process({"/bin/cat", (folder / "pipe.cases" / "said_0.006.txt").string()}, folder.path()).wait().out;
+    EXPECT_THAT(said, testing::StartsWith("2.000000e-03 0.006 007 ")) << "what the command was given";
+}
+
+TEST_F(ProgramQuantities, AreShownByPlanAndFollowSolve) {
+    EXPECT_THAT(out({"plan", "pipe.json"}),
+                HasSubstr("fixed      length = 2*gap\nfixed      n = 7\nfixed      radius = 0.002 m\n"));
+    const auto solved = json::parse(out({"solve", "pipe.json", "--set", "gap=4 mm", "--format", "json"}));
+    EXPECT_EQ(solved["inputs"]["length"], 0.008);
+    EXPECT_EQ(solved["inputs"]["radius"], 0.002);
+}
+
+TEST_F(ProgramQuantities, PlanStatesWhatIsSentWhereAConditionIsFalse) {
+    pipe["factors"].push_back({{"name", "n"}, {"levels", {3, 5}}, {"when", "gap > 0.002"}});
+    pipe["fixed"].erase("n");
+    pipe["design"]["levels"] = {2, 1};
+    folder.write("pipe.json", pipe.dump());
+    const auto rules = [&] {
+        return json::parse(out({"plan", "pipe.json", "--format", "json"}))["factors"][1]["rules"];
+    };
+    EXPECT_EQ(rules(), "when gap > 0.002, else 0");
+    pipe["program"]["parameters"]["n"]["default"] = 1;
+    folder.write("pipe.json", pipe.dump());
+    EXPECT_EQ(rules(), "when gap > 0.002, else 1");
+    out({"run", "pipe.json", "--quiet"});
+    EXPECT_EQ(
+        inputs("pipe.db",
+               "SELECT gap, value FROM pipe JOIN inputs USING (case_id) WHERE inputs.name = 'n' ORDER BY gap, value"),
+        "gap,value\n0.001,1\n0.003,3\n0.003,5\n");
+}
+
+TEST_F(ProgramQuantities, AreRefusedBeforeAnythingIsWritten) {
+    const auto refused = [&](const json& patch) {
+        json wrong = pipe;
+        wrong.merge_patch(patch);
+        folder.write("pipe.json", wrong.dump());
+        const auto ended = ask({"run", "pipe.json"});
+        EXPECT_EQ(ended.code, 2) << patch;
+        EXPECT_FALSE(std::filesystem::exists(folder / "pipe.db"));
+        EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+        return ended.err;
+    };
+    EXPECT_THAT(
+        refused({{"program", {{"parameters", {{"radius", nullptr}}}}}}),
+        HasSubstr("pipe.json: $.fixed.radius: got \"2 mm\"; is a number with a unit, and 'radius' has no unit"));
+    EXPECT_THAT(refused({{"program", {{"parameters", {{"gap", {{"unit", "mm"}}}}}}}}),
+                HasSubstr("gap is in mm, length is in m"));
+    EXPECT_THAT(refused({{"fixed", {{"n", "3000*gap"}}}}), HasSubstr("$.fixed.n"));
+    EXPECT_THAT(refused({{"fixed", {{"n", "1000*length/3"}}}}), HasSubstr("'n' must be a whole number, and it is"));
 }
 
 }  // namespace grainsweep::tests::quantities_test

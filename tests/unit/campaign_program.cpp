@@ -1,17 +1,26 @@
 // "program" of a campaign file: what is read, what is refused with which sentence, and what is identity.
+#include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_changes.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -249,11 +258,50 @@ TEST(ProgramSection, TemplatesNameWhatThereIs) {
 }
 
 TEST(Placeholders, AreReplacedAndBracesStay) {
-    const ValueOf value = [](std::string_view name) { return "<" + std::string(name) + ">"; };
+    const ValueOf value = [](std::string_view name, std::string_view format) -> std::optional<std::string> {
+        if (name == "now") return std::nullopt;
+        return fmt::format("<{}{}>", name, format);
+    };
     EXPECT_EQ(filled_command("a{x}b {y_1}", value), "a<x>b <y_1>");
     EXPECT_EQ(filled_command("{{x}} {} { x } {1} {a-b} }{ {", value), "{x} {} { x } {1} {a-b} }{ {");
+    EXPECT_EQ(filled_command("{x:%.3e} {{x:%.3e}} {x:.3f} {now:%H:%M}", value), "<x%.3e> {x:%.3e} {x:.3f} {now:%H:%M}");
     EXPECT_EQ(filled_template("a {{ x }}{{y}}\n{x} {{\n}} {{", value), "a <x><y>\n{x} {{\n}} {{");
+    EXPECT_EQ(filled_template("{{ x:%.3e }} {{x : %d}}", value), "<x%.3e> <x%d>");
     EXPECT_THROW((void)filled_template("{{}}", value), std::invalid_argument);
+    EXPECT_THROW((void)filled_template("{{ x:.3f }}", value), std::invalid_argument);
+}
+
+TEST(Placeholders, FormatsAreThoseOfC) {
+    for (const char* text :
+         {"%.3e", "%12.4f", "%-12.4f", "%+.2E", "%g", "%010.3f", "% .1f", "%#.0f", "%G", "%.0e", "%.10g"}) {
+        for (const double x : {0.0, 1.5, -2.25e-7, 123456789.125, 1e300}) {
+            std::array<char, 512> expected{};
+            std::snprintf(expected.data(), expected.size(), text, x);  // NOLINT
+            const auto format = NumberFormat::parse(text);
+            ASSERT_TRUE(format) << text;
+            EXPECT_EQ((*format)(x), expected.data()) << text << ' ' << x;
+            EXPECT_FALSE(format->is_whole());
+        }
+    }
+    EXPECT_EQ((*NumberFormat::parse("%05d"))(42.0), "00042");
+    EXPECT_EQ((*NumberFormat::parse("%d"))(std::uint64_t{1} << 40U), "1099511627776");
+    EXPECT_TRUE(NumberFormat::parse("%d")->is_whole());
+    for (const char* text : {"", "%", "%s", "%n", "%.3", "%.3ex", "3e", "%.999e", "%99999f", "%.2d", "%lf", "%H:%M"})
+        EXPECT_FALSE(NumberFormat::parse(text)) << text;
+}
+
+TEST(Placeholders, APrimeOfTheSeedIsOne) {
+    std::set<std::uint64_t> all;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const auto prime = prime_of(seed * 0x9E3779B97F4A7C15U);
+        EXPECT_GT(prime, 10'000U);
+        EXPECT_LE(prime, 0x7FFF'FFFFU);
+        for (std::uint64_t d = 2; d * d <= prime; ++d) ASSERT_NE(prime % d, 0U) << prime;
+        all.insert(prime);
+    }
+    EXPECT_GT(all.size(), 198U);
+    EXPECT_EQ(prime_of(0), 10'007U);
+    EXPECT_EQ(prime_of(0x7FFF'FFFF - 10'007), 0x7FFF'FFFFU) << "the largest";
 }
 
 TEST(Placeholders, NumbersAreShownForPrograms) {
@@ -262,8 +310,241 @@ TEST(Placeholders, NumbersAreShownForPrograms) {
     EXPECT_EQ(program_value(Value{0.1}), "0.1");
     EXPECT_EQ(program_value(Value{1e300}), "1e+300");
     EXPECT_EQ(program_value(Value{std::string("jkr")}), "jkr");
+    EXPECT_EQ(program_value(Value{2e-3}, "%.3e"), "2.000e-03");
+    EXPECT_EQ(program_value(Value{7.0}, "%d"), "7");
     EXPECT_EQ(json::parse(program_question("id", 7, 2, {{"a", 1e6}, {"b", std::string("\"q\" \xC3\xA4")}})),
               json::parse(R"({"case": "id", "seed": 7, "threads": 2, "inputs": {"a": 1000000, "b": "\"q\" \u00e4"}})"));
+}
+
+/// A campaign over gap with a length, whose parameters are as given.
+struct Quantity {
+    json file(const json& parameters, const json& fixed, const json& factor = {{"name", "gap"}, {"between", {1, 3}}}) {
+        json campaign = json::parse(R"json({"campaign": "c", "scene": "program",
+          "program": {"command": ["sh", "run.py", "{gap}"], "files": ["run.py"],
+                      "observables": {"y": {"from": {"output": "y = (.*)"}}}},
+          "design": {"kind": "lattice", "levels": [3]}})json");
+        campaign["program"]["parameters"] = parameters;
+        campaign["factors"] = {factor};
+        campaign["fixed"] = fixed;
+        return campaign;
+    }
+    Campaign read(const json& campaign) { return parse_campaign(campaign.dump(), beside.path()); }
+    std::string said(const json& campaign) { return said_of(campaign, beside); }
+    /// Inputs of the middle of the range.
+    Inputs middle(const json& campaign) {
+        const auto read_one = read(campaign);
+        const std::vector<double> u(read_one.space.factors.size(), 0.5);
+        return read_one.space.at(u);
+    }
+    const Beside beside;
+};
+
+TEST(ProgramQuantities, ReachTheProgramInTheUnitOfTheParameter) {
+    Quantity of;
+    const json units = {{"gap", {{"unit", "mm"}, {"bounds", {"0.1 mm", "1 cm"}}}}, {"length", {{"unit", "mm"}}}};
+    auto inputs = of.middle(of.file(units, {{"length", "2 cm"}}, {{"name", "gap"}, {"between", {"1000 um", 3}}}));
+    EXPECT_EQ(inputs["gap"], Value{2.0});
+    EXPECT_EQ(inputs["length"], Value{20.0});
+    inputs = of.middle(of.file(units, {{"length", "2*gap + 1"}}));
+    EXPECT_EQ(inputs["length"], Value{5.0});
+    inputs = of.middle(of.file(units, json::object(), {{"name", "gap"}, {"levels", {"1 mm", "0.2 cm", 3}}}));
+    EXPECT_EQ(inputs["gap"], Value{2.0});
+    auto listed = of.file(units, json::object());
+    listed["design"] = {{"kind", "list"}, {"rows", {{"2500 um"}}}};
+    const auto campaign = of.read(listed);
+    EXPECT_EQ(std::get<designs::Rows>(campaign.request.options.at("rows"))[0][0], Value{2.5});
+}
+
+TEST(ProgramQuantities, ExpressionsLinkParameters) {
+    Quantity of;
+    const json si = {{"gap", {{"unit", "m"}}}, {"area", {{"unit", "m2"}}}, {"n", {{"whole", true}}}};
+    const auto inputs = of.middle(of.file(si, {{"area", "n*gap^2"}, {"n", "2*3"}}));
+    EXPECT_EQ(inputs.at("area"), Value{24.0});
+    EXPECT_EQ(inputs.at("n"), Value{6.0});
+    const json mixed = {{"gap", {{"unit", "mm"}}}, {"length", {{"unit", "m"}}}};
+    EXPECT_NE(of.said(of.file(mixed, {{"length", "2*gap"}}))
+                  .find("$.fixed.length: got \"2*gap\"; an expression takes the numbers as they are, and gap is in mm, "
+                        "length is in m"),
+              std::string::npos)
+        << of.said(of.file(mixed, {{"length", "2*gap"}}));
+    EXPECT_NE(of.said(of.file(si, {{"area", "2*gop"}})).find("Did you mean 'gap'?"), std::string::npos)
+        << of.said(of.file(si, {{"area", "2*gop"}}));
+    const auto half = of.read(of.file({{"gap", {{"unit", "1"}}}, {"n", {{"whole", true}}}}, {{"n", "gap/2 + 0.25"}}));
+    try {
+        const std::vector<double> u = {0.5};
+        check_expressions(half.space, half.space.at(u));
+        FAIL() << "1.25 is no whole number";
+    } catch (const WrongQuestion& wrong) {
+        EXPECT_NE(std::string(wrong.what()).find("'n' must be a whole number, and it is 1.25 where gap = 2"),
+                  std::string::npos)
+            << wrong.what();
+    }
+}
+
+TEST(ProgramQuantities, TextsForNumbersWithoutUnitAreRefused) {
+    Quantity of;
+    const auto expect = [&](const json& campaign, const std::string& part) {
+        EXPECT_NE(of.said(campaign).find(part), std::string::npos) << of.said(campaign);
+        EXPECT_EQ(of.said(campaign).find('\n'), std::string::npos);
+    };
+    const json none = json::object();
+    expect(of.file(none, {{"radius", "2 mm"}}),
+           "$.fixed.radius: got \"2 mm\"; is a number with a unit, and 'radius' has no unit: state \"unit\" in "
+           "program.parameters.radius, or \"bounds\": [\"2 mm\"] if it is a word");
+    expect(of.file(none, {{"length", "2*gap"}}),
+           "$.fixed.length: got \"2*gap\"; is an expression of other parameters, and 'length' has no unit");
+    expect(of.file({{"radius", {{"bounds", {1e-4, 1e-2}}}}}, {{"radius", "2 mm"}}), "$.fixed.radius: got \"2 mm\"");
+    expect(of.file({{"radius", {{"whole", true}}}}, {{"radius", "2 mm"}}),
+           "the parameter has no unit, and 'mm' is one");
+    expect(of.file({{"radius", {{"unit", "m"}}}}, {{"radius", "2 kg"}}), "'kg' does not fit 'm'");
+    expect(of.file({{"radius", {{"unit", "m"}, {"bounds", {1e-4, 1e-2}}}}}, {{"radius", "2 m"}}),
+           "$.fixed.radius: got \"2 m\"; 'radius' must be a number from 0.0001 to 0.01 m, and this is 2 m");
+    expect(of.file({{"radius", {{"unit", "m"}, {"bounds", {"0.1 kg", "1 mm"}}}}}, {{"radius", 1e-3}}),
+           "$.program.parameters.radius.bounds");
+    expect(of.file(none, none, {{"name", "gap"}, {"levels", {1, "2 mm"}}}), "$.factors[0].levels[1]: got \"2 mm\"");
+    expect(of.file(none, none, {{"name", "gap"}, {"levels", {1, "jkr"}}}), "all numbers or all words");
+    expect(of.file({{"gap", {{"bounds", {"a", "b"}}}}}, none, {{"name", "gap"}, {"levels", {1, "a"}}}),
+           "all numbers or all words, and the bounds of 'gap' are words");
+    // Words stay words.
+    for (const char* word : {"jkr", "3d", "2D", "1st", "gap", "coarse-2", "v1.2", "60"})
+        EXPECT_EQ(of.said(of.file(none, {{"mode", word}})), "") << word;
+    EXPECT_EQ(of.middle(of.file({{"mode", {{"bounds", {"60 um"}}}}}, {{"mode", "60 um"}})).at("mode"),
+              Value{std::string("60 um")});
+}
+
+TEST(ProgramQuantities, AConditionThatIsFalseSendsTheDefault) {
+    Quantity of;
+    const json conditional = {{"name", "gap"}, {"between", {1, 3}}, {"when", "tool = 'b'"}};
+    const json fixed = {{"tool", "b"}};
+    const auto standard = [&](const json& parameter) {
+        return of.read(of.file({{"gap", parameter}}, fixed, conditional)).scene().find_parameter("gap")->default_value;
+    };
+    EXPECT_EQ(standard({{"unit", "mm"}}), Value{0.0});
+    EXPECT_EQ(standard({{"unit", "mm"}, {"default", "1 cm"}}), Value{10.0});
+    const auto name = [&](const json& parameter) {
+        return of.read(of.file({{"gap", parameter}}, fixed, conditional)).scene().name;
+    };
+    EXPECT_EQ(name({{"unit", "mm"}}), name({{"unit", "mm"}, {"default", 0}}));
+    EXPECT_NE(name({{"unit", "mm"}}), name({{"unit", "mm"}, {"default", 1}})) << "it changes answers";
+    EXPECT_NE(of.said(of.file({{"gap", {{"default", 1}}}}, json::object())).find("has no effect: 'gap' is no factor"),
+              std::string::npos);
+    const auto campaign = of.read(of.file({{"gap", {{"default", 2.5}, {"unit", "mm"}}}}, fixed, conditional));
+    const auto again = program_in(program_text(*known_program(campaign.scene().name)));
+    EXPECT_EQ(again.parameters[0].standard, Value{2.5});
+    EXPECT_EQ(program_scene_name(again), campaign.scene().name);
+}
+
+TEST(ProgramQuantities, FormatsAreCheckedWhereTheyStand) {
+    Quantity of;
+    const auto with = [&](const std::string& argument, const json& gap = {{"unit", "m"}}) {
+        auto file = of.file({{"gap", gap}}, {{"mode", "jkr"}});
+        file["program"]["command"][2] = argument;
+        return of.said(file);
+    };
+    for (const char* sound : {"{gap:%.3e}", "{gap:%g}", "{seed31:%010d}", "{seed_prime}", "f'{now:%H:%M}'", "{x:.3f}"})
+        EXPECT_EQ(with(sound), "") << sound;
+    EXPECT_NE(with("{gap:%d}").find("%d is for whole numbers"), std::string::npos) << with("{gap:%d}");
+    EXPECT_NE(with("{gap:%q}").find("$.program.command[2]: got {gap:%q}; is no format of a number"), std::string::npos);
+    EXPECT_NE(with("{mode:%.3e}").find("the values of 'mode' are words"), std::string::npos);
+    EXPECT_NE(with("{gpa:%.3e}").find("Did you mean 'gap'?"), std::string::npos);
+}
+
+/// Warnings are for ranges that may be counts by mistake.
+TEST(ProgramQuantities, WarningsAreNotFalse) {
+    Quantity of;
+    const auto warned = [&](const json& parameter, const json& more = json::object()) {
+        json factor = {{"name", "gap"}, {"between", {1, 10}}};
+        factor.update(more);
+        const auto campaign = of.read(of.file({{"gap", parameter}}, json::object(), factor));
+        const auto warnings = warnings_of(campaign, {});
+        return std::ranges::any_of(
+            warnings, [](const auto& warning) { return warning.find("takes every real number") != std::string::npos; });
+    };
+    EXPECT_TRUE(warned(json::object()));
+    EXPECT_FALSE(warned({{"unit", "1"}}));
+    EXPECT_FALSE(warned({{"unit", "mm"}}));
+    EXPECT_FALSE(warned({{"whole", true}}, {{"whole", true}}));
+    EXPECT_FALSE(warned(json::object(), {{"step", 1}}));
+}
+
+TEST(ProgramChanges, AreNamed) {
+    const Beside beside;
+    const auto program = [&](const json& patch) {
+        json file = sound_file();
+        if (patch.is_object()) file.merge_patch(patch);
+        return known_program(parse_campaign(file.dump(), beside.path()).scene().name);
+    };
+    const auto before = program({});
+    const auto only = [&](const json& patch) {
+        const auto changes = program_changes(*before, *program(patch));
+        EXPECT_EQ(changes.size(), 1U) << patch;
+        return changes.at(0);
+    };
+    using Kind = ProgramChange::Kind;
+    EXPECT_TRUE(program_changes(*before, *program({{"program", {{"cores", 1}}}})).empty());
+    auto change = only({{"program", {{"command", {"/opt/bin/python3", "run.py", "-mu={mu}", "{{mu}}"}}}}});
+    EXPECT_EQ(change.line(), "$.program.command[0]: python3 -> /opt/bin/python3");
+    EXPECT_EQ(change.kind, Kind::adoptable);
+    change = only({{"program", {{"command", {"python3", "run.py", "-nu={mu}", "{{mu}}"}}}}});
+    EXPECT_EQ(change.line(), "$.program.command[2]: -mu={mu} -> -nu={mu}");
+    EXPECT_EQ(change.kind, Kind::another_program);
+    change = only({{"program", {{"environment", {{"A", "1"}}}}}});
+    EXPECT_EQ(change.place, "$.program.environment.A");
+    change = only({{"program", {{"observables", {{"more", {{"from", {{"output", "(x)"}}}}}}}}}});
+    EXPECT_EQ(change.kind, Kind::further_observable);
+    change = only({{"program", {{"observables", {{"energy", {{"from", {{"output", "(x)"}}}}}}}}}});
+    EXPECT_EQ(change.kind, Kind::another_program);
+    change = only({{"fixed", {{"more", 1}}}});
+    EXPECT_EQ(change.line(), "more: new");
+    EXPECT_EQ(change.kind, Kind::another_program);
+    change = only({{"program", {{"does_not_count", {"mesh/drum.stl"}}}}});
+    EXPECT_EQ(change.line(), "mesh/drum.stl: counts -> does not count");
+    EXPECT_EQ(change.kind, Kind::adoptable);
+    beside.write("in.deck", "friction {{ mu }} seed {{ seed31 }}\n");
+    change = only({});
+    EXPECT_EQ(change.place, "$.program.templates");
+    EXPECT_EQ(change.name, "in.deck");
+    EXPECT_EQ(change.kind, Kind::adoptable);
+    try {
+        refuse_changed_program("c", "c.db", {change});
+    } catch (const WrongQuestion& wrong) {
+        const std::string said = wrong.what();
+        EXPECT_NE(said.find("$.program.templates: in.deck changed since 'c.db' ("), std::string::npos) << said;
+        EXPECT_NE(said.find("give the campaign a new name, which computes every case, or a new name and --adopt c"),
+                  std::string::npos)
+            << said;
+    }
+}
+
+/// The contents of a file that does not count change no id, and stay with the definition.
+TEST(ProgramSection, FilesMayNotCount) {
+    const Beside beside;
+    const auto read = [&](const json& names) {
+        json file = sound_file();
+        file["program"]["does_not_count"] = names;
+        return parse_campaign(file.dump(), beside.path()).scene().name;
+    };
+    const auto same = read({"run.py"});
+    EXPECT_NE(same, read(json::array()));
+    beside.write("run.py", "print(2)\n");
+    EXPECT_EQ(same, read({"run.py"}));
+    const auto program = known_program(same);
+    const auto again = program_in(program_text(*program));
+    EXPECT_EQ(program_scene_name(again), same);
+    EXPECT_EQ(again.files.size(), program->files.size());
+    json file = sound_file();
+    file["program"]["does_not_count"] = {"run.pi"};
+    EXPECT_NE(said_of(file, beside).find("Did you mean 'run.py'?"), std::string::npos) << said_of(file, beside);
+}
+
+/// Ids of campaigns that were stored before parameters took units: hashes by version 0.2.0.
+TEST(ProgramSection, OldCampaignsKeepTheirIds) {
+    const Beside beside;
+    const auto campaign = parse_campaign(sound_file().dump(), beside.path());
+    EXPECT_EQ(campaign.scene().name, "program:503f78b6f1fdb2e55e8af5681e429eca");
+    const auto cases = unfold(campaign, [](const Inputs&) { return true; });
+    EXPECT_EQ(cases.id(0), "a8af814546675c2920585221fddd9baf");
+    EXPECT_EQ(cases.id(3), "05e757e38700840523f93790de9ae660");
 }
 
 TEST(ProgramSection, TheHashIsOfWhatChangesAnAnswer) {
