@@ -40,7 +40,7 @@ inline constexpr std::size_t most_halvings = 3;
 /// Returns the 95 % half-width of the delete-a-group jackknife (Shao & Wu 1989, Ann. Stat. 17, 1176): entry g is the
 /// estimate without group g of G equal groups;
 ///   se^2 = (G - 1)/G sum_g (theta_g - mean)^2,  half-width t_{G-1, 0.975} se.
-/// se^2 is unbiased for independent groups. For consecutive stretches of one low-discrepancy sequence, which complement
+/// se^2 is unbiased for independent groups. For consecutive batches of one low-discrepancy sequence, which complement
 /// each other, it is too large. NaN for fewer than two values or any NaN.
 [[nodiscard]] double jackknife_half_width(std::span<const double> leave_one_out);
 

@@ -231,7 +231,7 @@ void Convergence::check() {
 void Convergence::find_errors(Checkpoint& now) {
     std::vector<Summary> summaries;
     for (auto& sequence : sequences_) summaries.push_back(sequence.moments.summary(sequence.sample.middle()));
-    if (sequences_.empty() && stretches_.size() >= 2 * StretchedSample::stretches) {
+    if (sequences_.empty() && stretches_.size() >= 2 * StretchedSample::batches) {
         const auto parts = stretches_.leave_one_out();
         summaries.assign(parts.begin(), parts.end());
     }
@@ -259,7 +259,7 @@ void Convergence::find_levels(Checkpoint& now) const {
                          .independent = !sequences_.empty(),
                          .repeated = std::sqrt(excess_) / static_cast<double>(places_)};
     for (const auto& sequence : sequences_) sample.groups.emplace_back(sequence.values);
-    if (sequences_.empty()) sample.groups = stretches_of(pooled_.values);
+    if (sequences_.empty()) sample.groups = batches_of(pooled_.values);
     for (const Gate& gate : settings_.gates) {
         const auto* level = std::get_if<Level>(&gate);
         if (level == nullptr) continue;

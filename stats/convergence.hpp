@@ -14,7 +14,7 @@
 //   assisted    e = 95 % half-width with a model of the response as control variate: assisted_convergence.hpp.
 // The errors shown beside the values are Student-t half-widths if there are at least 4 sequences (for statistics other
 // than the mean, once each sequence has 4 values). Otherwise they are a delete-a-group jackknife over 8 consecutive
-// stretches of the points (see confidence.hpp).
+// batches of the points (see confidence.hpp).
 //
 // Short sequences have small g1 and kurtosis with little scatter, even if the whole sample has large ones. Therefore
 // their error is
@@ -41,10 +41,10 @@
 // median then jumps between zero and the other values.
 #pragma once
 
+#include "stats/batches.hpp"
 #include "stats/convergence_rule.hpp"
 #include "stats/levels.hpp"
 #include "stats/moments.hpp"
-#include "stats/stretches.hpp"
 #include "stats/tail.hpp"
 
 #include <array>
@@ -155,7 +155,7 @@ public:
     /// `earlier`: number of earlier places with the same run, which was added there. The weight of the run is then its
     /// number of places, and every error is widened:
     ///
-    ///   error^2 = (error from sequences or stretches)^2 + (1.96 c)^2 sum over runs of (w^2 - w/N)
+    ///   error^2 = (error from sequences or batches)^2 + (1.96 c)^2 sum over runs of (w^2 - w/N)
     ///
     /// w: share of the N places that have this run; c: asymptotic standard deviation of the statistic of a normal
     /// sample, times sqrt(n) (mean: sd; sd: sd sqrt((kurtosis - 1)/4); skewness: 3 sqrt(pi/2 - 1); g1: sqrt 6;

@@ -15,7 +15,7 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t groups_of_stretches = 8, fewest_in_group = 4, fewest_beyond = 10;
+constexpr std::size_t groups_of_batches = 8, fewest_in_group = 4, fewest_beyond = 10;
 constexpr double tail_of_interval = 0.025;
 
 /// How far a share may lie below and above its estimate.
@@ -231,11 +231,11 @@ double quantile_of_sorted(std::span<const double> sorted, double q) {
     return std::lerp(sorted[low], sorted[std::min(low + 1, sorted.size() - 1)], at - static_cast<double>(low));
 }
 
-std::vector<std::span<const double>> stretches_of(std::span<const double> values) {
+std::vector<std::span<const double>> batches_of(std::span<const double> values) {
     std::vector<std::span<const double>> groups;
     const std::size_t n = values.size();
-    for (std::size_t g = 0; g < groups_of_stretches; ++g) {
-        const std::size_t from = n * g / groups_of_stretches, to = n * (g + 1) / groups_of_stretches;
+    for (std::size_t g = 0; g < groups_of_batches; ++g) {
+        const std::size_t from = n * g / groups_of_batches, to = n * (g + 1) / groups_of_batches;
         groups.push_back(values.subspan(from, to - from));
     }
     return groups;

@@ -3,7 +3,7 @@
 //   F(t) = share of the values below t        quantile Q(q): linear between the values, at (N - 1) q
 //
 // The error e of a share is the Student-t 95 % half-width over the groups: independent sequences, else 8 consecutive
-// stretches. It is no smaller than
+// batches. It is no smaller than
 // - that of the first 1/2^k of each sequence times 2^(-3k/2), k = 1, 2, 3, as for moments (convergence.hpp), because
 //   even sequences of a response that jumps at the threshold count alike;
 // - that of rounding each group to whole values, 1.96/(n sqrt(12 R)), n values in each of R groups;
@@ -72,8 +72,8 @@ struct GroupedSample {
 /// Stat. 50, 361); q from 0 to 1, at least one value.
 [[nodiscard]] double quantile_of_sorted(std::span<const double> sorted, double q);
 
-/// Returns the consecutive stretches that stand for groups where there are no independent sequences.
-[[nodiscard]] std::vector<std::span<const double>> stretches_of(std::span<const double> values);
+/// Returns the consecutive batches that stand for groups where there are no independent sequences.
+[[nodiscard]] std::vector<std::span<const double>> batches_of(std::span<const double> values);
 
 /// Returns value and error. NaN: fewer than 4 values in a group, an arm of a quantile outside of the sample.
 [[nodiscard]] LevelEstimate level_of(const Level& level, const GroupedSample& sample);

@@ -17,7 +17,7 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t scramblings = 8, points_each = 1024, base_points = scramblings * points_each, stretches = 8;
+constexpr std::size_t scramblings = 8, points_each = 1024, base_points = scramblings * points_each, batches = 8;
 
 /// Seed from the responses: each campaign is integrated over other points, so that indices of different campaigns do
 /// not share an error of integration.
@@ -75,7 +75,7 @@ public:
         for (std::size_t i = 0; i < used.size(); ++i) {
             if (!groups.empty() && used[i] >= groups.size())
                 throw std::invalid_argument("indices of a model: one group is needed for each case");
-            const std::size_t group = groups.empty() ? i * stretches / used.size() : groups[used[i]];
+            const std::size_t group = groups.empty() ? i * batches / used.size() : groups[used[i]];
             left_out.resize(std::max(left_out.size(), group + 2));
             left_out[group + 1].push_back(static_cast<Eigen::Index>(i));
         }
@@ -289,13 +289,13 @@ public:
         std::vector<double> place(block.factors.size());
         for (std::size_t i = 0; i < base_points; ++i) {
             for (std::size_t c = 0; c < place.size(); ++c) place[c] = base.a[i * base.dimensions + block.factors[c]];
-            part_[i] = splitmix64(block.sample->row_at(place)) % stretches;
+            part_[i] = splitmix64(block.sample->row_at(place)) % batches;
             count_(static_cast<Eigen::Index>(part_[i])) += 1;
         }
     }
     /// Means of the values without the points of each part.
     [[nodiscard]] Eigen::ArrayXd without_each(const Eigen::ArrayXd& values) const {
-        Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(stretches);
+        Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(batches);
         for (std::size_t i = 0; i < base_points; ++i)
             sums(static_cast<Eigen::Index>(part_[i])) += values(static_cast<Eigen::Index>(i));
         return (sums.sum() - sums) / (static_cast<double>(base_points) - count_);
@@ -303,7 +303,7 @@ public:
 
 private:
     std::vector<std::size_t> part_;
-    Eigen::ArrayXd count_ = Eigen::ArrayXd::Zero(stretches);
+    Eigen::ArrayXd count_ = Eigen::ArrayXd::Zero(batches);
 };
 
 std::vector<SensitivityIndex> shapley_effects(const Versions& versions, const Base& base, const Whole& whole,
@@ -328,7 +328,7 @@ std::vector<SensitivityIndex> shapley_effects(const Versions& versions, const Ba
     std::vector<SensitivityIndex> effects;
     for (std::size_t j = 0; j < d; ++j) {
         Part part = Part::Zero(whole.variance.rows(), whole.variance.cols());
-        Eigen::ArrayXd without = Eigen::ArrayXd::Zero(stretches);
+        Eigen::ArrayXd without = Eigen::ArrayXd::Zero(batches);
         for (std::size_t mask = 0; mask <= all; ++mask) {
             if ((mask >> j & 1U) != 0) continue;
             const auto size = static_cast<double>(std::popcount(mask)), n = static_cast<double>(d);
@@ -339,7 +339,7 @@ std::vector<SensitivityIndex> shapley_effects(const Versions& versions, const Ba
         }
         without /= in_row_parts[all];
         auto& effect = effects.emplace_back(whole.index_of(part));
-        effect.half_width = std::hypot(effect.half_width, jackknife_half_width({without.data(), stretches}));
+        effect.half_width = std::hypot(effect.half_width, jackknife_half_width({without.data(), batches}));
     }
     return effects;
 }

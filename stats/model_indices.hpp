@@ -87,7 +87,7 @@ struct FactorRoles {
 };
 
 /// Returns the indices. `groups`: group of every row that the model was fitted to, such as its sequence, at least 2
-/// different ones; empty: 8 consecutive stretches. `features`: empty if the factors are the features, in the model's
+/// different ones; empty: 8 consecutive batches. `features`: empty if the factors are the features, in the model's
 /// box. Throws std::invalid_argument if sizes do not match or cases were added to the model.
 [[nodiscard]] ModelIndices model_indices(const ResponseModel& model, std::size_t factors,
                                          std::span<const std::size_t> groups = {}, const FeatureMap& features = {},

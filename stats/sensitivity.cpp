@@ -14,7 +14,7 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t stretches_of_sample = 8;
+constexpr std::size_t batches_of_sample = 8;
 constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
 
 double square(double x) {
@@ -103,7 +103,7 @@ SensitivityIndex binned_with_error(std::span<const Entry> sorted, const BinnedIn
 struct RadialRows {
     std::size_t dimensions;
     std::vector<std::span<const double>> rows;
-    [[nodiscard]] std::size_t stretch_of(std::size_t k) const { return k * stretches_of_sample / rows.size(); }
+    [[nodiscard]] std::size_t stretch_of(std::size_t k) const { return k * batches_of_sample / rows.size(); }
 };
 
 struct RadialEstimates {
@@ -154,13 +154,13 @@ GivenDataIndices first_order_indices(std::span<const double> points, std::size_t
     GivenDataIndices indices;
     indices.count = static_cast<std::int64_t>(used.size());
     indices.excluded = static_cast<std::int64_t>(values.size() - used.size());
-    const std::size_t group_count = groups.empty() ? stretches_of_sample : *std::ranges::max_element(groups) + 1;
+    const std::size_t group_count = groups.empty() ? batches_of_sample : *std::ranges::max_element(groups) + 1;
     std::vector<Entry> entries(used.size());
     for (std::size_t j = 0; j < dimensions; ++j) {
         for (std::size_t i = 0; i < used.size(); ++i)
             entries[i] = {.x = points[used[i] * dimensions + j],
                           .y = values[used[i]],
-                          .group = groups.empty() ? i * stretches_of_sample / used.size() : groups[used[i]]};
+                          .group = groups.empty() ? i * batches_of_sample / used.size() : groups[used[i]]};
         std::ranges::stable_sort(entries, {}, &Entry::x);
         const BinnedIndex all = binned_index(entries, bins);
         indices.first.push_back(binned_with_error(entries, all, group_count, bins));
@@ -183,8 +183,8 @@ SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dim
     indices.count = static_cast<std::int64_t>(base.rows.size());
     const RadialEstimates all = radial_estimates(base, no_index);
     std::vector<RadialEstimates> parts;
-    if (base.rows.size() >= 2 * stretches_of_sample)
-        for (std::size_t g = 0; g < stretches_of_sample; ++g) parts.push_back(radial_estimates(base, g));
+    if (base.rows.size() >= 2 * batches_of_sample)
+        for (std::size_t g = 0; g < batches_of_sample; ++g) parts.push_back(radial_estimates(base, g));
     const auto with_error = [&](std::vector<double> RadialEstimates::*kind) {
         std::vector<SensitivityIndex> list;
         for (std::size_t j = 0; j < dimensions; ++j) {

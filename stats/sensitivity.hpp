@@ -41,7 +41,7 @@ struct GivenDataIndices {
 ///
 /// Half-widths: jackknife and second term in quadrature, plus the bias that the jackknife estimates, which is the bias
 /// from scatter, and in quadrature what bins of half the size see more than scatter gives them. `groups` labels the
-/// rows 0 ... G-1, for example by sequence; empty: 8 consecutive stretches. NaN if there are fewer than two rows per
+/// rows 0 ... G-1, for example by sequence; empty: 8 consecutive batches. NaN if there are fewer than two rows per
 /// bin (of the half-width: four) or no variance.
 [[nodiscard]] GivenDataIndices first_order_indices(std::span<const double> points, std::size_t dimensions,
                                                    std::span<const double> values,
@@ -58,7 +58,7 @@ struct SaltelliIndices {
 
 /// Returns indices from a "saltelli" design. `values` are in the order of its points, blocks of d + 2: A, B, AB_1, ...,
 /// AB_d, with d factors or groups of factors that change together. An incomplete last block is ignored. V: population
-/// variance of all f_A and f_B. Half-widths come from 8 consecutive stretches of base rows.
+/// variance of all f_A and f_B. Half-widths come from 8 consecutive batches of base rows.
 [[nodiscard]] SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dimensions);
 
 /// Elementary effects (y after - y before)/(x_j after - x_j before) of one factor over the trajectories.

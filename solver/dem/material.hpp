@@ -20,7 +20,7 @@ namespace grainsweep::dem {
 struct Surface;  // walls/wall.hpp
 
 /// Largest number of kinds of spheres with different materials.
-inline constexpr unsigned kinds_at_most = 8;
+inline constexpr unsigned materials_at_most = 8;
 
 /// Law of repulsion: hertz by elastic constants (laws/hertz.hpp), linear by a spring of given stiffness
 /// (laws/linear.hpp). All contacts of a case have the same law.

@@ -60,7 +60,7 @@ void check_kinds(const Setup& setup) {
     for_each_extreme_sphere(
         setup, [&](const Sphere& s) { require(s.kind < count, "a sphere is of a kind that there is not"); });
     if (densities.empty()) return require(pairs.empty(), "kinds of spheres need a density each");
-    require(count <= kinds_at_most, "there are at most eight kinds of spheres");
+    require(count <= materials_at_most, "there are at most eight kinds of spheres");
     require(pairs.size() == place_of_pair(count - 1, count - 1) + 1, "every pair of kinds needs a material");
     for (const double density : densities) require(positive(density), "the density must be positive");
     for (const Material& m : pairs) check(m);

@@ -13,11 +13,11 @@ void Run::judge_walls_that_appear() {
         return phase_ > 0 && holds(wall.during, phase_) && !holds(wall.during, phase_ - 1);
     };
     if (std::ranges::none_of(spec_.walls, appears)) return;
-    const Sight sight = look(Contacts::present);
+    const Frame frame = look(Contacts::present);
     for (const dem::ContactForce& contact : contacts_) {
         if (contact.second >= 0) continue;
         const MachineWall& wall = spec_.walls[static_cast<std::size_t>(-1 - contact.second)];
-        const std::size_t i = place_of(sight, contact.first);
+        const std::size_t i = place_of(frame, contact.first);
         const double share = contact.overlap / (2 * state_.radius[i]);
         if (share <= deepest_at_start || !appears(wall)) continue;
         const Vec3& x = state_.position[i];

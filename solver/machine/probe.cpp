@@ -4,11 +4,11 @@
 
 namespace grainsweep::machine {
 
-double Sight::volume(std::size_t i) const {
+double Frame::volume(std::size_t i) const {
     return particles::sphere_volume(2 * state.radius[i]);
 }
 
-double Sight::mass_of(std::size_t id) const {
+double Frame::mass_of(std::size_t id) const {
     return density[id] * particles::sphere_volume(2 * radius[id]);
 }
 

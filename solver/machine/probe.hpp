@@ -27,7 +27,7 @@ namespace grainsweep::machine {
 inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// Data that a probe may read at a moment.
-struct Sight {
+struct Frame {
     const dem::Engine& engine;
     const dem::State& state;                         ///< all particles present
     const std::vector<dem::ContactForce>& contacts;  ///< empty, unless the probe needs them
@@ -109,19 +109,19 @@ public:
     virtual ~Probe() = default;
 
     /// Returns the value at this moment, or undefined. For a profile: one number that summarises it, or undefined.
-    [[nodiscard]] virtual double look(const Sight& sight) = 0;
+    [[nodiscard]] virtual double look(const Frame& frame) = 0;
     /// Returns the planes whose passages it counts.
     [[nodiscard]] virtual std::vector<dem::CountingPlane> planes() const { return {}; }
-    /// Called for every passage in the selected phases, in the order of time. Of `sight` only what is given by id
+    /// Called for every passage in the selected phases, in the order of time. Of `frame` only what is given by id
     /// holds.
-    virtual void passed(const Sight&, const Passage&) {}
+    virtual void passed(const Frame&, const Passage&) {}
     /// Called at every step of the selected phases, if the source of the probe is `steps`. The contacts have the
     /// forces of the step itself (dem::Engine::step_contacts).
-    virtual void step(const Sight&) {}
+    virtual void step(const Frame&) {}
     /// Returns the integral of the value over all steps since the start, if the source of the probe is `loads`.
-    [[nodiscard]] virtual double integral(const Sight&) { return undefined; }
+    [[nodiscard]] virtual double integral(const Frame&) { return undefined; }
     /// Appends bins and values at this moment; a scalar appends none.
-    virtual void profile(const Sight&, std::vector<Sample>&) {}
+    virtual void profile(const Frame&, std::vector<Sample>&) {}
     /// Writes the state that it keeps between two calls of look().
     virtual void save(ByteWriter&) const {}
     virtual void restore(ByteReader&) {}

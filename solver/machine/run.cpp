@@ -127,11 +127,11 @@ std::int64_t Run::run_watched_step() {
     do {
         engine_->run_part();
         if (!health().stable()) return 0;
-        Sight sight = look(Contacts::of_step);
-        sight.time = spec_.time_step * static_cast<double>(step_ + 1);
-        sight.time_step = engine_->part();
-        sight.by_partners = partner_order_.of(contacts_);
-        for (Probe* probe : at_steps_[phase_]) probe->step(sight);
+        Frame frame = look(Contacts::of_step);
+        frame.time = spec_.time_step * static_cast<double>(step_ + 1);
+        frame.time_step = engine_->part();
+        frame.by_partners = partner_order_.of(contacts_);
+        for (Probe* probe : at_steps_[phase_]) probe->step(frame);
     } while (!engine_->at_step());
     return 1;
 }
@@ -141,7 +141,7 @@ void Run::give_crossings() {
     if (first_plane_.back() == 0) return;
     crossings_.clear();
     engine_->take_crossings(crossings_);
-    const Sight now = sight();
+    const Frame now = frame();
     for (const dem::Crossing& crossing : crossings_) {
         const auto next = std::ranges::upper_bound(first_plane_, crossing.plane);
         const auto m = static_cast<std::size_t>(next - first_plane_.begin()) - 1;
@@ -247,15 +247,15 @@ void Run::enlist(const Filled& filled) {
     for (const auto& sphere : filled.spheres) radius_.push_back(sphere.radius);
 }
 
-Sight Run::look(Contacts contacts) {
+Frame Run::look(Contacts contacts) {
     engine_->state(state_);
     contacts_.clear();
     if (contacts == Contacts::present) engine_->contacts(contacts_);
     if (contacts == Contacts::of_step) engine_->step_contacts(contacts_);
-    return sight();
+    return frame();
 }
 
-Sight Run::sight() const {
+Frame Run::frame() const {
     return {*engine_,      state_,         contacts_,
             species_,      density_,       spec_.domain,
             spec_.gravity, time(),         engine_->peak_overlap(),
@@ -263,24 +263,24 @@ Sight Run::sight() const {
 }
 
 void Run::take_frame() {
-    const Sight sight = look(needs_contacts_ ? Contacts::present : Contacts::none);
+    const Frame frame = look(needs_contacts_ ? Contacts::present : Contacts::none);
     for (std::size_t m = 0; m < probes_.size(); ++m) {
         const Measure& measure = spec_.measures[m];
         if (!holds(measure.during, phase_)) continue;
         Record& record = records_[m];
-        const double value = probes_[m]->look(sight);
+        const double value = probes_[m]->look(frame);
         // The end of a phase is the beginning of the next one.
-        const double before = std::exchange(record.looked, sight.time);
-        if (before == sight.time) continue;
+        const double before = std::exchange(record.looked, frame.time);
+        if (before == frame.time) continue;
         if (is_integrated(measure)) {
-            const double integral = probes_[m]->integral(sight), since = std::exchange(record.integral, integral);
+            const double integral = probes_[m]->integral(frame), since = std::exchange(record.integral, integral);
             if (frame_ > 0 && std::isfinite(integral))
-                record.intervals.push_back({sight.time, sight.time - before, integral - since});
+                record.intervals.push_back({frame.time, frame.time - before, integral - since});
         }
-        if (std::isfinite(value)) record.samples.push_back({.time = sight.time, .value = value});
+        if (std::isfinite(value)) record.samples.push_back({.time = frame.time, .value = value});
         if (find_probe(measure.probe)->over.empty()) continue;
         std::vector<Sample> profile;
-        probes_[m]->profile(sight, profile);
+        probes_[m]->profile(frame, profile);
         record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
         record.bins.resize(profile.size(), 0.0);
         record.last.assign(profile.size(), undefined);
@@ -297,10 +297,10 @@ void Run::take_frame() {
 }
 
 double Run::mass_in(const Region& region) {
-    const Sight sight = look(Contacts::none);
+    const Frame frame = look(Contacts::none);
     double mass = 0;
-    for (std::size_t i = 0; i < sight.size(); ++i)
-        if (state_.mobile[i] != 0 && region.contains(state_.position[i])) mass += sight.mass(i);
+    for (std::size_t i = 0; i < frame.size(); ++i)
+        if (state_.mobile[i] != 0 && region.contains(state_.position[i])) mass += frame.mass(i);
     return mass;
 }
 
@@ -316,12 +316,12 @@ bool Run::holds_now(std::size_t condition) {
     const Until& until = phase().until[condition];
     double& calm_since = calm_since_[condition];
     if (std::holds_alternative<AtRest>(until)) {
-        const Sight sight = look(Contacts::none);
+        const Frame frame = look(Contacts::none);
         double energy = 0, scale = 0;
-        for (std::size_t i = 0; i < sight.size(); ++i) {
+        for (std::size_t i = 0; i < frame.size(); ++i) {
             if (state_.mobile[i] == 0) continue;
-            energy += sight.mass(i) / 2 * dot(state_.velocity[i], state_.velocity[i]);
-            scale += sight.mass(i) * norm(spec_.gravity) * 2 * state_.radius[i];
+            energy += frame.mass(i) / 2 * dot(state_.velocity[i], state_.velocity[i]);
+            scale += frame.mass(i) * norm(spec_.gravity) * 2 * state_.radius[i];
         }
         if (!(energy < calm * scale)) calm_since = time();
         return time() - calm_since >= falling_time(spec_);

@@ -78,8 +78,8 @@ private:
     [[nodiscard]] bool checks_here(bool framed);
     [[nodiscard]] bool holds_now(std::size_t condition);
     enum class Contacts { none, present, of_step };
-    [[nodiscard]] Sight look(Contacts contacts);
-    [[nodiscard]] Sight sight() const;
+    [[nodiscard]] Frame look(Contacts contacts);
+    [[nodiscard]] Frame frame() const;
     void give_crossings();
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);

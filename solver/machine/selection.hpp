@@ -17,22 +17,22 @@ class Selection {
 public:
     explicit Selection(const Options& options) : of_(options.numbers("of")), in_(options.region("in")) {}
 
-    [[nodiscard]] bool species_counts(const Sight& sight, std::size_t i) const {
-        return of_.empty() || std::ranges::find(of_, sight.species_of(i)) != of_.end();
+    [[nodiscard]] bool species_counts(const Frame& frame, std::size_t i) const {
+        return of_.empty() || std::ranges::find(of_, frame.species_of(i)) != of_.end();
     }
-    [[nodiscard]] bool holds(const Sight& sight, std::size_t i) const {
-        return sight.state.mobile[i] != 0 && species_counts(sight, i) &&
-               (!in_ || in_->contains(sight.state.position[i]));
+    [[nodiscard]] bool holds(const Frame& frame, std::size_t i) const {
+        return frame.state.mobile[i] != 0 && species_counts(frame, i) &&
+               (!in_ || in_->contains(frame.state.position[i]));
     }
-    [[nodiscard]] bool holds(const Sight& sight, const Passage& passage) const {
-        return (of_.empty() || std::ranges::find(of_, sight.species[passage.id]) != of_.end()) &&
+    [[nodiscard]] bool holds(const Frame& frame, const Passage& passage) const {
+        return (of_.empty() || std::ranges::find(of_, frame.species[passage.id]) != of_.end()) &&
                (!in_ || in_->contains(passage.position));
     }
     /// Calls visit(i) for every particle that counts.
     template <class Visit>
-    void each(const Sight& sight, Visit&& visit) const {
-        for (std::size_t i = 0; i < sight.size(); ++i)
-            if (holds(sight, i)) visit(i);
+    void each(const Frame& frame, Visit&& visit) const {
+        for (std::size_t i = 0; i < frame.size(); ++i)
+            if (holds(frame, i)) visit(i);
     }
     [[nodiscard]] const std::optional<Region>& region() const { return in_; }
 

@@ -4,9 +4,9 @@
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration.hpp"
 #include "sweep/designs/curve_place.hpp"
 
@@ -176,12 +176,12 @@ std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign
     const bool scalar = scene.find_observable(target.observable)->shape == Shape::scalar;
     const auto value = section.find("value"), file = section.find("file");
     if (scalar && (file || !value))
-        throw wrong_question(element.path(), target.observable, "is a scalar: what was measured is its \"value\"");
+        throw input_error(element.path(), target.observable, "is a scalar: what was measured is its \"value\"");
     if (!scalar && (value || !file))
-        throw wrong_question(element.path(), target.observable,
-                             "is a curve: what was measured stands in a \"file\" of lines where,value[,error]");
+        throw input_error(element.path(), target.observable,
+                          "is a curve: what was measured stands in a \"file\" of lines where,value[,error]");
     const auto error = section.find("error");
-    if (scalar && !error) throw wrong_question(element.path(), "", "'error' is missing: of what was measured");
+    if (scalar && !error) throw input_error(element.path(), "", "'error' is missing: of what was measured");
     const auto& measured = *scene.find_observable(target.observable);
     if (value) target.value = measured_number(*value, measured, {-largest, largest});
     if (error) target.error = measured_number(*error, measured, {0, largest});
@@ -208,15 +208,14 @@ void read_discrepancies(const Section& section, const SceneInfo& scene, std::vec
     }
     for (std::size_t k = 0; k < targets.size(); ++k) {
         if (!place.json().contains(measured[k])) {
-            throw wrong_question(
-                place.path(), "",
-                fmt::format("'{0}' is missing: how far the simulation itself may be from the experiment "
-                            "in {0}, as a standard deviation; 0 is allowed and warned of",
-                            measured[k]));
+            throw input_error(place.path(), "",
+                              fmt::format("'{0}' is missing: how far the simulation itself may be from the experiment "
+                                          "in {0}, as a standard deviation; 0 is allowed and warned of",
+                                          measured[k]));
         }
         if (!(std::pow(targets[k].error, 2) + std::pow(targets[k].discrepancy, 2) > 0))
-            throw wrong_question(section.at("targets").path(), targets[k].observable,
-                                 "has neither an error nor a discrepancy: no simulation meets it exactly");
+            throw input_error(section.at("targets").path(), targets[k].observable,
+                              "has neither an error nor a discrepancy: no simulation meets it exactly");
     }
 }
 
@@ -228,13 +227,13 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
     const std::size_t calibrated = space.factors.size();
     for (const auto& factor : space.factors) {
         if (std::holds_alternative<Levels>(factor.range))
-            throw wrong_question("$.factors", factor.name,
-                                 "what is calibrated varies \"between\" two values; what differs from target to target "
-                                 "stands in its \"inputs\"");
+            throw input_error("$.factors", factor.name,
+                              "what is calibrated varies \"between\" two values; what differs from target to target "
+                              "stands in its \"inputs\"");
         if (column_of(std::get_if<stats::Distribution>(&factor.range)) != nullptr)
-            throw wrong_question("$.factors", factor.name,
-                                 "a calibration begins from factors that are independent; give each a distribution of "
-                                 "its own, not a column of one file with another");
+            throw input_error("$.factors", factor.name,
+                              "a calibration begins from factors that are independent; give each a distribution of "
+                              "its own, not a column of one file with another");
     }
     std::vector<designs::MeasuredTarget> targets;
     const auto elements = section.at("targets").elements();
@@ -252,10 +251,10 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
         if (!std::ranges::equal(
                 targets[k].level, targets.front().level, {}, [](const auto& x) { return x.first; },
                 [](const auto& x) { return x.first; }))
-            throw wrong_question(places[k], "", "every target states the same \"inputs\", each with its values");
+            throw input_error(places[k], "", "every target states the same \"inputs\", each with its values");
         for (std::size_t j = 0; j < k; ++j)
             if (targets[j].observable == targets[k].observable && targets[j].level == targets[k].level)
-                throw wrong_question(places[k], targets[k].observable, "is a target twice under the same condition");
+                throw input_error(places[k], targets[k].observable, "is a target twice under the same condition");
     }
     read_discrepancies(section, campaign.scene(), targets);
 

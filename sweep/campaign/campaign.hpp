@@ -192,14 +192,14 @@ bool reorder_factors(Campaign& campaign, std::span<const std::string> order);
 inline constexpr std::int64_t most_cases = 1'000'000;
 
 /// Returns a case for every admitted point and replicate, ordered by point, then replicate. Numbers of excluded points
-/// are not reused. Later changes of `campaign` do not affect the cases. Throws WrongQuestion if the combination of the
+/// are not reused. Later changes of `campaign` do not affect the cases. Throws InputError if the combination of the
 /// design's options is impossible, no point is left, or there are more than most_cases.
 [[nodiscard]] Cases unfold(const Campaign& campaign, const Filter& filter);
-/// Throws WrongQuestion like unfold() for an impossible design.
+/// Throws InputError like unfold() for an impossible design.
 void check_design(const Campaign& campaign);
 
 /// Returns a case from inputs (with defaults and converted types); its id is the hash of its canonical text. Throws
-/// WrongQuestion for an unknown parameter.
+/// InputError for an unknown parameter.
 [[nodiscard]] Case make_case(const SceneInfo& scene, const Inputs& inputs, std::uint64_t seed);
 
 /// Returns the seed of the campaign's case with these inputs. It depends only on the arguments.

@@ -1,7 +1,7 @@
 #include "sweep/campaign/campaign_files.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/keys.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ std::vector<CampaignFile> file_at(const std::string& place, const std::string& n
     std::error_code error;
     if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > largest_kept) return {};
     const std::string contents = files::whole_file(path, error);
-    if (error) throw wrong_question(place, name, fmt::format("the file cannot be read: {}", error.message()));
+    if (error) throw input_error(place, name, fmt::format("the file cannot be read: {}", error.message()));
     return {{place, name, content_hash(contents), fs::absolute(path)}};
 }
 

@@ -1,6 +1,6 @@
 #include "sweep/campaign/csv_text.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>

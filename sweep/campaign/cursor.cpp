@@ -13,7 +13,7 @@
 namespace grainsweep::campaign {
 
 void Cursor::refuse(std::string_view rule, std::string_view suggestion) const {
-    throw wrong_question(path_, shown(*value_), rule, suggestion);
+    throw input_error(path_, shown(*value_), rule, suggestion);
 }
 
 double Cursor::number(const Interval& bounds) const {
@@ -80,13 +80,12 @@ Section::Section(Cursor place, std::span<const Field> keys) : place_(std::move(p
         if (std::ranges::find(keys_, name, &Field::name) != keys_.end()) continue;
         WordList known(std::views::transform(keys_, &Field::name));
         known.push_back(notes_key);
-        throw wrong_question(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
-                             nearest_word(name, known));
+        throw input_error(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
+                          nearest_word(name, known));
     }
     for (const auto& key : keys_) {
         if (key.required && !find(key.name)) {
-            throw wrong_question(place_.path(), "",
-                                 fmt::format("key '{}' is missing: {}", key.name, meaning_text(key)));
+            throw input_error(place_.path(), "", fmt::format("key '{}' is missing: {}", key.name, meaning_text(key)));
         }
     }
 }

@@ -1,9 +1,9 @@
 // Reading of JSON with paths: every refusal names the path, the value, the rule and the nearest word.
 #pragma once
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/keys.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <cstdint>
 #include <optional>

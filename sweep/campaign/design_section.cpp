@@ -1,7 +1,7 @@
 // "design": its options against the OptionSpecs that the design declares.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/step.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ const designs::DesignInfo& read_kind(const Cursor& place) {
     if (!place.json().is_object()) place.refuse("must be an object with a \"kind\"");
     const auto known = names_of(designs::design_catalogue());
     if (!place.json().contains("kind")) {
-        throw wrong_question(place.path(), "", fmt::format("key 'kind' is missing: {}", in_words(known)));
+        throw input_error(place.path(), "", fmt::format("key 'kind' is missing: {}", in_words(known)));
     }
     return *designs::find_design(place["kind"].word(known));
 }
@@ -48,8 +48,8 @@ OptionValue read_rows(const Section& section, const OptionSpec& option, const Pa
     const auto file = section.find("file");
     const auto listed = section.find(option.name);
     if (file.has_value() == listed.has_value()) {
-        throw wrong_question(section.place().path(), file ? "both" : "neither",
-                             fmt::format("give either \"{}\": [[...], ...] or \"file\": a CSV file", option.name));
+        throw input_error(section.place().path(), file ? "both" : "neither",
+                          fmt::format("give either \"{}\": [[...], ...] or \"file\": a CSV file", option.name));
     }
     if (file) return read_rows_file(*file, space, folder);
     designs::Rows rows;
@@ -141,14 +141,14 @@ void set_factors(Campaign& campaign) {
 
 void check_growing(const Cursor& place, const Campaign& campaign) {
     if (campaign.replicates != 1) {
-        throw wrong_question("$.replicates", std::to_string(campaign.replicates),
-                             fmt::format("a {} design repeats its points itself: give \"replicates\" within \"design\"",
-                                         campaign.design));
+        throw input_error("$.replicates", std::to_string(campaign.replicates),
+                          fmt::format("a {} design repeats its points itself: give \"replicates\" within \"design\"",
+                                      campaign.design));
     }
     try {
         (void)designs::design_named(campaign.design).sample(campaign.request);
     } catch (const std::invalid_argument& error) {
-        throw wrong_question(place.path(), "", error.what());
+        throw input_error(place.path(), "", error.what());
     }
 }
 

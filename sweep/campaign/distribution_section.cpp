@@ -1,6 +1,6 @@
 // Distribution of a factor: its figures, cut off at the bounds of the parameter.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -47,9 +47,9 @@ Ranges read_uniform(const Reading& read) {
 stats::Distribution::Form read_lognormal(const Reading& read) {
     const auto sigma = read.section.find("sigma"), ratio = read.section.find("ratio");
     if (sigma.has_value() == ratio.has_value())
-        throw wrong_question(read.section.place().path(), sigma ? "both" : "neither",
-                             "a lognormal distribution has either \"sigma\", the standard deviation of the natural "
-                             "logarithm, or \"ratio\", exp(sigma)");
+        throw input_error(read.section.place().path(), sigma ? "both" : "neither",
+                          "a lognormal distribution has either \"sigma\", the standard deviation of the natural "
+                          "logarithm, or \"ratio\", exp(sigma)");
     const double width = sigma ? read.section.number("sigma", 1) : std::log(read.section.number("ratio", 1));
     return stats::Lognormal{read.amount("median", above_zero), width};
 }

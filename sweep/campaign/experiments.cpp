@@ -57,7 +57,7 @@ Json targets_of(const Cursor& calibration, const std::vector<std::string>& names
         const Section target(all[t], target_keys());
         const auto of = target.find("of");
         if (!of)
-            throw wrong_question(
+            throw input_error(
                 all[t].path(), "",
                 fmt::format("key 'of' is missing: in which experiment it was measured, {}", in_words(names)));
         if (of->word(names) != experiment.name) continue;
@@ -65,8 +65,7 @@ Json targets_of(const Cursor& calibration, const std::vector<std::string>& names
         own.push_back(all[t].json());
         own.back().erase("of");
     }
-    if (own.empty())
-        throw wrong_question(experiment.path(), "", "no target is measured in this experiment; leave it out");
+    if (own.empty()) throw input_error(experiment.path(), "", "no target is measured in this experiment; leave it out");
     return own;
 }
 
@@ -86,7 +85,7 @@ void keep_known(const Json& file, const Json& own, const SceneInfo& scene, Exper
         for (const auto& [name, value] : shared->items())
             if (known(name) && !fixed.contains(name)) fixed[name] = value;
     if (factors.empty())
-        throw wrong_question(experiment.path(), "", "has none of the factors: its measurements determine nothing");
+        throw input_error(experiment.path(), "", "has none of the factors: its measurements determine nothing");
     experiment.document["factors"] = std::move(factors);
     experiment.document["fixed"] = std::move(fixed);
 }
@@ -99,7 +98,7 @@ void require_known(const Cursor& place, const Json& name, const std::vector<Camp
         for (const auto& parameter : campaign.scene().parameters) known.push_back(parameter.name);
     const auto& word = name.get_ref<const std::string&>();
     if (std::ranges::find(known, word) == known.end())
-        throw wrong_question(place.path(), word, "no experiment has this parameter", nearest_word(word, known));
+        throw input_error(place.path(), word, "no experiment has this parameter", nearest_word(word, known));
 }
 
 Experiment experiment_file(const Json& file, const Cursor& place, const std::string& name,
@@ -114,7 +113,7 @@ Experiment experiment_file(const Json& file, const Cursor& place, const std::str
         if (key != "scene" && !own.find("scene") && own.find(key)) document["scene"] = key;
     }
     if (!document.contains("scene"))
-        throw wrong_question(place.path(), "", "an experiment has a \"scene\", a \"machine\" or a \"program\"");
+        throw input_error(place.path(), "", "an experiment has a \"scene\", a \"machine\" or a \"program\"");
     if (const auto fixed = own.find("fixed")) {
         if (!fixed->json().is_object()) fixed->refuse("must be an object of parameter names and values");
         document["fixed"] = document.value("fixed", Json::object());
@@ -125,14 +124,14 @@ Experiment experiment_file(const Json& file, const Cursor& place, const std::str
     section["targets"] = targets_of(calibration, names, experiment);
     const auto& discrepancy = file.at("calibration").value("discrepancy", Json::object());
     if (!discrepancy.is_object() || !discrepancy.contains(name))
-        throw wrong_question("$.calibration.discrepancy", "",
-                             fmt::format("'{}' is missing: an object of the discrepancies in this experiment", name));
+        throw input_error("$.calibration.discrepancy", "",
+                          fmt::format("'{}' is missing: an object of the discrepancies in this experiment", name));
     section["discrepancy"] = discrepancy[name];
     try {
         const auto scene = read_scene(Section(Cursor(document, "$"), campaign_keys()), folder);
         keep_known(file, place.json(), *scene, experiment);
-    } catch (const WrongQuestion& wrong) {
-        throw WrongQuestion(experiment.in_whole(wrong.what(), place.json()));
+    } catch (const InputError& wrong) {
+        throw InputError(experiment.in_whole(wrong.what(), place.json()));
     }
     return experiment;
 }
@@ -194,7 +193,7 @@ std::vector<Campaign> read_experiments(const Json& document, const std::filesyst
     const Section top(Cursor(document, "$"), campaign_keys());
     for (const char* key : {"scene", "machine", "program", "where", "design"})
         if (const auto given = top.find(key))
-            throw wrong_question(given->path(), "", "with several experiments it has no place here");
+            throw input_error(given->path(), "", "with several experiments it has no place here");
     const auto names = experiment_names(document);
     const Cursor experiments = top.at("calibration")["experiments"];
     const Cursor factors = top.at("factors");
@@ -207,8 +206,8 @@ std::vector<Campaign> read_experiments(const Json& document, const std::filesyst
         const auto file = experiment_file(document, place, name, names, folder);
         try {
             campaigns.push_back(campaign_in(file.document, folder));
-        } catch (const WrongQuestion& wrong) {
-            throw WrongQuestion(file.in_whole(wrong.what(), place.json()));
+        } catch (const InputError& wrong) {
+            throw InputError(file.in_whole(wrong.what(), place.json()));
         }
     }
     for (const auto& factor : factors.elements()) require_known(factor["name"], factor["name"].json(), campaigns);

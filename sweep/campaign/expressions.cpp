@@ -1,9 +1,9 @@
 #include "sweep/campaign/expressions.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ double as_number(const Value& value) {
 }
 
 [[noreturn]] void refuse_expression(const Expression& expression, std::string_view rule) {
-    throw wrong_question(path_of("$.fixed", expression.name), fmt::format("\"{}\"", expression.formula.text()), rule);
+    throw input_error(path_of("$.fixed", expression.name), fmt::format("\"{}\"", expression.formula.text()), rule);
 }
 
 /// Whether a parameter of a program is declared to be whole.

@@ -1,8 +1,8 @@
 // Rules of factors besides their values: steps, groups, conditions, and shares that add to one.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/step.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -200,8 +200,8 @@ void check_simplex(const Cursor& place, const Campaign& campaign) {
         double sum = 0;
         for (const double share : shares) sum += share;
         if (!add_to_one(shares))
-            throw wrong_question("$.design", fmt::format("row {}", p + 1),
-                                 fmt::format("its shares add to {}, not to 1", shortest(sum)));
+            throw input_error("$.design", fmt::format("row {}", p + 1),
+                              fmt::format("its shares add to {}, not to 1", shortest(sum)));
     }
 }
 
@@ -211,7 +211,7 @@ void check_unfit(const Campaign& campaign) {
         const auto* key = factor.step ? "step" : factor.share ? "simplex" : !factor.when.empty() ? "when" : nullptr;
         if (key == nullptr) continue;
         const auto refuse = [&](std::string_view who, std::string_view why) {
-            throw wrong_question("$.factors", factor.name, fmt::format("{} {}: leave out '{}'", who, why, key));
+            throw input_error("$.factors", factor.name, fmt::format("{} {}: leave out '{}'", who, why, key));
         };
         if (design.grows)
             refuse(fmt::format("a {}", campaign.design), "chooses its points between real numbers itself");

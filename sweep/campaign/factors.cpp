@@ -1,10 +1,10 @@
 // "factors" and "fixed": varied parameters and fixed parameters.
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,8 +55,8 @@ std::string_view range_key(const Section& section) {
     for (const auto key : range_keys())
         if (section.find(key)) given.push_back(key);
     if (given.size() == 1) return given.front();
-    throw wrong_question(section.place().path(), given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")),
-                         fmt::format("a factor has one of {}", in_words(range_keys())));
+    throw input_error(section.place().path(), given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")),
+                      fmt::format("a factor has one of {}", in_words(range_keys())));
 }
 
 void check_key(const Section& section, std::string_view key, const ParameterSpec& parameter) {
@@ -145,11 +145,10 @@ void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesyste
     for (const auto& [key, here] : place.members("must be an object of parameter names and values")) {
         const auto* parameter = space.scene->find_parameter(key);
         if (parameter == nullptr) {
-            throw wrong_question(
-                here.path(), "",
-                fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)",
-                            space.scene->shown(), space.scene->shown()),
-                nearest_word(key, names_of(space.scene->parameters)));
+            throw input_error(here.path(), "",
+                              fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)",
+                                          space.scene->shown(), space.scene->shown()),
+                              nearest_word(key, names_of(space.scene->parameters)));
         }
         if (std::ranges::find(space.factors, key, &Factor::name) != space.factors.end()) {
             here.refuse(fmt::format("'{}' is also a factor; it is either varied or fixed", key));

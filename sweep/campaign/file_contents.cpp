@@ -1,7 +1,7 @@
 #include "sweep/campaign/file_contents.hpp"
 
 #include "sweep/campaign/case.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -56,7 +56,7 @@ std::variant<FileContents, std::string> contents_of(const FileWord& file) {
     std::error_code error;
     std::string text = files::whole_file(path, error);
     if (error == std::errc::no_such_file_or_directory) return fmt::format("cannot read {}", path);
-    if (error) throw BrokenWorld(fmt::format("'{}': cannot be read: {}", path, error.message()));
+    if (error) throw SystemError(fmt::format("'{}': cannot be read: {}", path, error.message()));
     if (content_hash(text) != file.hash)
         return fmt::format("{} has changed since the campaign was read; run the campaign file again", path);
     return FileContents{std::move(text)};

@@ -23,7 +23,7 @@ void enter_contents(std::string contents);
 [[nodiscard]] bool is_made(const FileWord& file);
 
 /// Contents of one file, registered or read, or else the reason why it cannot be used, as a clause. A file that has
-/// changed since the campaign was read is not used. Throws BrokenWorld if a file exists but cannot be read.
+/// changed since the campaign was read is not used. Throws SystemError if a file exists but cannot be read.
 struct FileContents {
     std::string text;
 };

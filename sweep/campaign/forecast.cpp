@@ -1,8 +1,8 @@
 #include "sweep/campaign/forecast.hpp"
 
 #include "sweep/campaign/file_contents.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration_layout.hpp"
 
 #include <fmt/format.h>
@@ -87,10 +87,10 @@ std::function<bool(const Inputs&)> acceptance(const SceneInfo& scene) {
 
 void require_memory(const std::string& which, double bytes, double room) {
     if (!(bytes > room)) return;
-    throw wrong_question("$", "",
-                         fmt::format("{} needs about {:.3g} GB of memory, and this machine gives a process {:.3g} GB: "
-                                     "make the case smaller or take a larger machine",
-                                     which, 1e-9 * bytes, 1e-9 * room));
+    throw input_error("$", "",
+                      fmt::format("{} needs about {:.3g} GB of memory, and this machine gives a process {:.3g} GB: "
+                                  "make the case smaller or take a larger machine",
+                                  which, 1e-9 * bytes, 1e-9 * room));
 }
 
 Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
@@ -124,7 +124,7 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
         }
     }
     if (total.questions > 0 && total.impossible == total.questions)
-        throw wrong_question("$", "", "no case of this campaign can be computed: " + total.first_reason);
+        throw input_error("$", "", "no case of this campaign can be computed: " + total.first_reason);
     require_memory(fmt::format("the case of point {}", total.largest_point), total.largest_bytes, room);
     return total;
 }

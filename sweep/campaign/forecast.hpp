@@ -52,7 +52,7 @@ struct Prediction {
 /// rejected. Files are read once.
 [[nodiscard]] std::function<bool(const Inputs&)> acceptance(const SceneInfo& scene);
 
-/// Throws WrongQuestion if a case, `which` such as "the case of point 3", needs more memory than `room`, bytes.
+/// Throws InputError if a case, `which` such as "the case of point 3", needs more memory than `room`, bytes.
 void require_memory(const std::string& which, double bytes, double room);
 
 /// Longest course of a calibration, in which no wave ends early.
@@ -64,7 +64,7 @@ struct LongestCourse {
 /// Returns the largest cost of a calibration; empty for a campaign of another design.
 [[nodiscard]] std::optional<LongestCourse> longest_course(const Campaign& campaign, const Forecast& forecast);
 
-/// Returns the sum of the scene's estimates for distinct cases without a proven answer. Throws WrongQuestion if all
+/// Returns the sum of the scene's estimates for distinct cases without a proven answer. Throws InputError if all
 /// cases are impossible, or one needs more memory than `room`, bytes.
 [[nodiscard]] Forecast forecast(const SceneInfo& scene, const Cases& cases,
                                 double room = std::numeric_limits<double>::infinity());

@@ -1,7 +1,7 @@
 // Expressions of named numbers: "3 * diameter", "if(speed > 1, sqrt(gap), 0)". Evaluated by muParser.
 #pragma once
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <functional>
 #include <memory>

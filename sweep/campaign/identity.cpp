@@ -2,8 +2,8 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -345,7 +345,7 @@ void refuse_another_size(const Identity& stored, const Identity& asked, std::str
         const bool per_factor = option.kind == designs::OptionSpec::Kind::counts;
         if (before == after || (per_factor && counts_that_act(before, factors) == counts_that_act(after, factors)))
             continue;
-        throw wrong_question(
+        throw input_error(
             "$.design." + option.name, shown(after),
             fmt::format("campaign '{}' stands in '{}' with {}, and a {} of another size is another design, with other "
                         "points under the same numbers: give it a campaign name of its own; cases that both ask are "
@@ -364,9 +364,9 @@ std::int64_t sequences_of(const Campaign& campaign) {
 
 void require_same(const Identity& stored, const Identity& asked, std::string_view archive) {
     const auto refuse = [&](std::string_view where, std::string_view now, std::string_view before) {
-        throw wrong_question(where, now,
-                             fmt::format("campaign '{}' stands in '{}' with {}: another question needs another name",
-                                         stored.name, archive, before));
+        throw input_error(where, now,
+                          fmt::format("campaign '{}' stands in '{}' with {}: another question needs another name",
+                                      stored.name, archive, before));
     };
     const auto same = [&](std::string_view where, std::string_view what, const std::string& before,
                           const std::string& now, bool may_add_levels = false) {
@@ -381,7 +381,7 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
     if (const auto shown = shown_scene(asked.scene); stored.scene != asked.scene && shown != asked.scene) {
         const bool part = shown == stored.scene;  // of an older program
         const bool changed = shown == shown_scene(stored.scene), program = shown.starts_with("program ");
-        throw wrong_question(
+        throw input_error(
             "$.scene", shown,
             fmt::format("campaign '{}' stands in '{}' with {}: give the campaign another name in the same database, or "
                         "continue it with {}",

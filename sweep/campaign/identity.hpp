@@ -34,7 +34,7 @@ struct Identity {
 };
 
 [[nodiscard]] Identity identity_of(const Campaign& campaign);
-/// Throws WrongQuestion with both identities if `asked` differs from the campaign of the same name in `archive`.
+/// Throws InputError with both identities if `asked` differs from the campaign of the same name in `archive`.
 void require_same(const Identity& stored, const Identity& asked, std::string_view archive);
 
 /// Factor of an identity: a range, a distribution, or levels as `identity_text` writes them (a file by its contents).

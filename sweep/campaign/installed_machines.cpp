@@ -1,8 +1,8 @@
 #include "sweep/campaign/installed_machines.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/machine.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <algorithm>
@@ -69,8 +69,8 @@ std::shared_ptr<const Machine> machine_named(std::string_view where, const std::
     std::error_code none;
     if (std::filesystem::is_regular_file(name, none)) return read_machine(name);
     if (auto machine = installed_machine(name)) return machine;
-    throw wrong_question(where, name, "there is no such machine file, and no machine of this name is installed",
-                         nearest_word(name, installed_machines()));
+    throw input_error(where, name, "there is no such machine file, and no machine of this name is installed",
+                      nearest_word(name, installed_machines()));
 }
 
 std::shared_ptr<const Machine> machine_if_any(const std::string& argument) {

@@ -31,7 +31,7 @@ struct InstalledFile {
 /// Returns the possible scenes of a campaign file: scenes of the program, then installed machines.
 [[nodiscard]] std::vector<SharedScene> named_scenes();
 
-/// Returns the machine of a file path or the installed machine of a name. Throws WrongQuestion with `where`.
+/// Returns the machine of a file path or the installed machine of a name. Throws InputError with `where`.
 [[nodiscard]] std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name);
 
 /// Returns the machine that an argument names by file or name; nullptr if it names none.

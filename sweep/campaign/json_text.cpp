@@ -1,7 +1,7 @@
 #include "sweep/campaign/json_text.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/json_builder.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -96,32 +96,32 @@ public:
 
     bool string(string_t& value) override {
         if (value.find('\0') != std::string::npos)
-            throw wrong_question(here(), shown(value), "a text must not contain the NUL character");
+            throw input_error(here(), shown(value), "a text must not contain the NUL character");
         return JsonBuilder::string(value);
     }
     bool parse_error(std::size_t position, const std::string& token,
                      const nlohmann::detail::exception& error) override {
         const std::string complaint = complaint_of(error.what());
         if (const auto dialect = dialect_at(text_, position == 0 ? 0 : position - 1))
-            throw wrong_question(place_of(text_, dialect->byte), shown(dialect->word), dialect->rule);
+            throw input_error(place_of(text_, dialect->byte), shown(dialect->word), dialect->rule);
         if (complaint.find("invalid string") != std::string::npos) {
-            throw wrong_question(place_of(text_, position - 1), shown(token), "not JSON: " + complaint);
+            throw input_error(place_of(text_, position - 1), shown(token), "not JSON: " + complaint);
         }
         if (complaint.find("unexpected end of input") != std::string::npos) {
-            throw wrong_question(place_of(text_, text_.size()), "", "not JSON: " + complaint);
+            throw input_error(place_of(text_, text_.size()), "", "not JSON: " + complaint);
         }
         const auto [start, word] = word_at(text_, position == 0 ? 0 : position - 1);
         std::string rule = "not JSON: " + complaint;
         if (complaint.find("number overflow") != std::string::npos)
             rule = "a number must be finite in double precision";
         if (word == "NaN" || word.ends_with("Infinity")) rule = "JSON has no NaN and no Infinity";
-        throw wrong_question(place_of(text_, start), shown(word), rule);
+        throw input_error(place_of(text_, start), shown(word), rule);
     }
 
 private:
-    void refuse_twice() const override { throw wrong_question(here(), "", "this key is there twice; keep one"); }
+    void refuse_twice() const override { throw input_error(here(), "", "this key is there twice; keep one"); }
     void refuse_depth() const override {
-        throw wrong_question(here(), "", fmt::format("nested deeper than {} levels; a campaign needs 6", deepest));
+        throw input_error(here(), "", fmt::format("nested deeper than {} levels; a campaign needs 6", deepest));
     }
     [[nodiscard]] std::string here() const {
         std::string path = "$";
@@ -138,11 +138,11 @@ private:
 Json parse_json(std::string_view text) {
     constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-        throw wrong_question("line 1, column 1", "a UTF-16 byte-order mark", "the file must be UTF-8 text");
+        throw input_error("line 1, column 1", "a UTF-16 byte-order mark", "the file must be UTF-8 text");
     }
     if (text.starts_with(utf8_mark)) text.remove_prefix(utf8_mark.size());
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
-        throw wrong_question("line 1, column 1", "nothing", "a campaign file is one JSON object");
+        throw input_error("line 1, column 1", "nothing", "a campaign file is one JSON object");
     }
     CampaignJson builder(text);
     Json::sax_parse(text.begin(), text.end(), &builder);

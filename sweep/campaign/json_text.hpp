@@ -11,7 +11,7 @@ namespace grainsweep::campaign {
 
 using Json = nlohmann::json;
 
-/// Returns the document. Throws WrongQuestion at "line L, column C" if the text is no JSON, or at the JSON path of a
+/// Returns the document. Throws InputError at "line L, column C" if the text is no JSON, or at the JSON path of a
 /// repeated key, of a text with NUL, or of nesting deeper than 32. A UTF-8 byte-order mark is skipped.
 [[nodiscard]] Json parse_json(std::string_view text);
 

@@ -134,15 +134,14 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string&
     spec.time_step = input_number(inputs, "time_step");
     const double longest = machine::time_step_of(spec, 1, machine::fastest_of(spec));
     if (spec.time_step > longest)
-        throw wrong_question(
-            "time_step", fmt::format("{:.4g}", spec.time_step),
-            fmt::format("must be at most {:.4g} s, the shortest Rayleigh time or contact time of these "
-                        "particles",
-                        longest));
+        throw input_error("time_step", fmt::format("{:.4g}", spec.time_step),
+                          fmt::format("must be at most {:.4g} s, the shortest Rayleigh time or contact time of these "
+                                      "particles",
+                                      longest));
     if (!(spec.time_step > 0)) machine::take_own_step(spec, input_number(inputs, "time_step_fraction"), longest);
     for (std::size_t p = 0; p < spec.phases.size(); ++p)
         if (spec.phases[p].duration > most_steps * spec.time_step)
-            throw wrong_question(
+            throw input_error(
                 path_of(phases, p), fmt::format("{:.4g} s", spec.phases[p].duration),
                 fmt::format("a phase has at most {:.0e} time steps, here of {:.4g} s", most_steps, spec.time_step));
 }
@@ -166,17 +165,17 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     read_measures(top, reading);
     read_phases(top, reading);
     if (reading.spec.fills.empty() && reading.spec.feeds.empty())
-        throw wrong_question(top.place().path(), "", "a machine needs particles: \"fill\" or \"feed\"");
+        throw input_error(top.place().path(), "", "a machine needs particles: \"fill\" or \"feed\"");
     read_surroundings(top, reading);
     try {
         set_time_step(reading.spec, inputs, top.at("phases").path());
     } catch (const std::invalid_argument& why) {  // walls that cannot be in this domain
-        throw wrong_question(top.place().path(), "", why.what());
+        throw input_error(top.place().path(), "", why.what());
     }
     try {
         machine::require_out_of_walls(reading.spec);
     } catch (const std::invalid_argument& why) {
-        throw wrong_question(top.at("fill").path(), "", why.what());
+        throw input_error(top.at("fill").path(), "", why.what());
     }
     return std::move(reading.spec);
 }
@@ -185,7 +184,7 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
     auto machine = std::make_shared<Machine>();
     machine->document = std::make_shared<const Json>(std::move(document));
     if (machine->document->is_object() && machine->document->contains("campaign"))
-        throw wrong_question(root, "", "this is a campaign file, not a machine file; its key \"machine\" names one");
+        throw input_error(root, "", "this is a campaign file, not a machine file; its key \"machine\" names one");
     const Section top(Cursor(*machine->document, root), machine_keys::top());
     machine->name = top.at("name").text();
     require_name(top.at("name"), machine->name);
@@ -252,7 +251,7 @@ std::shared_ptr<const Machine> read_machine(const fs::path& file) {
     std::error_code error;
     const std::string text = files::whole_file(file, error, largest_machine_file);
     if (error)
-        throw wrong_question(file.string(), "", fmt::format("the machine file cannot be read: {}", error.message()));
+        throw input_error(file.string(), "", fmt::format("the machine file cannot be read: {}", error.message()));
     return asked_in(file, [&] { return make_machine(parse_json(text), "$", beside(file.parent_path())); });
 }
 
@@ -280,7 +279,7 @@ std::shared_ptr<const Machine> machine_in(std::string_view text, const FileReade
                        [&](const std::string& name) { return contents_of_hash(files.at(name).get<std::string>()); });
     } catch (const Json::exception& error) {
         throw std::invalid_argument(fmt::format("no definition of a machine: {}", error.what()));
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         throw std::invalid_argument(fmt::format("no definition of a machine: {}", wrong.what()));
     }
 }

@@ -40,7 +40,7 @@ struct Machine {
 /// Function that returns the contents of a file that the document names. Throws std::invalid_argument if there is none.
 using FileReader = std::function<std::string(const std::string& name)>;
 
-/// Reads and checks a machine completely, with its default parameters. Throws WrongQuestion with the path, beginning at
+/// Reads and checks a machine completely, with its default parameters. Throws InputError with the path, beginning at
 /// `root`.
 [[nodiscard]] std::shared_ptr<const Machine> make_machine(nlohmann::json document, std::string root,
                                                           const FileReader& read_file);
@@ -50,7 +50,7 @@ using FileReader = std::function<std::string(const std::string& name)>;
 [[nodiscard]] bool is_machine_document(const nlohmann::json& document);
 /// Reads a machine file and the files beside it.
 [[nodiscard]] std::shared_ptr<const Machine> read_machine(const std::filesystem::path& file);
-/// Returns the machine as numbers, for complete inputs and the contents of their files. Throws WrongQuestion.
+/// Returns the machine as numbers, for complete inputs and the contents of their files. Throws InputError.
 [[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs, const Files& files = {});
 
 /// Returns a description of machines in one line.

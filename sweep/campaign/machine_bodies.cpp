@@ -27,8 +27,8 @@ std::pair<std::size_t, std::size_t> materials_of_pair(const Cursor& place, const
     for (std::size_t a = 0; a < reading.materials.size(); ++a)
         for (std::size_t b = a; b < reading.materials.size(); ++b)
             pairs.push_back(reading.materials[a] + " " + reading.materials[b]);
-    throw wrong_question(place.path(), "", "a pair is named by two materials with a blank between them",
-                         nearest_word(name, pairs));
+    throw input_error(place.path(), "", "a pair is named by two materials with a blank between them",
+                      nearest_word(name, pairs));
 }
 
 /// Returns the default material of walls: the only material, or the only one without particles.
@@ -38,7 +38,7 @@ std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading)
         if (reading.materials.size() == 1 || std::ranges::find(reading.of_particles, m) == reading.of_particles.end())
             free.push_back(m);
     if (free.size() == 1) return free.front();
-    throw wrong_question(wall.path(), "", "key 'material' is missing: several materials could be meant");
+    throw input_error(wall.path(), "", "key 'material' is missing: several materials could be meant");
 }
 
 /// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes. Within it the
@@ -104,13 +104,13 @@ void read_contacts(const Section& top, MachineReading& reading) {
                 reading.scope.read(Section(*own[a][b], dem::contact_fields()), dem::contact_fields(), &contact);
             const bool linear = contact.normal_law == dem::NormalLaw::linear;
             if (linear != (contact.stiffness > 0))
-                throw wrong_question(top.find("contacts")->path(), "",
-                                     fmt::format("between {} and {}: {}", reading.materials[a], reading.materials[b],
-                                                 linear ? "key 'stiffness' is missing: the linear law needs it"
-                                                        : "'stiffness' belongs to \"normal_law\": \"linear\""));
+                throw input_error(top.find("contacts")->path(), "",
+                                  fmt::format("between {} and {}: {}", reading.materials[a], reading.materials[b],
+                                              linear ? "key 'stiffness' is missing: the linear law needs it"
+                                                     : "'stiffness' belongs to \"normal_law\": \"linear\""));
             if (contact.surface_tension > 0 && contact.cohesion_law != dem::CohesionLaw::capillary)
-                throw wrong_question(top.find("contacts")->path(), "",
-                                     "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
+                throw input_error(top.find("contacts")->path(), "",
+                                  "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
             contact.stiffness *= reading.stiffness_scale;
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;
@@ -170,8 +170,7 @@ geometry::Shape read_shape(const Section& wall, const MachineReading& reading) {
     if (stated + (stl ? 1 : 0) + (listed ? 1 : 0) != 1) {
         std::vector<std::string_view> words{"stl", "triangles"};
         for (const Type& t : types) words.push_back(t.name);
-        throw wrong_question(wall.place().path(), "",
-                             fmt::format("a wall has one shape: {}", in_words(WordList(words))));
+        throw input_error(wall.place().path(), "", fmt::format("a wall has one shape: {}", in_words(WordList(words))));
     }
     const Cursor place = stl ? *stl : listed ? *listed : wall.at(type->name);
     machine::StatedShape shape;

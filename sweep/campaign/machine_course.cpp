@@ -49,8 +49,7 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
     if (!unknown.empty()) {
         WordList known = probes;
         for (const Field& key : machine_keys::measure()) known.push_back(key.name);
-        throw wrong_question(path_of(place.path(), unknown), "", "there is no such probe",
-                             nearest_word(unknown, known));
+        throw input_error(path_of(place.path(), unknown), "", "there is no such probe", nearest_word(unknown, known));
     }
     if (found == nullptr)
         place.refuse(fmt::format("a measurement needs one of the {} probes, such as 'mass', 'profile' or 'wall_torque'",
@@ -97,7 +96,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
          place.members(fmt::format("must be an object with the options of '{}'", probe.name))) {
         const auto option = std::ranges::find(probe.options, key, &Field::name);
         if (option == probe.options.end())
-            throw wrong_question(
+            throw input_error(
                 here.path(), "",
                 fmt::format("'{}' has {}", probe.name, probe.options.empty() ? "no options" : in_words(known)),
                 nearest_word(key, known));
@@ -105,7 +104,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
     }
     for (const Field& option : probe.options)
         if (option.required && !options.has(option.name))
-            throw wrong_question(place.path(), "", fmt::format("key '{}' is missing: {}", option.name, option.meaning));
+            throw input_error(place.path(), "", fmt::format("key '{}' is missing: {}", option.name, option.meaning));
     if (probe.flaw != nullptr)
         if (const auto flaw = probe.flaw(options); !flaw.empty()) place.refuse(flaw);
     return options;
@@ -115,7 +114,7 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
 std::pair<double, bool> threshold_of(const Section& section, const MachineReading& reading, std::string_view unit) {
     const auto above = section.find("above"), below = section.find("below");
     if (above.has_value() == below.has_value())
-        throw wrong_question(section.place().path(), "", "it has one of \"above\" and \"below\"");
+        throw input_error(section.place().path(), "", "it has one of \"above\" and \"below\"");
     return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
 }
 
@@ -334,7 +333,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
             const bool named = feed.json().is_object() && feed.json().contains("name");
             const std::string name = named ? feed["name"].text() : "feed";
             if (!feeders.insert(name).second)
-                throw wrong_question(feed.path(), "", "several feeds need a \"name\" each", name + "_2");
+                throw input_error(feed.path(), "", "several feeds need a \"name\" each", name + "_2");
             all.push_back({name + "_fed", "kg", "mass fed", Shape::scalar, {}, "it is left out here"});
             all.push_back({name + "_waiting",
                            "kg",
@@ -363,9 +362,9 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
     std::set<std::string> names;
     for (const auto& observable : all)
         if (!names.insert(observable.name).second)
-            throw wrong_question(path_of(measures.path(), observable.name), "",
-                                 "every case has an observable of this name anyway; take another one",
-                                 observable.name + "_2");
+            throw input_error(path_of(measures.path(), observable.name), "",
+                              "every case has an observable of this name anyway; take another one",
+                              observable.name + "_2");
     return all;
 }
 

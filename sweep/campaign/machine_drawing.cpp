@@ -1,6 +1,6 @@
 #include "sweep/campaign/machine_drawing.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include "solver/machine/drawing.hpp"
 
@@ -19,7 +19,7 @@ void draw_machine(const Machine& machine, const Inputs& inputs, std::int64_t fra
             show(machine::drawing(spec, filled, time), time);
         }
     } catch (const std::invalid_argument& why) {
-        throw WrongQuestion(machine.name + ": " + why.what());
+        throw InputError(machine.name + ": " + why.what());
     }
 }
 

@@ -100,8 +100,7 @@ std::vector<Relevance> relevance_of(const Section& section, const std::vector<Pa
     for (const auto& [name, value] : conditions->members("must be an object of conditions by parameter")) {
         const auto other = std::ranges::find(parameters, name, &ParameterSpec::name);
         if (other == parameters.end())
-            throw wrong_question(value.path(), "", "there is no such parameter",
-                                 nearest_word(name, names_of(parameters)));
+            throw input_error(value.path(), "", "there is no such parameter", nearest_word(name, names_of(parameters)));
         const auto* words = std::get_if<Words>(&other->bounds);
         Relevance one{name, Relevance::Condition::is_word, {}};
         if (words != nullptr && words->file_allowed) {
@@ -204,7 +203,7 @@ void refuse_names_twice(const Cursor& place, const std::vector<ParameterSpec>& p
     for (const auto& parameter : parameters)
         for (const auto& name : names_in_expressions(parameter))
             if (const auto [owner, first] = owners.emplace(name, parameter.name); !first)
-                throw wrong_question(
+                throw input_error(
                     path_of(place.path(), place.json().contains(parameter.name) ? parameter.name : owner->second), "",
                     fmt::format("'{}' in expressions would be of '{}' and of '{}'; rename one", name, owner->second,
                                 parameter.name));
@@ -280,7 +279,7 @@ void require_name(const Cursor& place, std::string_view name) {
     const bool plain = !name.empty() && letter(name.front()) && name.size() <= longest_machine_name &&
                        std::ranges::all_of(name, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
     if (!plain)
-        throw wrong_question(
+        throw input_error(
             place.path(), name,
             fmt::format("a name is letters, digits and _, not a digit first, at most {}", longest_machine_name));
     if (name == notes_key) place.refuse("here are names, and 'notes' is none: put notes into the object around it");
@@ -299,12 +298,12 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
         require_name(here, name);
         if (name == "pi") here.refuse("'pi' is a number in expressions; take another name");
         if (std::ranges::find(common, name, &ParameterSpec::name) != common.end())
-            throw wrong_question(here.path(), "", "every machine has a parameter of this name; take another one");
+            throw input_error(here.path(), "", "every machine has a parameter of this name; take another one");
         std::string lower = name;
         std::ranges::transform(lower, lower.begin(),
                                [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (!folded.insert(lower).second)
-            throw wrong_question(here.path(), "", "two names that differ by case only are one name in SQL; rename one");
+            throw input_error(here.path(), "", "two names that differ by case only are one name in SQL; rename one");
         const Section section(here, machine_keys::parameter());
         const auto meaning = section.find("meaning");
         ParameterSpec spec{name, "1", meaning ? meaning->text() : name, 0.0, Interval{}, {}};

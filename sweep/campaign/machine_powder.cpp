@@ -25,7 +25,7 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     using particles::SizeDistribution;
     const auto& scope = reading.scope;
     const auto place = section.find("spread"), file = section.find("file");
-    if (!place && !file) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
+    if (!place && !file) throw input_error(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
     // If a parameter chooses, the values of all choices are beside it.
     const bool chosen = place && place->json().is_string() && place->text().find('{') != std::string::npos;
     const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Field::name)->words;
@@ -35,7 +35,7 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
         if (const auto given = section.find(key); given && spread != of && !chosen)
             given->refuse(fmt::format("it belongs to \"spread\": \"{}\"", of));
     if (spread == "file") {
-        if (!file) throw wrong_question(section.place().path(), "", "key 'file' is missing");
+        if (!file) throw input_error(section.place().path(), "", "key 'file' is missing");
         try {
             const auto table = particles::SizeTable::read(reading.contents(*file));
             if (!(diameter > 0)) diameter = SizeDistribution::table(table.over(1)).moment(1);
@@ -77,7 +77,7 @@ machine::Region feed_region(const Cursor& place, const MachineReading& reading, 
 machine::Mix read_mix(const Section& section, const MachineReading& reading) {
     const auto one = section.find("species"), several = section.find("mix");
     if (one.has_value() == several.has_value())
-        throw wrong_question(section.place().path(), "", "it has either a \"species\" or a \"mix\" of them");
+        throw input_error(section.place().path(), "", "it has either a \"species\" or a \"mix\" of them");
     if (one) return {{reading.scope.place_in(*one, reading.species, "species"), 1.0}};
     if (!several->json().is_object() || several->json().empty())
         several->refuse("must be an object of shares by species");
@@ -89,9 +89,9 @@ machine::Mix read_mix(const Section& section, const MachineReading& reading) {
         const Cursor place = (*several)[name];
         const auto found = std::ranges::find(reading.species, name);
         if (found == reading.species.end())
-            throw wrong_question(place.path(), "",
-                                 fmt::format("must be a species: {}", in_words(WordList(reading.species))),
-                                 nearest_word(name, reading.species));
+            throw input_error(place.path(), "",
+                              fmt::format("must be a species: {}", in_words(WordList(reading.species))),
+                              nearest_word(name, reading.species));
         const auto number = static_cast<std::size_t>(found - reading.species.begin());
         const Species& species = reading.spec.species[number];
         double share = reading.scope.number(place, "1", no_negative_number);
@@ -114,7 +114,7 @@ std::int64_t count_of(const Section& section, const MachineReading& reading, con
     }
     const auto given = [&](const char* key) { return static_cast<int>(section.find(key).has_value()); };
     if (given("count") + given("mass") + given("volume") != 1)
-        throw wrong_question(section.place().path(), "", "a filling has one of \"count\", \"mass\" and \"volume\"");
+        throw input_error(section.place().path(), "", "a filling has one of \"count\", \"mass\" and \"volume\"");
     const char* key = given("count") != 0 ? "count" : given("mass") != 0 ? "mass" : "volume";
     const char* unit = given("count") != 0 ? "1" : given("mass") != 0 ? "kg" : "m3";
     const double one = given("count") != 0 ? 1 : given("mass") != 0 ? mass : volume;
@@ -182,7 +182,7 @@ void read_species(const Section& top, MachineReading& reading) {
         const auto named = section.find("material");
         const auto has_density = [](double density) { return density > 0; };
         if (!named && reading.materials.size() > 1 && std::ranges::count_if(reading.densities, has_density) != 1)
-            throw wrong_question(place.path(), "", "key 'material' is missing: there are several materials");
+            throw input_error(place.path(), "", "key 'material' is missing: there are several materials");
         const std::size_t material =
             named ? reading.scope.place_in(*named, reading.materials, "material")
             : reading.materials.size() == 1
@@ -190,12 +190,12 @@ void read_species(const Section& top, MachineReading& reading) {
                 : static_cast<std::size_t>(std::ranges::find_if(reading.densities, has_density) -
                                            reading.densities.begin());
         if (!(reading.densities[material] > 0))
-            throw wrong_question(path_of(top.at("materials").path(), reading.materials[material]), "",
-                                 fmt::format("key 'density' is missing: particles of '{}' are of it", name));
+            throw input_error(path_of(top.at("materials").path(), reading.materials[material]), "",
+                              fmt::format("key 'density' is missing: particles of '{}' are of it", name));
         auto at = std::ranges::find(reading.of_particles, material);
         if (at == reading.of_particles.end()) {
-            if (reading.of_particles.size() == dem::kinds_at_most)
-                place.refuse(fmt::format("particles are of at most {} materials", dem::kinds_at_most));
+            if (reading.of_particles.size() == dem::materials_at_most)
+                place.refuse(fmt::format("particles are of at most {} materials", dem::materials_at_most));
             reading.of_particles.push_back(material);
             spec.materials.push_back(reading.materials[material]);
             spec.densities.push_back(reading.densities[material]);
@@ -207,7 +207,7 @@ void read_species(const Section& top, MachineReading& reading) {
         species.diameter = reading.scope.number(section, "diameter", "m", 0, {1e-7, 10});
         if (const auto sizes = section.find("sizes"))
             species.sizes = sizes_of(Section(*sizes, machine_keys::sizes()), reading, species.diameter);
-        if (!(species.diameter > 0)) throw wrong_question(place.path(), "", "key 'diameter' is missing");
+        if (!(species.diameter > 0)) throw input_error(place.path(), "", "key 'diameter' is missing");
         species.diameter *= reading.particles_scale;
         reading.species.push_back(name);
         spec.species.push_back(std::move(species));
@@ -226,7 +226,7 @@ void read_fills(const Section& top, MachineReading& reading) {
         if (const auto spheres = section.find("spheres")) {
             for (const char* key : {"mix", "by", "count", "mass", "volume", "in", "as", "velocity", "shaken"})
                 if (const auto too = section.find(key)) too->refuse("beside \"spheres\" it has no effect");
-            if (!section.find("species")) throw wrong_question(place.path(), "", "key 'species' is missing");
+            if (!section.find("species")) throw input_error(place.path(), "", "key 'species' is missing");
             const bool glued = section.flag("glued", false);
             const std::size_t species = reading.scope.place_in(section.at("species"), reading.species, "species");
             std::vector<machine::Placed> placed;
@@ -243,7 +243,7 @@ void read_fills(const Section& top, MachineReading& reading) {
         machine::Fill fill;
         fill.mix = read_mix(section, reading);
         fill.count = count_of(section, reading, fill.mix);
-        if (!section.find("in")) throw wrong_question(place.path(), "", "key 'in' is missing: the region they lie in");
+        if (!section.find("in")) throw input_error(place.path(), "", "key 'in' is missing: the region they lie in");
         reading.scope.read(section, machine_keys::fill(), &fill);
         reading.spec.fills.emplace_back(std::move(fill));
     }
@@ -280,8 +280,8 @@ void read_feeds(const Section& top, MachineReading& reading) {
                 depth = std::min(depth, (bounds.high[k] - bounds.low[k]) * speed / std::abs(feed.velocity[k]));
         const auto every = section.find("every");
         if (!every && !(speed > 0))
-            throw wrong_question(place.path(), "",
-                                 "a feed needs a \"velocity\", or \"every\": the time from batch to batch");
+            throw input_error(place.path(), "",
+                              "a feed needs a \"velocity\", or \"every\": the time from batch to batch");
         feed.interval = every ? reading.scope.number(*every, "s", positive_number) : depth / speed;
         feed.during = read_during(section, reading);
         reading.spec.feeds.push_back(std::move(feed));

@@ -1,7 +1,7 @@
 // The scenes of machines, as far as this process has met them.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_parameters.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include "solver/machine/plan.hpp"
 #include "solver/machine/run.hpp"
@@ -31,7 +31,7 @@ Machines& machines() {
 machine::Spec possible_spec(const Machine& machine, const Inputs& inputs, const Files& files) {
     try {
         return machine_spec(machine, inputs, files);
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         throw std::invalid_argument(wrong.what());
     }
 }

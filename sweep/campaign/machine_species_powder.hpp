@@ -10,7 +10,7 @@
 namespace grainsweep::campaign {
 
 /// Returns the machine with the powders of its species expanded; values that the machine gives itself have priority.
-/// Adds the sizes to `made`, under their names in the returned document. Throws WrongQuestion.
+/// Adds the sizes to `made`, under their names in the returned document. Throws InputError.
 [[nodiscard]] Json with_powders(Json document, const std::string& root, const FileReader& read,
                                 std::map<std::string, std::string, std::less<>>& made);
 

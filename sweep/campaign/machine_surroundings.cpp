@@ -53,7 +53,7 @@ void read_surroundings(const Section& top, MachineReading& reading) {
                     spec, {low[0].has_value() && high[0].has_value(), low[1].has_value() && high[1].has_value(),
                            low[2].has_value() && high[2].has_value()});
             } catch (const std::invalid_argument& why) {
-                throw wrong_question(place ? place->path() : top.place().path(), "", why.what());
+                throw input_error(place ? place->path() : top.place().path(), "", why.what());
             }
             break;
         }
@@ -75,7 +75,7 @@ void read_checks(const Section& top, MachineReading& reading) {
             place.refuse("a check has \"refuse\", or \"warn\" and \"that\"");
         const bool holds = reading.scope.present(section);
         const std::string sentence = reading.scope.sentence(refuse ? *refuse : *that);
-        if (holds && refuse) throw WrongQuestion(sentence + (sentence.ends_with('.') ? "" : "."));
+        if (holds && refuse) throw InputError(sentence + (sentence.ends_with('.') ? "" : "."));
         if (holds) reading.spec.warnings.push_back({warn->text(), sentence});
     }
 }

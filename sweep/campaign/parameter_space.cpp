@@ -1,9 +1,9 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/step.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <algorithm>
 #include <cassert>

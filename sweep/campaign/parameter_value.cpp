@@ -1,8 +1,8 @@
 // One value of one parameter: its type, its bounds, its words, its file.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>

@@ -127,8 +127,7 @@ Powder powder_of(std::string text, const std::string& name,
 Powder read_powder(const fs::path& file) {
     std::error_code error;
     std::string text = files::whole_file(file, error, largest_powder_file);
-    if (error)
-        throw wrong_question(file.string(), "", fmt::format("the powder file cannot be read: {}", error.message()));
+    if (error) throw input_error(file.string(), "", fmt::format("the powder file cannot be read: {}", error.message()));
     return asked_in(file, [&] {
         const fs::path folder = fs::absolute(file).parent_path();
         Powder powder = powder_of(std::move(text), file.filename().string(), beside(folder));

@@ -45,11 +45,11 @@ struct Powder {
 
 /// Returns the parameter of the scenes for a key of "material" or "contacts".
 [[nodiscard]] const ParameterSpec& powder_parameter(std::string_view name);
-/// Reads and checks the text of a powder file; `read` returns the contents of its files. Throws WrongQuestion with the
+/// Reads and checks the text of a powder file; `read` returns the contents of its files. Throws InputError with the
 /// path and the rule.
 [[nodiscard]] Powder powder_of(std::string text, const std::string& name,
                                const std::function<std::string(const std::string&)>& read);
-/// Reads and checks a powder file and the files beside it that it names. Throws WrongQuestion with the file, the path
+/// Reads and checks a powder file and the files beside it that it names. Throws InputError with the file, the path
 /// and the rule.
 [[nodiscard]] Powder read_powder(const std::filesystem::path& file);
 
@@ -61,7 +61,7 @@ struct PowderUse {
     [[nodiscard]] std::string sentence() const;
 };
 /// Fixes the parameters that the powder has and the space does not set. A scene without a size file gets only the
-/// diameter. Throws WrongQuestion if a value is invalid in the scene.
+/// diameter. Throws InputError if a value is invalid in the scene.
 [[nodiscard]] PowderUse apply_powder(const Powder& powder, ParameterSpace& space);
 
 /// Derived numbers of a powder: cohesion under gravity, and cost.

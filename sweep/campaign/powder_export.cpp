@@ -2,8 +2,8 @@
 #include "sweep/campaign/powder_export.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/quantity.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -30,20 +30,20 @@ struct Curve {
 };
 
 [[noreturn]] void refuse_export(const std::string& why) {
-    throw wrong_question("EXPORT", "", why);
+    throw input_error("EXPORT", "", why);
 }
 
 void require_choice(const std::optional<std::string>& choice, std::string_view option,
                     std::span<const std::string_view> words) {
     if (choice && std::ranges::find(words, *choice) == words.end())
-        throw wrong_question(option, *choice, fmt::format("must be one of {}", listed(words)),
-                             nearest_word(*choice, words));
+        throw input_error(option, *choice, fmt::format("must be one of {}", listed(words)),
+                          nearest_word(*choice, words));
 }
 
 double metres(const std::string& text, std::string_view option) {
     const auto value = in_si(text, "m");
-    if (const auto* why = std::get_if<std::string>(&value)) throw wrong_question(option, text, *why);
-    if (!(std::get<double>(value) > 0)) throw wrong_question(option, text, "must be a size above 0");
+    if (const auto* why = std::get_if<std::string>(&value)) throw input_error(option, text, *why);
+    if (!(std::get<double>(value) > 0)) throw input_error(option, text, "must be a size above 0");
     return std::get<double>(value);
 }
 
@@ -247,8 +247,8 @@ void end_curve(Curve& curve, const ExportChoices& choices, std::vector<std::stri
     if (choices.smallest) {
         const double smallest = metres(*choices.smallest, "--smallest");
         if (!(smallest < curve.sizes.front()))
-            throw wrong_question("--smallest", *choices.smallest,
-                                 fmt::format("must be below the first size, {:.4g} m", curve.sizes.front()));
+            throw input_error("--smallest", *choices.smallest,
+                              fmt::format("must be below the first size, {:.4g} m", curve.sizes.front()));
         curve.sizes.insert(curve.sizes.begin(), smallest);
         curve.below.insert(curve.below.begin(), 0);
     } else if (curve.below.front() > small_rest) {
@@ -261,8 +261,8 @@ void end_curve(Curve& curve, const ExportChoices& choices, std::vector<std::stri
     if (choices.largest) {
         const double largest = metres(*choices.largest, "--largest");
         if (!(largest > curve.sizes.back()))
-            throw wrong_question("--largest", *choices.largest,
-                                 fmt::format("must be above the last size, {:.4g} m", curve.sizes.back()));
+            throw input_error("--largest", *choices.largest,
+                              fmt::format("must be above the last size, {:.4g} m", curve.sizes.back()));
         curve.sizes.push_back(largest);
         curve.below.push_back(1);
     } else if (above > small_rest) {
@@ -330,7 +330,7 @@ ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices)
     std::string as_from, edge;
     const std::string as = kind_of_shares(entries, columns, choices, as_from);
     if (choices.edge && as != "each")
-        throw wrong_question("--edge", *choices.edge, fmt::format("has no effect: the shares are '{}' a size", as));
+        throw input_error("--edge", *choices.edge, fmt::format("has no effect: the shares are '{}' a size", as));
     const auto by = choices.by ? choices.by : columns.by;
     if (!by)
         refuse_export(

@@ -40,7 +40,7 @@ struct ImportedSizes {
     std::vector<std::string> notes;                          ///< changes made by the import
 };
 
-/// Imports an export. Throws WrongQuestion with one sentence, which names the option for missing information. Shares
+/// Imports an export. Throws InputError with one sentence, which names the option for missing information. Shares
 /// that end within 1 % of their whole are normalised, and up to 1 % without a size at an end is left out; both add a
 /// note.
 [[nodiscard]] ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices);
@@ -63,7 +63,7 @@ struct ExportGrid {
     std::string around;                          ///< all other lines, in small letters, "um" for a micro sign
 };
 
-/// Finds the longest block of lines with the same number of numeric cells. Throws WrongQuestion if there is none.
+/// Finds the longest block of lines with the same number of numeric cells. Throws InputError if there is none.
 [[nodiscard]] ExportGrid export_grid(std::string_view bytes);
 /// Returns the text in small letters, with "um" for a micro sign and "ss", "ae", "oe", "ue" for German letters.
 [[nodiscard]] std::string plain_words(std::string_view text);

@@ -3,7 +3,7 @@
 
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/cursor.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -104,7 +104,7 @@ std::size_t chosen_column(const ExportGrid& grid, std::string_view option, const
         all.push_back(j);
         if (grid.headers[j] == word || std::to_string(j + 1) == word) return j;
     }
-    throw wrong_question(option, word, fmt::format("must be a column of the table: {}", column_list(grid, all)));
+    throw input_error(option, word, fmt::format("must be a column of the table: {}", column_list(grid, all)));
 }
 
 bool is_filled(const ExportGrid& grid, std::size_t column) {
@@ -132,9 +132,9 @@ std::size_t size_column(const ExportGrid& grid, const std::vector<Heading>& head
     if (sizes.empty() && unnamed && grid.headers.size() == 2) return 0;
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j) all.push_back(j);
-    throw wrong_question("EXPORT", "",
-                         fmt::format("which column holds the sizes is not clear: state it by --sizes, of {}",
-                                     column_list(grid, sizes.empty() ? all : sizes)));
+    throw input_error("EXPORT", "",
+                      fmt::format("which column holds the sizes is not clear: state it by --sizes, of {}",
+                                  column_list(grid, sizes.empty() ? all : sizes)));
 }
 
 std::size_t share_column(const ExportGrid& grid, const std::vector<Heading>& headings, const ExportChoices& choices,
@@ -159,15 +159,15 @@ std::size_t share_column(const ExportGrid& grid, const std::vector<Heading>& hea
     }
     if (shares.size() == 1) return shares.front();
     if (shares.empty() && !unused.empty())
-        throw wrong_question("EXPORT", "",
-                             fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
-                                         column_list(grid, unused)));
+        throw input_error("EXPORT", "",
+                          fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
+                                      column_list(grid, unused)));
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j)
         if (j != found.size && is_filled(grid, j)) all.push_back(j);
-    throw wrong_question("EXPORT", "",
-                         fmt::format("which column holds the shares is not clear: state it by --shares, of {}",
-                                     column_list(grid, shares.empty() ? all : shares)));
+    throw input_error("EXPORT", "",
+                      fmt::format("which column holds the shares is not clear: state it by --shares, of {}",
+                                  column_list(grid, shares.empty() ? all : shares)));
 }
 
 void find_unit(const ExportGrid& grid, const ExportChoices& choices, ExportColumns& columns) {
@@ -196,7 +196,7 @@ void find_unit(const ExportGrid& grid, const ExportChoices& choices, ExportColum
         columns.unit = named.front(), columns.unit_from = "the lines around the table";
         return;
     }
-    throw wrong_question(
+    throw input_error(
         "EXPORT", "",
         fmt::format("the unit of the sizes in column {} is not stated: give it by --unit, as in --unit um",
                     columns.size + 1));
@@ -227,7 +227,7 @@ ExportColumns export_columns(const ExportGrid& grid, const ExportChoices& choice
     columns.size = size_column(grid, headings, choices, columns.upper);
     columns.share = share_column(grid, headings, choices, columns);
     if (columns.size == columns.share)
-        throw wrong_question("--shares", grid.headers[columns.share], "is the column of the sizes");
+        throw input_error("--shares", grid.headers[columns.share], "is the column of the sizes");
     find_unit(grid, choices, columns);
     const auto& heading = headings[columns.share];
     columns.as = heading.as;

@@ -2,7 +2,7 @@
 #include "sweep/campaign/powder_export.hpp"
 
 #include "solver/plain_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -180,7 +180,7 @@ Block block_of(const Lines& lines) {
         if (block.numbers > best.numbers) best = block;
     }
     if (best.rows < 2)
-        throw wrong_question("EXPORT", "", "no table of sizes and shares is in it: two or more lines of numbers");
+        throw input_error("EXPORT", "", "no table of sizes and shares is in it: two or more lines of numbers");
     return best;
 }
 

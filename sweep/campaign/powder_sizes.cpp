@@ -20,11 +20,11 @@ using particles::SizeTable;
 std::string of_three(const Section& sizes, bool by_volume) {
     for (const char* key : {"d10", "d50", "d90"})
         if (!sizes.find(key))
-            throw wrong_question(sizes.place().path(), "",
-                                 fmt::format("key '{}' is missing: d10, d50 and d90 belong together", key));
+            throw input_error(sizes.place().path(), "",
+                              fmt::format("key '{}' is missing: d10, d50 and d90 belong together", key));
     const double d10 = powder_number(sizes.at("d10"), "m"), d50 = powder_number(sizes.at("d50"), "m"),
                  d90 = powder_number(sizes.at("d90"), "m");
-    if (!(d10 < d50 && d50 < d90)) throw wrong_question(sizes.place().path(), "", "d10, d50 and d90 must rise");
+    if (!(d10 < d50 && d50 < d90)) throw input_error(sizes.place().path(), "", "d10, d50 and d90 must rise");
     return particles::lognormal_table(d50, particles::half_spread(d50, d10), particles::half_spread(d50, d90),
                                       by_volume);
 }
@@ -32,7 +32,7 @@ std::string of_three(const Section& sizes, bool by_volume) {
 std::string of_lognormal(const Section& law, bool by_volume) {
     const auto sigma = law.find("sigma"), ratio = law.find("ratio");
     if (sigma.has_value() == ratio.has_value())
-        throw wrong_question(law.place().path(), "", "a lognormal distribution has either \"sigma\" or \"ratio\"");
+        throw input_error(law.place().path(), "", "a lognormal distribution has either \"sigma\" or \"ratio\"");
     const double median = powder_number(law.at("median"), "m");
     const double spread = sigma ? powder_number(*sigma, "1") : std::log(powder_number(*ratio, "1"));
     if (!(spread > 0 && spread <= 2))
@@ -67,10 +67,10 @@ std::string csv_of(const Section& sizes, const std::function<std::string(const s
 
 SizeTable cut_table(const SizeTable& table, const Section& cut, PowderSizes& into) {
     const auto below = cut.find("below"), above = cut.find("above");
-    if (!below && !above) throw wrong_question(cut.place().path(), "", "a cut has \"below\", \"above\" or both");
+    if (!below && !above) throw input_error(cut.place().path(), "", "a cut has \"below\", \"above\" or both");
     const double low = below ? powder_number(*below, "m") : 0;
     const double high = above ? powder_number(*above, "m") : 2 * table.largest();
-    if (!(low < high)) throw wrong_question(cut.place().path(), "", "\"below\" must be less than \"above\"");
+    if (!(low < high)) throw input_error(cut.place().path(), "", "\"below\" must be less than \"above\"");
     into.cut_below = table.share_below(std::nextafter(low, 0.0), 3);
     into.cut_above = 1 - table.share_below(high, 3);
     try {
@@ -102,9 +102,9 @@ void read_powder_sizes(const Section& top, const std::function<std::string(const
     const auto given = [&](const char* key) { return sizes.find(key) ? 1 : 0; };
     const bool three = given("d10") + given("d50") + given("d90") > 0;
     if (given("file") + given("diameter") + given("lognormal") + given("rosin_rammler") + (three ? 1 : 0) != 1)
-        throw wrong_question(place->path(), "",
-                             "sizes are given by one of \"file\", \"diameter\", \"d10\" with \"d50\" and \"d90\", "
-                             "\"lognormal\" and \"rosin_rammler\"");
+        throw input_error(place->path(), "",
+                          "sizes are given by one of \"file\", \"diameter\", \"d10\" with \"d50\" and \"d90\", "
+                          "\"lognormal\" and \"rosin_rammler\"");
     if (const auto diameter = sizes.find("diameter")) {
         if (cut) cut->refuse("all particles are equal: there is nothing to cut");
         powder.diameter = powder_number(*diameter, "m");

@@ -1,6 +1,6 @@
 #include "sweep/campaign/program_changes.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -156,7 +156,7 @@ void refuse_changed_program(const std::string& campaign, const std::string& data
         : first.now.empty()
             ? fmt::format("{} is gone since '{}', where it was {}", subject, database, first.before)
             : fmt::format("{} changed since '{}' ({} -> {})", subject, database, first.before, first.now);
-    throw wrong_question(
+    throw input_error(
         first.place, "",
         fmt::format("{}{}: give the campaign a new name, which computes every case, or {}", change, others,
                     adoptable ? fmt::format("a new name and --adopt {}, which takes over its results, if the change "

@@ -1,9 +1,9 @@
 // "observables" of a program: measured quantities, and the places of their values in the output.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/quantity.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -22,13 +22,12 @@ std::string kind_of(const Section& from) {
     for (const char* one : {"json", "csv", "output"}) {
         if (!from.find(one)) continue;
         if (!kind.empty())
-            throw wrong_question(from.place().path(), fmt::format("{} and {}", kind, one),
-                                 "a value is found in one place: \"json\", \"csv\" or \"output\"");
+            throw input_error(from.place().path(), fmt::format("{} and {}", kind, one),
+                              "a value is found in one place: \"json\", \"csv\" or \"output\"");
         kind = one;
     }
     if (kind.empty())
-        throw wrong_question(from.place().path(), "",
-                             "needs \"json\", \"csv\" or \"output\": where the value is found");
+        throw input_error(from.place().path(), "", "needs \"json\", \"csv\" or \"output\": where the value is found");
     return kind;
 }
 
@@ -61,7 +60,7 @@ std::int64_t read_row(const Section& from) {
 
 std::string required(const Section& from, std::string_view key, std::string_view kind) {
     const auto place = from.find(key);
-    if (!place) throw wrong_question(from.place().path(), "", fmt::format("\"{}\" needs \"{}\"", kind, key));
+    if (!place) throw input_error(from.place().path(), "", fmt::format("\"{}\" needs \"{}\"", kind, key));
     return place->text();
 }
 
@@ -100,9 +99,9 @@ ProgramObservable read_output(const std::string& name, const Section& section, P
     const auto from = section.find("from");
     const bool files = protocol == Program::Protocol::files;
     if (files != from.has_value())
-        throw wrong_question(section.place().path(), "",
-                             files ? "key 'from' is missing: where its value is found"
-                                   : "with the protocol \"lines\" a value comes in the reply and has no \"from\"");
+        throw input_error(section.place().path(), "",
+                          files ? "key 'from' is missing: where its value is found"
+                                : "with the protocol \"lines\" a value comes in the reply and has no \"from\"");
     bool over = false;
     if (files) {
         observable.from = read_from(Section(*from, program_from_keys()));

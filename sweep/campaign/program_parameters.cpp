@@ -1,11 +1,11 @@
 // Parameters of a program: the factors and fixed values of its campaign, and the section "parameters".
 #include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -248,20 +248,20 @@ void read_notes(const std::string& name, const Cursor& here, const Given& given,
 
 void check_program_name(const Cursor& place, const std::string& name) {
     if (!is_plain_name(name) || name.size() > longest_plain_name)
-        throw wrong_question(place.path(), name,
-                             fmt::format("a name is letters, digits and _, not a digit first, at most {}: it names a "
-                                         "column in SQL",
-                                         longest_plain_name));
+        throw input_error(place.path(), name,
+                          fmt::format("a name is letters, digits and _, not a digit first, at most {}: it names a "
+                                      "column in SQL",
+                                      longest_plain_name));
     if (std::ranges::find(names_of_the_case, name) != names_of_the_case.end())
-        throw wrong_question(place.path(), name, "is the program's name for something else; take another");
+        throw input_error(place.path(), name, "is the program's name for something else; take another");
 }
 
 void check_name_in_sql(const Cursor& place, const std::string& name, const std::vector<std::string>& others) {
     const auto folded = [](unsigned char c) { return std::tolower(c); };
     for (const std::string& other : others)
         if (other != name && std::ranges::equal(other, name, {}, folded, folded))
-            throw wrong_question(place.path(), name,
-                                 fmt::format("{} and {} are one name in SQL; rename one", other, name));
+            throw input_error(place.path(), name,
+                              fmt::format("{} and {} are one name in SQL; rename one", other, name));
 }
 
 std::vector<ProgramParameter> read_program_parameters(const Section& top, const Section& section) {
@@ -272,8 +272,8 @@ std::vector<ProgramParameter> read_program_parameters(const Section& top, const 
     for (const auto& [name, here] : all->members("must be an object of names and what is known of each")) {
         const auto found = std::ranges::find(parameters, name, &ProgramParameter::name);
         if (found == parameters.end())
-            throw wrong_question(here.path(), "", "is neither a factor nor a fixed value",
-                                 nearest_word(name, names_of(parameters)));
+            throw input_error(here.path(), "", "is neither a factor nor a fixed value",
+                              nearest_word(name, names_of(parameters)));
         read_notes(name, here, given, *found);
     }
     return parameters;

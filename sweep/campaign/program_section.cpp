@@ -2,9 +2,9 @@
 
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program_keys.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -80,17 +80,17 @@ private:
         const auto form = NumberFormat::parse(format);
         if (!format.empty() && !form && !is_known) return std::nullopt;  // braces of the command's own
         if (!is_known)
-            throw wrong_question(place.path(), name,
-                                 fmt::format("is neither a factor nor a fixed value{}; it may be {}",
-                                             lines_ ? " that is known when the program starts" : "", in_words(known_)),
-                                 nearest_word(name, known_));
+            throw input_error(place.path(), name,
+                              fmt::format("is neither a factor nor a fixed value{}; it may be {}",
+                                          lines_ ? " that is known when the program starts" : "", in_words(known_)),
+                              nearest_word(name, known_));
         if (!format.empty()) check_format(place, name, format, form);
         return std::string();
     }
     void check_format(const Cursor& place, std::string_view name, std::string_view format,
                       const std::optional<NumberFormat>& form) const {
         const auto refuse = [&](std::string_view why) {
-            throw wrong_question(place.path(), fmt::format("{{{}:{}}}", name, format), why);
+            throw input_error(place.path(), fmt::format("{{{}:{}}}", name, format), why);
         };
         if (!form) refuse("is no format of a number: %.3e, %8.4f, %g, %d");
         const auto parameter = std::ranges::find(parameters_, name, &ProgramParameter::name);
@@ -154,8 +154,8 @@ void check_command_word(const Section& section, const Program& program) {
 std::shared_ptr<const Program> read_program(const Section& top, const std::filesystem::path& folder) {
     const auto place = top.find("program");
     if (!place)
-        throw wrong_question(top.place().path(), "",
-                             "key 'program' is missing: the command that answers a case (grainsweep scenes program)");
+        throw input_error(top.place().path(), "",
+                          "key 'program' is missing: the command that answers a case (grainsweep scenes program)");
     const Section section(*place, program_keys());
     auto program = std::make_shared<Program>();
     program->command = section.words("command", {});

@@ -1,6 +1,6 @@
 #include "sweep/campaign/quantity.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/files/beside_program.hpp"
 
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/campaign_files.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/powder.hpp"
@@ -9,7 +10,6 @@
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -62,8 +62,8 @@ std::vector<std::string> json_files_beside(const fs::path& file) {
 std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& folder) {
     const auto place = top.find("machine");
     if (!place)
-        throw wrong_question("$", "",
-                             "key 'machine' is missing: with \"scene\": \"machine\" a machine file or its object");
+        throw input_error("$", "",
+                          "key 'machine' is missing: with \"scene\": \"machine\" a machine file or its object");
     if (!place->json().is_string()) return make_machine(place->json(), place->path(), beside(folder));
     const fs::path file = folder / place->text();
     std::error_code none;
@@ -107,8 +107,8 @@ void check_relevance(const Section& top, const ParameterSpace& space, std::size_
     for (std::size_t j = 0; j < space.factors.size(); ++j) {
         const auto* parameter = space.scene->find_parameter(space.factors[j].name);
         if (const auto reason = no_effect(space, *parameter)) {
-            throw wrong_question(j < declared ? path_of(top.at("factors").path(), j) : "$.calibration.targets", "",
-                                 *reason);
+            throw input_error(j < declared ? path_of(top.at("factors").path(), j) : "$.calibration.targets", "",
+                              *reason);
         }
     }
     for (const auto& [name, value] : given) {
@@ -121,14 +121,14 @@ std::string read_text(const fs::path& file) {
     std::error_code error;
     const std::string shown_name = file.string();
     if (!fs::exists(file, error)) {
-        throw wrong_question(shown_name, "", "there is no such campaign file",
-                             nearest_word(file.filename().string(), json_files_beside(file)));
+        throw input_error(shown_name, "", "there is no such campaign file",
+                          nearest_word(file.filename().string(), json_files_beside(file)));
     }
-    if (fs::is_directory(file, error)) throw wrong_question(shown_name, "", "is a folder, not a campaign file");
+    if (fs::is_directory(file, error)) throw input_error(shown_name, "", "is a folder, not a campaign file");
     std::string text = files::whole_file(file, error, largest_text);
     if (error == std::errc::file_too_large)
-        throw wrong_question(shown_name, "", "a campaign file has at most 64 MiB; give long lists as a CSV file");
-    if (error) throw wrong_question(shown_name, "", fmt::format("the file cannot be read: {}", error.message()));
+        throw input_error(shown_name, "", "a campaign file has at most 64 MiB; give long lists as a CSV file");
+    if (error) throw input_error(shown_name, "", fmt::format("the file cannot be read: {}", error.message()));
     return text;
 }
 
@@ -145,17 +145,15 @@ SharedScene read_scene(const Section& top, const fs::path& folder) {
     if (word == program_word) return enter_program(read_program(top, folder));
     if (word == machine_word) return enter_machine(machine_of(top, folder));
     if (const auto machine = top.find("machine"))
-        throw wrong_question(machine->path(), "",
-                             fmt::format("belongs to \"scene\": \"machine\", and this is {}", word));
+        throw input_error(machine->path(), "", fmt::format("belongs to \"scene\": \"machine\", and this is {}", word));
     if (const auto program = top.find("program"))
-        throw wrong_question(program->path(), "",
-                             fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
+        throw input_error(program->path(), "", fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
     return scene_named(word);
 }
 
 Campaign campaign_in(const Json& document, const fs::path& folder) {
     const Section top(Cursor(document, "$"), campaign_keys());
-    if (!top.find("scene")) throw wrong_question("$", "", "key 'scene' is missing: the experiment every case runs");
+    if (!top.find("scene")) throw input_error("$", "", "key 'scene' is missing: the experiment every case runs");
     Campaign campaign;
     campaign.name = read_name(top.at("campaign"));
     campaign.space.scene = read_scene(top, folder);
@@ -172,10 +170,10 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     const std::size_t declared = space.factors.size();
     const auto calibration = top.find("calibration");
     if (calibration.has_value() == top.find("design").has_value()) {
-        throw wrong_question("$", calibration ? "both" : "",
-                             calibration ? "a campaign has either a \"design\" or a \"calibration\""
-                                         : "key 'design' is missing: which points of the factor space are asked (or "
-                                           "'calibration': what was measured)");
+        throw input_error("$", calibration ? "both" : "",
+                          calibration ? "a campaign has either a \"design\" or a \"calibration\""
+                                      : "key 'design' is missing: which points of the factor space are asked (or "
+                                        "'calibration': what was measured)");
     }
     if (calibration) read_calibration(*calibration, campaign, folder);
     const Inputs given = fixed_as_stated(space);
@@ -210,17 +208,17 @@ Powder powder_beside(const Cursor& place, const fs::path& folder) {
 }
 
 Campaign parse_campaign(std::string_view text, const fs::path& folder, std::string_view experiment) {
-    if (text.size() > largest_text) throw wrong_question("", "", "a campaign file has at most 64 MiB");
+    if (text.size() > largest_text) throw input_error("", "", "a campaign file has at most 64 MiB");
     const Json document = parse_json(text);
     if (is_machine_document(document))
-        throw wrong_question("$", "",
-                             "this is a machine file; a campaign file names it, with \"scene\": \"machine\" and "
-                             "\"machine\": the name of this file");
+        throw input_error("$", "",
+                          "this is a machine file; a campaign file names it, with \"scene\": \"machine\" and "
+                          "\"machine\": the name of this file");
     const auto names = experiment_names(document);
     const auto found = std::ranges::find(names, experiment);
     if (found == names.end() && !names.empty())
-        throw wrong_question("$.calibration.experiments", "",
-                             "the commands plan, run and calibrate take several experiments; this one takes one");
+        throw input_error("$.calibration.experiments", "",
+                          "the commands plan, run and calibrate take several experiments; this one takes one");
     auto campaign =
         names.empty() ? campaign_in(document, folder)
                       : std::move(read_experiments(document, folder)[static_cast<std::size_t>(found - names.begin())]);

@@ -10,7 +10,7 @@
 
 namespace grainsweep::campaign {
 
-/// Reads and checks a campaign file. Throws WrongQuestion with the file, the JSON path, the value, the rule and the
+/// Reads and checks a campaign file. Throws InputError with the file, the JSON path, the value, the rule and the
 /// nearest valid word. Files that it names (a packing, listed rows) lie beside it. For a calibration with several
 /// experiments `experiment` chooses the campaign; it is empty for every other file.
 [[nodiscard]] Campaign read_campaign(const std::filesystem::path& file, std::string_view experiment = {});

@@ -1,9 +1,9 @@
 // Listed rows from CSV (RFC 4180): a header that names the factors in any order, then one point a line.
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // "sample": columns of a CSV file as the distribution of factors.
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "sweep/campaign/sections.hpp"
 
 #include "stats/levels.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -52,21 +52,20 @@ void check_rule(const Section& section, const Convergence& convergence, const Ca
     const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
     if (!convergence.traits().of_sequences) {
         if (designs::design_named(campaign.design).beginning != designs::Beginning::corner) return;
-        throw wrong_question(path, got,
-                             fmt::format("the points of a {0} come in no useful order, so blocks of them mean nothing; "
-                                         "compare campaigns of that design or take a halton design",
-                                         campaign.design));
+        throw input_error(path, got,
+                          fmt::format("the points of a {0} come in no useful order, so blocks of them mean nothing; "
+                                      "compare campaigns of that design or take a halton design",
+                                      campaign.design));
     }
     if (sequences < stats::fewest_sequences) {
-        throw wrong_question(
-            path, got,
-            fmt::format("this rule needs a halton or sobol design with \"scramble\": \"random\" and "
-                        "\"sequences\" of at least {} (8 is good); any_change and all_change need none",
-                        stats::fewest_sequences));
+        throw input_error(path, got,
+                          fmt::format("this rule needs a halton or sobol design with \"scramble\": \"random\" and "
+                                      "\"sequences\" of at least {} (8 is good); any_change and all_change need none",
+                                      stats::fewest_sequences));
     }
     if (section.find("block") && convergence.block < least_block(convergence.traits(), sequences)) {
-        throw wrong_question(path_of(section.place().path(), "block"), std::to_string(convergence.block),
-                             fmt::format("must give each of the {} sequences at least 4 points", sequences));
+        throw input_error(path_of(section.place().path(), "block"), std::to_string(convergence.block),
+                          fmt::format("must give each of the {} sequences at least 4 points", sequences));
     }
 }
 
@@ -140,24 +139,24 @@ std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaig
 
 void check_accuracy(const Cursor& place, const Campaign& campaign) {
     if (campaign.convergence)
-        throw wrong_question("$.convergence", "",
-                             "beside an \"accuracy\" with a tolerance it has no effect: leave one of them out");
+        throw input_error("$.convergence", "",
+                          "beside an \"accuracy\" with a tolerance it has no effect: leave one of them out");
     if (campaign.replicates != 1)
-        throw wrong_question("$.replicates", std::to_string(campaign.replicates),
-                             "an \"accuracy\" with a tolerance needs one run of each point: leave it out");
+        throw input_error("$.replicates", std::to_string(campaign.replicates),
+                          "an \"accuracy\" with a tolerance needs one run of each point: leave it out");
     const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
     if (sequences < stats::fewest_sequences || candidates_of(campaign) < fewest_rounds * sequences)
-        throw wrong_question("$.design", campaign.design,
-                             fmt::format("an \"accuracy\" with a tolerance needs a halton or sobol design with "
-                                         "\"scramble\": \"random\", \"sequences\" of at least {} (8 is good) and at "
-                                         "least {} points for each",
-                                         stats::fewest_sequences, fewest_rounds));
+        throw input_error("$.design", campaign.design,
+                          fmt::format("an \"accuracy\" with a tolerance needs a halton or sobol design with "
+                                      "\"scramble\": \"random\", \"sequences\" of at least {} (8 is good) and at "
+                                      "least {} points for each",
+                                      stats::fewest_sequences, fewest_rounds));
     const auto& factors = campaign.space.factors;
     for (const auto& factor : factors)
         if (may_repeat(factor))
-            throw wrong_question("$.factors", factor.name,
-                                 "an \"accuracy\" with a tolerance needs different cases at all points: give the "
-                                 "factor a range without 'step', 'whole' or 'when'");
+            throw input_error("$.factors", factor.name,
+                              "an \"accuracy\" with a tolerance needs different cases at all points: give the "
+                              "factor a range without 'step', 'whole' or 'when'");
     if (std::ranges::all_of(factors, [](const Factor& f) { return std::holds_alternative<Levels>(f.range); }))
         place.refuse("it needs a factor with a range: factors with levels alone repeat their cases");
 }

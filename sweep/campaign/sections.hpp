@@ -30,7 +30,7 @@ struct Powder;
 
 [[nodiscard]] std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene,
                                                const std::filesystem::path& folder);
-/// Reads the distribution under `key` of a factor. Throws WrongQuestion if the bounds of the parameter cut off more
+/// Reads the distribution under `key` of a factor. Throws InputError if the bounds of the parameter cut off more
 /// than 5 % of it.
 [[nodiscard]] std::variant<Between, stats::Distribution> read_distribution(const Section& factor, std::string_view key,
                                                                            const ParameterSpec& parameter,

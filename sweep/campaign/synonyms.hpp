@@ -2,7 +2,7 @@
 // search for the nearest word uses this table first.
 #pragma once
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <string>
 #include <string_view>

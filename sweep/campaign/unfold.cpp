@@ -1,8 +1,8 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/simplex.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ void check_ends(const Campaign& campaign, const designs::PointSet& points) {
     for (std::size_t p = 0; p < points.size(); ++p)
         for (std::size_t j = 0; j < factors.size(); ++j)
             if (const double u = points.point(p)[j]; factors[j].endless && (u <= 0 || u >= 1))
-                throw wrong_question(
+                throw input_error(
                     "$.design", campaign.design,
                     fmt::format("its point {} stands at an end of factor '{}', whose distribution has none: give "
                                 "\"placement\": \"centred\" to a lattice, \"scramble\": \"random\" to a sequence, or "
@@ -33,7 +33,7 @@ void check_ends(const Campaign& campaign, const designs::PointSet& points) {
 
 designs::PointSet sample(const Campaign& campaign) {
     const auto* design = designs::find_design(campaign.design);
-    if (design == nullptr) throw wrong_question("$.design.kind", campaign.design, "there is no such design");
+    if (design == nullptr) throw input_error("$.design.kind", campaign.design, "there is no such design");
     designs::PointSet points;
     try {
         points = design->sample(campaign.request);
@@ -41,13 +41,13 @@ designs::PointSet sample(const Campaign& campaign) {
             share_out(campaign.space.factors,
                       std::span(points.coordinates).subspan(p * points.dimensions, points.dimensions));
     } catch (const std::invalid_argument& error) {
-        throw wrong_question("$.design", "", error.what());
+        throw input_error("$.design", "", error.what());
     }
-    if (points.size() == 0) throw wrong_question("$.design", "", "the design has no point");
+    if (points.size() == 0) throw input_error("$.design", "", "the design has no point");
     check_ends(campaign, points);
     if (points.size() > static_cast<std::size_t>(most_cases / campaign.replicates))
-        throw wrong_question("$.design", fmt::format("{} points x {} replicates", points.size(), campaign.replicates),
-                             fmt::format("a campaign has at most {} cases", most_cases));
+        throw input_error("$.design", fmt::format("{} points x {} replicates", points.size(), campaign.replicates),
+                          fmt::format("a campaign has at most {} cases", most_cases));
     return points;
 }
 
@@ -61,7 +61,7 @@ public:
         for (const auto& [name, value] : given) {
             const auto slot = inputs.find(name);
             if (slot == inputs.end()) {
-                throw WrongQuestion(fmt::format("scene '{}' has no parameter '{}'.", scene_.name, name));
+                throw InputError(fmt::format("scene '{}' has no parameter '{}'.", scene_.name, name));
             }
             slot->second = coerced(value, slot->second);
         }
@@ -213,9 +213,9 @@ private:
                                         space_.factors.begin());
     }
     [[noreturn]] void refuse_unused(const std::string& factor) const {
-        throw wrong_question(path_of("$.factors", number_of(factor)) + ".when", space_.factors[number_of(factor)].when,
-                             fmt::format("it is true at none of the {} points of the design: '{}' never counts",
-                                         points_.size(), factor));
+        throw input_error(path_of("$.factors", number_of(factor)) + ".when", space_.factors[number_of(factor)].when,
+                          fmt::format("it is true at none of the {} points of the design: '{}' never counts",
+                                      points_.size(), factor));
     }
     [[nodiscard]] Value value(std::size_t point, const Varying& one) const {
         if (!unused_.empty() && unused_[point * space_.factors.size() + *one.factor]) return one.standard;
@@ -324,8 +324,8 @@ Cases unfold(const Campaign& campaign, const Filter& filter) {
         for (std::int64_t replicate = 0; replicate < campaign.replicates; ++replicate) ask(replicate);
     }
     if (places.empty()) {
-        throw wrong_question("$.where", fmt::format("\"{}\"", campaign.where),
-                             fmt::format("it leaves none of the {} points of the design", points.size()));
+        throw input_error("$.where", fmt::format("\"{}\"", campaign.where),
+                          fmt::format("it leaves none of the {} points of the design", points.size()));
     }
     places.shrink_to_fit();
     hashes.shrink_to_fit();

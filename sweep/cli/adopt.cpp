@@ -1,7 +1,7 @@
 #include "sweep/cli/adopt.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/workers/program_folder.hpp"
 #include "sweep/workers/program_results.hpp"
 
@@ -18,8 +18,8 @@ namespace {
 
 using Change = campaign::ProgramChange;
 
-campaign::WrongQuestion not_adopted(const std::string& old, const std::string& why) {
-    return campaign::wrong_question("--adopt", fmt::format("'{}'", old), why);
+campaign::InputError not_adopted(const std::string& old, const std::string& why) {
+    return campaign::input_error("--adopt", fmt::format("'{}'", old), why);
 }
 
 /// Returns the id of the same case under the old program.
@@ -110,7 +110,7 @@ Adopted adopted_program(const store::Store& store, const campaign::Campaign& cam
     const auto record = std::ranges::find(records, old, [](const auto& one) { return one.name; });
     if (record == records.end()) {
         const auto names = campaign::names_of(records);
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "--adopt", fmt::format("'{}'", old),
             fmt::format("the database has no such campaign; it has {}", campaign::listed(names)),
             campaign::nearest_word(old, names));

@@ -26,7 +26,7 @@ struct Adopted {
     std::filesystem::path cases;                       ///< folders of its cases, if they were kept
 };
 
-/// Returns the program of the campaign `old` in the database. Throws WrongQuestion if there is no such campaign, one of
+/// Returns the program of the campaign `old` in the database. Throws InputError if there is no such campaign, one of
 /// the campaigns has no program, or a change is none of these: contents of files, files that do not count, another
 /// folder of a program or file in the command, a further observable.
 [[nodiscard]] Adopted adopted_program(const store::Store& store, const campaign::Campaign& campaign,

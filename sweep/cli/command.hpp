@@ -87,7 +87,7 @@ struct CommandInfo {
 [[nodiscard]] std::vector<CommandInfo> describe(const std::vector<Command>& commands);
 
 /// Returns the action of the command in the arguments. --help and --version print their text and return an action that
-/// does nothing. Throws WrongQuestion with one sentence, and the nearest word, for unknown arguments.
+/// does nothing. Throws InputError with one sentence, and the nearest word, for unknown arguments.
 [[nodiscard]] Action parse_command_line(const std::vector<Command>& commands, int argc, const char* const* argv);
 
 }  // namespace grainsweep::cli

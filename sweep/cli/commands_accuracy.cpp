@@ -4,9 +4,9 @@
 // Each is a campaign, NAME_fast, NAME_reference_precision_mixed, ..., in a separate database. The same command
 // continues after an interruption, and more points extend the campaigns.
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/figure_file.hpp"
 #include "sweep/cli/program_campaign.hpp"
@@ -147,23 +147,22 @@ std::vector<Move> moves_of(const Campaign& campaign, const std::string& against)
     return moves;
 }
 
-/// The settings of the campaign's scene, then single inputs, then `against`. Throws WrongQuestion for a scene without
+/// The settings of the campaign's scene, then single inputs, then `against`. Throws InputError for a scene without
 /// settings, a setting that it has not, and a campaign whose points follow from answers.
 std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& against, std::int64_t points) {
     const auto& scene = campaign.scene();
     std::vector<std::string> offered;
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
     if (offered.empty())
-        throw campaign::wrong_question("CONFIG", campaign.name,
-                                       fmt::format("scene '{}' has no accuracy settings", scene.name));
+        throw campaign::input_error("CONFIG", campaign.name,
+                                    fmt::format("scene '{}' has no accuracy settings", scene.name));
     const auto reference = scene.accuracy.find(against);
     if (reference == scene.accuracy.end())
-        throw campaign::wrong_question("--against", against,
-                                       fmt::format("must be one of {}", campaign::listed(offered)),
-                                       campaign::nearest_word(against, offered));
+        throw campaign::input_error("--against", against, fmt::format("must be one of {}", campaign::listed(offered)),
+                                    campaign::nearest_word(against, offered));
     if (designs::design_named(campaign.design).grows)
-        throw campaign::wrong_question("CONFIG", campaign.design,
-                                       "the points of this design depend on results; give a design that does not");
+        throw campaign::input_error("CONFIG", campaign.design,
+                                    "the points of this design depend on results; give a design that does not");
     const auto rows = first_points(campaign, points);
     std::set<std::string> numerical;
     if (!scene.stiffness.empty()) numerical.insert(scene.stiffness);
@@ -224,8 +223,8 @@ std::vector<std::string> drawn_observables(const AccuracyRequest& request, const
 
 int accuracy(const AccuracyRequest& request, report::Format format) {
     if (!(request.tolerance > 0 && request.tolerance < 1))
-        throw campaign::wrong_question("--tolerance", fmt::format("{}", request.tolerance),
-                                       "must be a number above 0 and below 1");
+        throw campaign::input_error("--tolerance", fmt::format("{}", request.tolerance),
+                                    "must be a number above 0 and below 1");
     const auto database = request.database.string();
     if (!request.file.output.empty()) (void)width_in_mm(request.file), (void)figure_type(request.file, database);
     workers::answer_end_requests();
@@ -238,9 +237,9 @@ int accuracy(const AccuracyRequest& request, report::Format format) {
     if (!request.file.output.empty()) {
         const auto figure = report::accuracy_figure(end.costs, drawn_observables(request, end), request.tolerance);
         if (figure.panels.empty())
-            throw campaign::wrong_question("-o", request.file.output,
-                                           "there is nothing to draw: errors are shown relative to the mean, which is "
-                                           "0 or missing; name another with --observable");
+            throw campaign::input_error("-o", request.file.output,
+                                        "there is nothing to draw: errors are shown relative to the mean, which is "
+                                        "0 or missing; name another with --observable");
         write_figure(request.file, figure, database);
     }
     report::write(std::cout, document, format);

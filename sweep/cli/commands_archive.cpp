@@ -1,7 +1,7 @@
 // status, explain, replay, query, dump: contents of the archive.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/compute_options.hpp"
@@ -476,7 +476,7 @@ int show_checkpoint(const ReplayRequest& request, const campaign::Case& question
     Pictures pictures(request.pictures, question);
     if (!workers::shoot_checkpoint(question, folder_beside(request.database, of_artefacts), this_computer(),
                                    pictures.camera()))
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "CASE", request.id,
             "has no result yet, and this program has no checkpoint of it to show: a running case saves one every "
             "minute");
@@ -488,7 +488,7 @@ int show_checkpoint(const ReplayRequest& request, const campaign::Case& question
 }
 
 /// Runs the command and returns the exit code: 0 if both agree. Of a case without an answer it only takes the requested
-/// pictures, of its checkpoint. Throws WrongQuestion if there is no stored answer and no picture.
+/// pictures, of its checkpoint. Throws InputError if there is no stored answer and no picture.
 int replay(const ReplayRequest& request, Format format) {
     const Store archive(request.database, Store::Mode::read);
     const campaign::Case as_stored = require_case(archive, request.id);
@@ -499,7 +499,7 @@ int replay(const ReplayRequest& request, Format format) {
     if (!stored || stored->outcome == Outcome::abandoned) {
         const bool shows = !request.pictures.page.empty() || !request.pictures.folder.empty();
         if (shows && program == nullptr) return show_checkpoint(request, question);
-        throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
+        throw campaign::input_error("CASE", request.id, "has no result to compare with yet");
     }
     if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
         std::cerr << fmt::format("grainsweep: this case {}; it may do the same here\n",
@@ -512,7 +512,7 @@ int replay(const ReplayRequest& request, Format format) {
         use_path_of_old(then->computer.instruction_path);
     const bool same_path = then != attempts.end() && gives_the_same_bits(then->computer, this_computer());
     if (program == nullptr && !request.keep.empty())
-        throw campaign::wrong_question("--keep", request.keep, "is for cases of a program only");
+        throw campaign::input_error("--keep", request.keep, "is for cases of a program only");
 
     if (program != nullptr)
         std::cerr << fmt::format("grainsweep: runs the stored command of this case: {}\n",
@@ -573,7 +573,7 @@ void declare_replay(Parser& parser, ReplayRequest& request) {
 int replay_checked(const ReplayRequest& request, Format format) {
     use_threads(request.threads);
     if (const auto tolerance = request.tolerance; tolerance && !(*tolerance >= 0 && *tolerance <= 1))
-        throw campaign::wrong_question("--tolerance", std::to_string(*tolerance), "a number from 0 to 1");
+        throw campaign::input_error("--tolerance", std::to_string(*tolerance), "a number from 0 to 1");
     return replay(request, format);
 }
 

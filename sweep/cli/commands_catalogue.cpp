@@ -2,13 +2,13 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/field_text.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_keys.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/schema.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/designs/design.hpp"
 
@@ -243,8 +243,8 @@ int list_scenes(const std::string& name, Format format) {
     if (!name.empty()) {
         const auto scene = campaign::scene_named(name);
         if (scene == nullptr) {
-            throw campaign::wrong_question("NAME", name, "there is no such scene; grainsweep scenes lists them",
-                                           campaign::nearest_word(name, known));
+            throw campaign::input_error("NAME", name, "there is no such scene; grainsweep scenes lists them",
+                                        campaign::nearest_word(name, known));
         }
         show_scene(*scene, format);
         return 0;
@@ -318,8 +318,8 @@ int list_designs(const std::string& name, Format format) {
     }
     const auto* design = designs::find_design(name);
     if (design == nullptr) {
-        throw campaign::wrong_question("NAME", name, "there is no such design; grainsweep designs lists them",
-                                       campaign::nearest_word(name, known));
+        throw campaign::input_error("NAME", name, "there is no such design; grainsweep designs lists them",
+                                    campaign::nearest_word(name, known));
     }
     if (format == Format::json) {
         report::write(std::cout, Json{{"name", design->name},
@@ -341,8 +341,8 @@ int print_schema(const std::string& name, Format format) {
         {"program", campaign::program_schema}};
     const auto found = schemas.find(name.empty() ? "campaign" : name);
     if (found == schemas.end())
-        throw campaign::wrong_question("NAME", name, "there are the schemas campaign, machine, powder and program",
-                                       campaign::nearest_word(name, campaign::WordList(std::views::keys(schemas))));
+        throw campaign::input_error("NAME", name, "there are the schemas campaign, machine, powder and program",
+                                    campaign::nearest_word(name, campaign::WordList(std::views::keys(schemas))));
     const auto schema = found->second;
     if (format == Format::csv)
         report::write(std::cout, store::Table{{"schema"}, {{schema(2)}}}, format);

@@ -1,5 +1,5 @@
 // predict, window: predictions of a campaign's response models for settings that were not run.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/settings.hpp"
@@ -54,9 +54,9 @@ std::vector<campaign::Outcome> outcomes_in(const std::vector<std::string>& words
     for (const auto& word : words) {
         const auto outcome = campaign::outcome_named(word);
         if (!outcome || std::ranges::find(failures, *outcome) == failures.end())
-            throw campaign::wrong_question(
-                "--leave-out", word, fmt::format("must be an outcome of failed cases: {}", campaign::listed(known)),
-                campaign::nearest_word(word, known));
+            throw campaign::input_error("--leave-out", word,
+                                        fmt::format("must be an outcome of failed cases: {}", campaign::listed(known)),
+                                        campaign::nearest_word(word, known));
         outcomes.push_back(*outcome);
     }
     return outcomes;
@@ -104,9 +104,9 @@ private:
 
 std::vector<Setting> settings_of(const PredictRequest& request, const study::ModelCases& cases) {
     if (request.at.empty() == request.points.empty())
-        throw campaign::wrong_question("predict", "",
-                                       "give one setting by --at NAME=VALUE for every factor, or several "
-                                       "in a file by --points");
+        throw campaign::input_error("predict", "",
+                                    "give one setting by --at NAME=VALUE for every factor, or several "
+                                    "in a file by --points");
     if (!request.at.empty()) return {read_setting(cases.factors, request.at)};
     return read_settings_file(request.points, cases.factors);
 }
@@ -117,13 +117,13 @@ void refuse_extrapolation(const Store& store, const study::ModelCases& cases, co
     for (const auto& setting : settings) {
         const auto outside = study::outside_text(cases.factors, setting);
         if (!outside.empty())
-            throw campaign::wrong_question("", outside,
-                                           "the model would extrapolate; --extrapolate predicts nevertheless");
+            throw campaign::input_error("", outside,
+                                        "the model would extrapolate; --extrapolate predicts nevertheless");
         if (admits && !admits(setting))
-            throw campaign::wrong_question("", study::setting_text(cases.factors, setting),
-                                           fmt::format("the campaign has no case where its condition is not met: {}; "
-                                                       "--extrapolate predicts nevertheless",
-                                                       cases.campaign.condition));
+            throw campaign::input_error("", study::setting_text(cases.factors, setting),
+                                        fmt::format("the campaign has no case where its condition is not met: {}; "
+                                                    "--extrapolate predicts nevertheless",
+                                                    cases.campaign.condition));
     }
 }
 
@@ -175,7 +175,7 @@ struct WindowArguments {
 /// Writes the campaign file of the next cases. Returns the name of its campaign, which is new in the archive.
 std::string write_next(const Store& store, const study::ModelCases& cases, const study::Window& window,
                        const std::string& file) {
-    if (window.next.empty()) throw campaign::wrong_question("--next-file", file, "there is no case to run next");
+    if (window.next.empty()) throw campaign::input_error("--next-file", file, "there is no case to run next");
     const auto [name, number] = name_of_next(store, cases.campaign.name);
     store::check_campaign_name(name);
     write_page_file(file, study::next_campaign(cases, window, name, number));
@@ -188,27 +188,27 @@ void check_run(const WindowArguments& arguments, const study::WindowRequest& req
                                             {arguments.tolerance != 0, "--tolerance"},
                                             {arguments.max_cases.has_value(), "--max-cases"},
                                             {arguments.workers.has_value(), "-j"}})
-            if (given) throw campaign::wrong_question(option, "", "needs --run");
+            if (given) throw campaign::input_error(option, "", "needs --run");
         return;
     }
     if (request.objectives.empty())
-        throw campaign::wrong_question("--run", "", "needs --maximize or --minimize: --width applies to its mean");
+        throw campaign::input_error("--run", "", "needs --maximize or --minimize: --width applies to its mean");
     const bool pair = request.objectives.size() == 2;
     const std::string option = pair ? "--tolerance" : "--width", other = pair ? "--width" : "--tolerance";
     const double end = pair ? arguments.tolerance : arguments.width;
     if ((pair ? arguments.width : arguments.tolerance) != 0)
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             other, "",
             fmt::format("is for {}; here {} ends the run", pair ? "one objective" : "two objectives", option));
     if (end == 0)
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "--run", "",
             pair ? "needs --tolerance, the part of its hypervolume that the computed front may lack: 0.01"
                  : "needs --width, the 95 % half-width of the objective's mean at the best setting");
     if (!arguments.next_file.empty())
-        throw campaign::wrong_question("--next-file", arguments.next_file, "--run runs the next cases itself");
+        throw campaign::input_error("--next-file", arguments.next_file, "--run runs the next cases itself");
     if (!(end > 0) || !std::isfinite(end))
-        throw campaign::wrong_question(option, fmt::format("{}", end), "must be a positive number");
+        throw campaign::input_error(option, fmt::format("{}", end), "must be a positive number");
 }
 
 std::vector<study::Objective> objectives_of(const WindowArguments& arguments) {
@@ -216,11 +216,11 @@ std::vector<study::Objective> objectives_of(const WindowArguments& arguments) {
     for (const auto& name : arguments.maximise) objectives.push_back({name, true});
     for (const auto& name : arguments.minimise) objectives.push_back({name, false});
     if (objectives.size() > 2)
-        throw campaign::wrong_question("--minimize", objectives.back().name,
-                                       "at most two objectives: --maximize and --minimize together");
+        throw campaign::input_error("--minimize", objectives.back().name,
+                                    "at most two objectives: --maximize and --minimize together");
     if (!arguments.reference.empty() && objectives.size() < 2)
-        throw campaign::wrong_question("--reference", arguments.reference.front(),
-                                       "is for two objectives, by --maximize and --minimize");
+        throw campaign::input_error("--reference", arguments.reference.front(),
+                                    "is for two objectives, by --maximize and --minimize");
     return objectives;
 }
 
@@ -242,7 +242,7 @@ std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const st
 
 int window(const WindowArguments& arguments, Format format) {
     if (!arguments.next_file.empty() && arguments.next == 0)
-        throw campaign::wrong_question("--next-file", arguments.next_file, "needs --next N, the number of cases");
+        throw campaign::input_error("--next-file", arguments.next_file, "needs --next N, the number of cases");
     if (!arguments.next_file.empty()) check_page_file("--next-file", arguments.next_file, arguments.database);
     if (!arguments.output.empty()) check_page_file("-o", arguments.output, arguments.database);
     auto request = arguments.request;

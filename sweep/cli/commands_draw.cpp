@@ -1,8 +1,8 @@
 // draw: a machine in three dimensions before it runs.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine_drawing.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/report/file_size.hpp"
@@ -33,13 +33,13 @@ Inputs inputs_of(const SceneInfo& scene, const std::vector<std::string>& setting
     Inputs inputs = scene.defaults();
     for (const auto& setting : settings) {
         const auto equals = setting.find('=');
-        if (equals == std::string::npos) throw campaign::wrong_question("--set", setting, "must be NAME=VALUE");
+        if (equals == std::string::npos) throw campaign::input_error("--set", setting, "must be NAME=VALUE");
         const std::string name = setting.substr(0, equals);
         const auto* parameter = scene.find_parameter(name);
         if (parameter == nullptr)
-            throw campaign::wrong_question("--set " + name, "",
-                                           fmt::format("machine '{}' has no parameter of this name", scene.shown()),
-                                           campaign::nearest_word(name, campaign::names_of(scene.parameters)));
+            throw campaign::input_error("--set " + name, "",
+                                        fmt::format("machine '{}' has no parameter of this name", scene.shown()),
+                                        campaign::nearest_word(name, campaign::names_of(scene.parameters)));
         inputs[name] = campaign::parse_value(*parameter, setting.substr(equals + 1), {}, "--set " + name);
     }
     return inputs;

@@ -1,5 +1,5 @@
 // figure: one figure of the report as a file for print.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/figure_file.hpp"
 #include "sweep/report/document.hpp"
@@ -31,7 +31,7 @@ struct FigureRequest {
 std::optional<bool> log_axis(const std::string& word) {
     if (word.empty()) return std::nullopt;
     if (word != "log" && word != "linear")
-        throw campaign::wrong_question("--axis", fmt::format("'{}'", word), "must be log or linear");
+        throw campaign::input_error("--axis", fmt::format("'{}'", word), "must be log or linear");
     return word == "log";
 }
 
@@ -39,9 +39,9 @@ std::optional<bool> log_axis(const std::string& word) {
 store::CampaignRecord campaign_of_figure(const Store& store, const std::string& name) {
     auto records = study::find_campaigns(store, name);
     if (records.size() > 1)
-        throw campaign::wrong_question("--campaign", "",
-                                       fmt::format("the database has several campaigns; name one of {}",
-                                                   campaign::listed(campaign::names_of(records))));
+        throw campaign::input_error("--campaign", "",
+                                    fmt::format("the database has several campaigns; name one of {}",
+                                                campaign::listed(campaign::names_of(records))));
     return std::move(records.front());
 }
 
@@ -52,7 +52,7 @@ int list_figures(const report::FigureSubject& subject, Format format) {
         table.rows.push_back(
             {info.name, info.panels.empty() ? Table::Cell{} : campaign::listed(info.panels), info.shows});
     if (table.rows.empty())
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "", "", fmt::format("campaign '{}' has no result to draw yet", subject.responses.campaign.name));
     shown.value = report::to_json(table);
     shown.say(fmt::format("figures of {}, {}", subject.responses.campaign.name, subject.response.name)).show(table);
@@ -66,8 +66,8 @@ int figure(const FigureRequest& request, Format format) {
     const auto& output = request.file.output;
     if (!request.name.empty()) (void)figure_type(request.file, request.database);
     if (request.name.empty() && !output.empty())
-        throw campaign::wrong_question("-o", fmt::format("'{}'", output),
-                                       "name a figure; grainsweep figure DB lists them");
+        throw campaign::input_error("-o", fmt::format("'{}'", output),
+                                    "name a figure; grainsweep figure DB lists them");
     const Store store(request.database, Store::Mode::read);
     const auto responses = study::read_responses(store, campaign_of_figure(store, request.campaign));
     const report::FigureSubject subject{

@@ -2,12 +2,12 @@
 // the keys of a campaign file.
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/powder_export.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/designs/design.hpp"
@@ -536,7 +536,7 @@ std::string completion_for(const std::string& name) {
         if (name == shell.name) return shell.completion(describe(all_commands()));
         known.emplace_back(shell.name);
     }
-    throw campaign::wrong_question("SHELL", name, "must be 'bash' or 'zsh'", campaign::nearest_word(name, known));
+    throw campaign::input_error("SHELL", name, "must be 'bash' or 'zsh'", campaign::nearest_word(name, known));
 }
 
 /// Text as it is; as one value where a program asks for one.

@@ -2,11 +2,11 @@
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/adopt.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
@@ -455,8 +455,8 @@ int plan(const PlanRequest& request, Format format) {
     auto experiments = campaign::read_experiment_names(request.config);
     if (experiments.empty()) return plan_one(request, "", format), 0;
     if (format == Format::csv)
-        throw campaign::wrong_question("--format", "csv",
-                                       "the experiments have different columns; text and json show all");
+        throw campaign::input_error("--format", "csv",
+                                    "the experiments have different columns; text and json show all");
     double seconds = 0;
     for (std::size_t k = 0; k < experiments.size(); ++k) {
         if (format == Format::json) std::cout << (k == 0 ? "[" : ",");

@@ -1,7 +1,7 @@
 // powder: imports measured sizes; shows the meaning of a powder file.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/powder_export.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/files/aside_file.hpp"
 #include "sweep/files/whole_file.hpp"
@@ -38,23 +38,22 @@ std::optional<std::string> stated(const std::string& word) {
 /// Refuses a path at which the table cannot be written, and the path of the export itself.
 void check_table_file(const PowderRequest& request) {
     if (request.output.empty())
-        throw campaign::wrong_question("-o", "", "powder import needs -o: the file of sizes to write");
+        throw campaign::input_error("-o", "", "powder import needs -o: the file of sizes to write");
     std::error_code error;
     const fs::path folder = fs::path(request.output).parent_path();
     if (!fs::is_directory(folder.empty() ? "." : folder, error))
-        throw campaign::wrong_question("-o", request.output, "there is no such folder");
+        throw campaign::input_error("-o", request.output, "there is no such folder");
     if (fs::is_directory(request.output, error))
-        throw campaign::wrong_question("-o", request.output, "this is a folder; name a file");
+        throw campaign::input_error("-o", request.output, "this is a folder; name a file");
     if (fs::equivalent(request.output, request.file, error))
-        throw campaign::wrong_question("-o", request.output, "this is the export itself; name another file");
+        throw campaign::input_error("-o", request.output, "this is the export itself; name another file");
 }
 
 int import_export(const PowderRequest& request, Format format) {
     check_table_file(request);
     std::error_code error;
     const std::string bytes = files::whole_file(request.file, error, largest_export);
-    if (error)
-        throw campaign::wrong_question("EXPORT", request.file, fmt::format("cannot be read: {}", error.message()));
+    if (error) throw campaign::input_error("EXPORT", request.file, fmt::format("cannot be read: {}", error.message()));
     const auto imported = campaign::asked_in(request.file, [&] {
         return campaign::import_sizes(
             bytes, {stated(request.sizes), stated(request.shares), stated(request.unit), stated(request.as),
@@ -90,7 +89,7 @@ void refuse_import_options(const PowderRequest& request) {
           std::pair{"--by", &request.by}, std::pair{"--edge", &request.edge}, std::pair{"--sizes", &request.sizes},
           std::pair{"--shares", &request.shares}, std::pair{"--smallest", &request.smallest},
           std::pair{"--largest", &request.largest}})
-        if (!word->empty()) throw campaign::wrong_question(option, *word, "belongs to powder import");
+        if (!word->empty()) throw campaign::input_error(option, *word, "belongs to powder import");
 }
 
 std::string micrometres(double metres) {
@@ -151,8 +150,8 @@ int powder(const PowderRequest& request, Format format) {
     constexpr std::array<std::string_view, 2> actions = {"import", "show"};
     if (request.action == "import") return import_export(request, format);
     if (request.action == "show") return show_powder(request, format);
-    throw campaign::wrong_question("ACTION", request.action, "must be 'import' or 'show'",
-                                   campaign::nearest_word(request.action, actions));
+    throw campaign::input_error("ACTION", request.action, "must be 'import' or 'show'",
+                                campaign::nearest_word(request.action, actions));
 }
 
 }  // namespace

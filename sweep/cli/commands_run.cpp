@@ -2,9 +2,9 @@
 // worker: the process that `run` starts once for each worker.
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/compute_options.hpp"
@@ -287,8 +287,7 @@ void conclude(RunReport& report, bool powder) {
     write_beside(report.database, draws, study::posterior_csv(found->found));
     if (powder) {
         const auto text = study::powder_json(*found, name, draws);
-        if (text.empty())
-            throw campaign::wrong_question("--powder", "", "none of the factors is a property of a powder");
+        if (text.empty()) throw campaign::input_error("--powder", "", "none of the factors is a property of a powder");
         write_beside(report.database, name + "_powder.json", text);
     }
     if (!found->verdict) return;
@@ -318,8 +317,8 @@ campaign::Outcome outcome_asked_again(const std::string& word) {
     if (const auto outcome = campaign::outcome_named(word)) return *outcome;
     std::vector<std::string> words;
     for (const auto outcome : campaign::outcomes) words.emplace_back(to_string(outcome));
-    throw campaign::wrong_question("--again", word, "must be one of " + campaign::listed(words),
-                                   campaign::nearest_word(word, words));
+    throw campaign::input_error("--again", word, "must be one of " + campaign::listed(words),
+                                campaign::nearest_word(word, words));
 }
 
 /// Whether standard output has no reader: a pipe without a reader, a closed terminal or descriptor.

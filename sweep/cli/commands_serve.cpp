@@ -1,9 +1,9 @@
 // serve: the report's page in the browser while its databases grow.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/files/aside_file.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/live/jobs.hpp"
 #include "sweep/live/served.hpp"
 #include "sweep/workers/process_start.hpp"
@@ -79,9 +79,9 @@ private:
         try {
             const store::Store store(file, store::Store::Mode::read);
             return true;
-        } catch (const campaign::WrongQuestion&) {
+        } catch (const campaign::InputError&) {
             return false;
-        } catch (const BrokenWorld&) {
+        } catch (const SystemError&) {
             return true;
         }
     }
@@ -94,7 +94,7 @@ std::vector<fs::path> require_databases(Databases& databases, const fs::path& pl
     if (std::error_code error; !fs::is_directory(place, error)) (void)store::Store(place, store::Store::Mode::read);
     auto found = databases.list();
     if (found.empty())
-        throw campaign::wrong_question("DB", place.string(), "the folder holds no database of grainsweep (*.db)");
+        throw campaign::input_error("DB", place.string(), "the folder holds no database of grainsweep (*.db)");
     return found;
 }
 
@@ -102,9 +102,9 @@ bool is_campaign(const fs::path& file) {
     try {
         (void)campaign::read_campaign(file);
         return true;
-    } catch (const campaign::WrongQuestion&) {
+    } catch (const campaign::InputError&) {
         return false;
-    } catch (const BrokenWorld&) {
+    } catch (const SystemError&) {
         return false;
     }
 }
@@ -113,15 +113,15 @@ bool is_campaign(const fs::path& file) {
 std::vector<fs::path> campaign_files_at(const fs::path& place) {
     if (fs::is_regular_file(place)) return {place};
     if (!fs::is_directory(place))
-        throw campaign::wrong_question("--control", place.string(), "there is no such file or folder");
+        throw campaign::input_error("--control", place.string(), "there is no such file or folder");
     std::vector<fs::path> found;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(place, error))
         if (entry.is_regular_file(error) && entry.path().extension() == ".json" && is_campaign(entry.path()))
             found.push_back(entry.path());
     if (found.empty())
-        throw campaign::wrong_question("--control", place.string(),
-                                       "the folder holds no campaign file that can be read (*.json)");
+        throw campaign::input_error("--control", place.string(),
+                                    "the folder holds no campaign file that can be read (*.json)");
     std::ranges::sort(found);
     return found;
 }
@@ -131,15 +131,15 @@ live::Proxy proxy_of(const ServeRequest& request) {
     constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
     for (const auto& name : request.host_names) {
         if (name.empty() || name.find_first_not_of(letters) != std::string::npos)
-            throw campaign::wrong_question("--host-name", fmt::format("'{}'", name),
-                                           "a name as in an address, without http:// and port");
+            throw campaign::input_error("--host-name", fmt::format("'{}'", name),
+                                        "a name as in an address, without http:// and port");
         proxy.hosts.push_back(name);
     }
     if (request.base_path.empty()) return proxy;
     const auto& path = request.base_path;
     if (!path.starts_with('/') || path.find_first_not_of(std::string(letters) + "/%") != std::string::npos)
-        throw campaign::wrong_question("--base-path", fmt::format("'{}'", path),
-                                       "a path that begins with /, as in an address");
+        throw campaign::input_error("--base-path", fmt::format("'{}'", path),
+                                    "a path that begins with /, as in an address");
     proxy.base_path = path.ends_with('/') ? path : path + "/";
     return proxy;
 }

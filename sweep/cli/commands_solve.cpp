@@ -2,13 +2,13 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/simplex.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/compute_options.hpp"
 #include "sweep/cli/pictures.hpp"
@@ -149,20 +149,20 @@ void apply(const std::vector<std::string>& settings, Campaign& campaign, const s
         const auto equals = setting.find('=');
         const std::string name = setting.substr(0, equals);
         const std::string where = "--set " + name;
-        if (equals == std::string::npos) throw campaign::wrong_question("--set", setting, "must be NAME=VALUE");
+        if (equals == std::string::npos) throw campaign::input_error("--set", setting, "must be NAME=VALUE");
         const auto* parameter = scene.find_parameter(name);
         if (parameter == nullptr) {
-            throw campaign::wrong_question(where, "",
-                                           fmt::format("scene '{}' has no parameter of this name", scene.shown()),
-                                           campaign::nearest_word(name, names));
+            throw campaign::input_error(where, "",
+                                        fmt::format("scene '{}' has no parameter of this name", scene.shown()),
+                                        campaign::nearest_word(name, names));
         }
-        if (!set.insert(name).second) throw campaign::wrong_question(where, "", "this parameter is set twice");
+        if (!set.insert(name).second) throw campaign::input_error(where, "", "this parameter is set twice");
         const Value value = campaign::parse_value(*parameter, setting.substr(equals + 1), folder, where);
         campaign::hold(campaign.space, name, value, campaign.accuracy);
     }
     for (const auto& name : set) {
         if (const auto reason = campaign::no_effect(campaign.space, *scene.find_parameter(name))) {
-            throw campaign::wrong_question("--set " + name, "", *reason);
+            throw campaign::input_error("--set " + name, "", *reason);
         }
     }
 }
@@ -192,10 +192,10 @@ void check_shares(const campaign::ParameterSpace& declared, const campaign::Para
     }
     if (set.empty()) return;
     if (set.size() < names.size())
-        throw campaign::wrong_question("--set", "",
-                                       fmt::format("{} add to one: set all of them or none", campaign::listed(names)));
+        throw campaign::input_error("--set", "",
+                                    fmt::format("{} add to one: set all of them or none", campaign::listed(names)));
     if (!campaign::add_to_one(set))
-        throw campaign::wrong_question("--set", "", fmt::format("{} do not add to one", campaign::listed(names)));
+        throw campaign::input_error("--set", "", fmt::format("{} do not add to one", campaign::listed(names)));
 }
 
 /// Shows the progress in percent if standard error is a terminal.
@@ -252,7 +252,7 @@ CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& 
     if (auto program = campaign::known_program(asked.question.scene))
         return answer_by_program(std::move(program), asked.question, 1, asked.limit_seconds, request.keep,
                                  request.pictures);
-    if (!request.keep.empty()) throw campaign::wrong_question("--keep", request.keep, "is for cases of a program only");
+    if (!request.keep.empty()) throw campaign::input_error("--keep", request.keep, "is for cases of a program only");
     NoArtefacts artefacts;
     auto computed = workers::compute(asked.question, 1, artefacts, std::nullopt, show_progress, pictures.camera());
     return std::move(computed.value());  // the watch never gives it up

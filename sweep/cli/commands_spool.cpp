@@ -1,7 +1,7 @@
 // work: runs one task of a campaign without a main program. collect: stores the answers of such tasks in an archive.
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/compute_options.hpp"
@@ -92,21 +92,20 @@ spool::Share share_asked(const std::string& word) {
     const auto part = whole_in(std::string_view(word).substr(0, slash)).value_or(0);
     const auto of = whole_in(std::string_view(word).substr(std::min(slash + 1, word.size()))).value_or(0);
     if (part < 1 || part > of || of > most_parts)
-        throw campaign::wrong_question("--share", word, "must be I/N with I from 1 to N, for example 2/16");
+        throw campaign::input_error("--share", word, "must be I/N with I from 1 to N, for example 2/16");
     return {part, of};
 }
 
 void refuse_what_follows_from_answers(const campaign::Campaign& campaign, const std::filesystem::path& config) {
     if (designs::design_named(campaign.design).grows)
-        throw campaign::wrong_question(
-            config.string() + ": $", campaign.design,
-            "its later points depend on results, which a task of work does not have; use run");
+        throw campaign::input_error(config.string() + ": $", campaign.design,
+                                    "its later points depend on results, which a task of work does not have; use run");
     if (campaign::remarks_in(campaign.text).goal)
-        throw campaign::wrong_question(config.string() + ": $.accuracy", "",
-                                       "how many cases reach this tolerance depends on results, which a task of work "
-                                       "does not have; use run, or name a setting");
+        throw campaign::input_error(config.string() + ": $.accuracy", "",
+                                    "how many cases reach this tolerance depends on results, which a task of work "
+                                    "does not have; use run, or name a setting");
     if (campaign.convergence && campaign.convergence->stop)
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             config.string() + ": $.convergence.stop", "true",
             "tasks of work compute every point, and collect checks convergence; set it to false, or use run");
 }
@@ -141,7 +140,7 @@ int exit_code_of(Ending ending, const spool::Task::Tally& tally) {
     return tally.failed == 0 && tally.answered + tally.elsewhere == tally.cases ? 0 : 1;
 }
 
-/// Runs the task. Throws WrongQuestion for a campaign whose points depend on answers.
+/// Runs the task. Throws InputError for a campaign whose points depend on answers.
 WorkReport work_on(const WorkRequest& request) {
     const auto share = share_asked(request.share);
     const auto campaign = read_with_program(request.config);
@@ -227,7 +226,7 @@ void declare_work(Parser& parser, WorkRequest& request) {
 
 int work_on_share(const WorkRequest& request, Format format) {
     if (!(request.lease >= 2 && request.lease <= 1e6))
-        throw campaign::wrong_question("--lease", fmt::format("{}", request.lease), "must be a number from 2 to 1e6");
+        throw campaign::input_error("--lease", fmt::format("{}", request.lease), "must be a number from 2 to 1e6");
     use_path(request.path);
     std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);

@@ -1,6 +1,6 @@
 // converge, sensitivity, report: results from stored answers.
 #include "solver/scenes/scene.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/stored_case.hpp"
@@ -104,7 +104,7 @@ std::vector<stats::Level> levels_of(std::span<const std::string> words) {
     for (const auto& word : words) {
         const auto level = stats::level_named(word);
         if (!level)
-            throw campaign::wrong_question(
+            throw campaign::input_error(
                 "--statistic", word,
                 "must be quantile:P with P between 0 and 1, above:T or below:T, such as quantile:0.9");
         levels.push_back(*level);

@@ -1,7 +1,7 @@
 #include "sweep/cli/compute_options.hpp"
 
 #include "solver/scenes/scene.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/workers/job_cores.hpp"
 
 #include <fmt/format.h>
@@ -23,11 +23,11 @@ void use_path(const std::string& word) {
     const auto words = instruction_path_words();
     if (std::ranges::find(words, word) == words.end()) {
         const std::vector<std::string> known(words.begin(), words.end());
-        throw campaign::wrong_question("--path", word, fmt::format("must be '{}'", fmt::join(known, "' or '")),
-                                       campaign::nearest_word(word, known));
+        throw campaign::input_error("--path", word, fmt::format("must be '{}'", fmt::join(known, "' or '")),
+                                    campaign::nearest_word(word, known));
     }
     if (!choose_instruction_path(word))
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "--path", word,
             fmt::format("this processor lacks these instructions; its widest set is {}", instruction_path()));
 }

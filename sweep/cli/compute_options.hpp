@@ -12,7 +12,7 @@ namespace grainsweep::cli {
 
 /// Adds --path to a command. The word is empty if the option is not given, which means `otherwise`.
 void declare_path(Parser& parser, std::string& word, std::string_view otherwise = "the widest of the processor");
-/// Makes this process compute with this path; an empty word has no effect. Throws WrongQuestion for an unknown word and
+/// Makes this process compute with this path; an empty word has no effect. Throws InputError for an unknown word and
 /// for a path that this processor lacks.
 void use_path(const std::string& word);
 /// Makes this process compute with the path stored in a database, if this processor has it, because only the same path

@@ -1,7 +1,7 @@
 #include "sweep/cli/crew_options.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/workers/job_cores.hpp"
 #include "sweep/workers/process_start.hpp"
@@ -69,8 +69,8 @@ workers::PoolOptions pool_options(const campaign::Campaign& campaign, const Work
 void refuse_launcher_that_is_not_there(const campaign::Campaign& campaign, const std::filesystem::path& config) {
     const auto& launcher = campaign.execution.launcher;
     if (launcher.empty() || !workers::find_program(launcher.front()).empty()) return;
-    throw campaign::wrong_question(config.string() + ": $.execution.launcher[0]", launcher.front(),
-                                   "this launcher program does not exist");
+    throw campaign::input_error(config.string() + ": $.execution.launcher[0]", launcher.front(),
+                                "this launcher program does not exist");
 }
 
 }  // namespace grainsweep::cli

@@ -23,7 +23,7 @@ struct WorkerFolders {
 /// Returns the options of the pool. `path`: instruction path of the workers; empty: the widest of each.
 [[nodiscard]] workers::PoolOptions pool_options(const campaign::Campaign& campaign, const WorkerFolders& folders,
                                                 std::size_t workers, const std::string& path);
-/// Throws campaign::WrongQuestion if the launcher does not exist.
+/// Throws campaign::InputError if the launcher does not exist.
 void refuse_launcher_that_is_not_there(const campaign::Campaign& campaign, const std::filesystem::path& config);
 
 }  // namespace grainsweep::cli

@@ -1,7 +1,7 @@
 #include "sweep/cli/figure_file.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/quantity.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/page_file.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ double width_in_mm(const FigureFile& file) {
     const std::string rule =
         fmt::format("must be a length from {:.0f} to {:.0f} mm, such as 85mm or 17cm", narrowest, widest);
     const auto refuse = [&](const std::string& why) {
-        throw campaign::wrong_question("--width", fmt::format("'{}'", file.width), why);
+        throw campaign::input_error("--width", fmt::format("'{}'", file.width), why);
     };
     if (file.width.find_first_not_of("0123456789.+-eE ") == std::string::npos) refuse(rule);  // a number has no unit
     const auto metres = campaign::in_si(file.width, "m");
@@ -33,9 +33,9 @@ double width_in_mm(const FigureFile& file) {
 }
 
 FileType figure_type(const FigureFile& file, const std::string& database) {
-    if (file.output.empty()) throw campaign::wrong_question("-o", "", "name a file that ends in .pdf, .svg or .png");
+    if (file.output.empty()) throw campaign::input_error("-o", "", "name a file that ends in .pdf, .svg or .png");
     const auto type = plot::file_type(file.output);
-    if (!type) throw campaign::wrong_question("-o", fmt::format("'{}'", file.output), "must end in .pdf, .svg or .png");
+    if (!type) throw campaign::input_error("-o", fmt::format("'{}'", file.output), "must end in .pdf, .svg or .png");
     static constexpr FileKind pdf{"PDF file", "%pdf-"}, svg{"SVG file", "<?xml"}, png{"PNG file", "\x89png"};
     check_page_file("-o", file.output, database, *type == FileType::pdf ? pdf : *type == FileType::svg ? svg : png);
     return *type;

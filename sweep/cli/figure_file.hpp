@@ -15,9 +15,9 @@ struct FigureFile {
 /// Adds -o and --width to a command.
 void declare_figure_file(Parser& parser, FigureFile& file);
 
-/// Returns the width in mm. Throws WrongQuestion for one that is no length from 40 to 400 mm.
+/// Returns the width in mm. Throws InputError for one that is no length from 40 to 400 mm.
 [[nodiscard]] double width_in_mm(const FigureFile& file);
-/// Returns the type of the file. Throws WrongQuestion if its name has another ending or it cannot be written;
+/// Returns the type of the file. Throws InputError if its name has another ending or it cannot be written;
 /// `database` may not be overwritten.
 [[nodiscard]] plot::FileType figure_type(const FigureFile& file, const std::string& database);
 

@@ -1,9 +1,9 @@
 // Main function, and the only place that catches all exceptions.
 #include "solver/scenes/scene.hpp"
 #include "stats/several_responses.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/json_writer.hpp"
 #include "sweep/campaign/visible_stream.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/end_requests.hpp"
@@ -28,8 +28,8 @@ namespace {
 
 using namespace grainsweep;
 
-constexpr int wrong_question = 2;
-constexpr int broken_world = 3;
+constexpr int input_error = 2;
+constexpr int system_error = 3;
 
 /// Writes the reason why a command ended; with `json` also as an object on standard output, for programs.
 int complain(int code, const std::string& sentence, bool json) {
@@ -58,7 +58,7 @@ int flushed(int code) {
     std::cout.flush();
     if (!std::cout || std::fflush(stdout) != 0) {
         const std::string why = errno == 0 ? "" : std::string(": ") + std::strerror(errno);  // lost in an earlier write
-        throw BrokenWorld("standard output cannot be written" + why + ".");
+        throw SystemError("standard output cannot be written" + why + ".");
     }
     return code;
 }
@@ -69,7 +69,7 @@ void occupy_standard_descriptors() {
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
         if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
         if (::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor)
-            std::_Exit(broken_world);
+            std::_Exit(system_error);
     }
 }
 
@@ -87,13 +87,13 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     stats::allow_fits_at_once(workers::job_cores());
     if (const auto why = unsupported_processor(); !why.empty())
-        return complain(broken_world, why, request_json(argc, argv));
+        return complain(system_error, why, request_json(argc, argv));
     const campaign::VisibleStream output(std::cout), errors(std::cerr);
     try {
         return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());
-    } catch (const campaign::WrongQuestion& error) {
-        return complain(wrong_question, error.what(), request_json(argc, argv));
-    } catch (const std::exception& error) {  // BrokenWorld and everything unforeseen
-        return complain(broken_world, error.what(), request_json(argc, argv));
+    } catch (const campaign::InputError& error) {
+        return complain(input_error, error.what(), request_json(argc, argv));
+    } catch (const std::exception& error) {  // SystemError and everything unforeseen
+        return complain(system_error, error.what(), request_json(argc, argv));
     }
 }

@@ -1,9 +1,9 @@
 #include "sweep/cli/page_file.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/files/aside_file.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/locked_files.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 void check_page_file(std::string_view option, const std::string& output, const std::string& database,
                      const FileKind& kind) {
     const auto refuse = [&](std::string_view why) {
-        throw campaign::wrong_question(std::string(option), fmt::format("'{}'", output), std::string(why));
+        throw campaign::input_error(std::string(option), fmt::format("'{}'", output), std::string(why));
     };
     std::error_code error;
     const auto there = fs::status(output, error);
@@ -55,7 +55,7 @@ void write_page_file(const std::string& output, const std::string& page) {
         errno = 0;
         std::ofstream stream(output, std::ios::binary);
         stream << page << std::flush;
-        if (!stream) throw BrokenWorld(fmt::format("'{}': cannot be written: {}", output, std::strerror(errno)));
+        if (!stream) throw SystemError(fmt::format("'{}': cannot be written: {}", output, std::strerror(errno)));
         return;
     }
     files::AsideFile file(fs::weakly_canonical(output));  // through links: the page is where the link points

@@ -12,14 +12,14 @@ struct FileKind {
 };
 inline constexpr FileKind html_page{"page", "<!doctype html>"};
 
-/// Throws WrongQuestion with the option if the page cannot be written: the output is a folder, its folder is missing,
+/// Throws InputError with the option if the page cannot be written: the output is a folder, its folder is missing,
 /// or there is no permission. Files of `database` (empty: none) and existing files of another kind, such as a campaign
 /// file, are refused, too.
 void check_page_file(std::string_view option, const std::string& output, const std::string& database,
                      const FileKind& kind = html_page);
 
 /// Writes the page and then moves it to its place, so that a failure leaves an existing file unchanged; writes directly
-/// to devices and pipes. Throws BrokenWorld.
+/// to devices and pipes. Throws SystemError.
 void write_page_file(const std::string& output, const std::string& page);
 
 }  // namespace grainsweep::cli

@@ -1,5 +1,5 @@
 // The only file that includes CLI11.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/report/text_layout.hpp"
@@ -81,7 +81,7 @@ void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Par
     }
 }
 
-/// The first argument that is no option must name a command: else WrongQuestion with the nearest.
+/// The first argument that is no option must name a command: else InputError with the nearest.
 void check_command(const std::vector<Command>& commands, const char* const* argv) {
     const std::string word = argv[1];
     if (word.starts_with('-') || std::ranges::find(commands, word, &Command::name) != commands.end()) return;
@@ -89,8 +89,8 @@ void check_command(const std::vector<Command>& commands, const char* const* argv
     for (const auto& command : commands) {
         if (!command.hidden) names.push_back(command.name);
     }
-    throw campaign::wrong_question("", "", fmt::format("there is no command '{}'; grainsweep --help lists them", word),
-                                   campaign::nearest_word(word, names));
+    throw campaign::input_error("", "", fmt::format("there is no command '{}'; grainsweep --help lists them", word),
+                                campaign::nearest_word(word, names));
 }
 
 /// Returns a parse error as one sentence, with the nearest option if an option is unknown.
@@ -219,7 +219,7 @@ Action parse_command_line(const std::vector<Command>& commands, int argc, const 
         const int code = app.exit(asked);
         return [code] { return code; };
     } catch (const CLI::ParseError& error) {
-        throw campaign::WrongQuestion(sentence_of(error, app));
+        throw campaign::InputError(sentence_of(error, app));
     }
 }
 

@@ -1,6 +1,6 @@
 #include "sweep/cli/pictures.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/film.hpp"
@@ -36,7 +36,7 @@ void declare_pictures(Parser& parser, PictureRequest& request) {
 Pictures::Pictures(PictureRequest request, campaign::Case question)
     : request_(std::move(request)), question_(std::move(question)) {
     if (request_.frames && request_.page.empty() && request_.folder.empty())
-        throw campaign::wrong_question("--frames", std::to_string(*request_.frames), "needs --watch or --vtk");
+        throw campaign::input_error("--frames", std::to_string(*request_.frames), "needs --watch or --vtk");
     if (!request_.page.empty()) {
         check_page_file("--watch", request_.page, "");
         film_ = std::make_unique<report::Film>();
@@ -59,7 +59,7 @@ workers::Camera Pictures::camera() {
 void Pictures::shoot(const Scene& scene) {
     const Snapshot snapshot = scene.snapshot();
     if (!any_ && !report::shows_particles(snapshot) && snapshot.fields.empty())
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             film_ ? "--watch" : "--vtk", "",
             fmt::format("scene '{}' shows no particles and no flow", shown_scene(question_.scene)));
     any_ = true;

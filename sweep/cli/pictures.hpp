@@ -27,14 +27,14 @@ struct PictureRequest {
 
 void declare_pictures(Parser& parser, PictureRequest& request);
 
-/// Pictures of one case. Throws WrongQuestion before the computation if the page cannot be written.
+/// Pictures of one case. Throws InputError before the computation if the page cannot be written.
 class Pictures {
 public:
     Pictures(PictureRequest request, campaign::Case question);
     ~Pictures();
 
-    /// Returns a camera for the requested pictures. At its first frame it throws WrongQuestion if the scene shows
-    /// nothing, BrokenWorld if a file cannot be written.
+    /// Returns a camera for the requested pictures. At its first frame it throws InputError if the scene shows
+    /// nothing, SystemError if a file cannot be written.
     [[nodiscard]] workers::Camera camera();
     /// Writes the page.
     void finish(const campaign::CaseResult& result);

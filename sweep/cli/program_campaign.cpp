@@ -1,7 +1,7 @@
 #include "sweep/cli/program_campaign.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/when_clauses.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/program_guard.hpp"
@@ -20,14 +20,14 @@ campaign::Campaign with_program(campaign::Campaign campaign, const fs::path& con
     const std::string place = config.string() + ": $.program.";
     if (campaign.execution.launcher.empty())
         if (const auto why = workers::why_not_here(*program); !why.empty())
-            throw campaign::wrong_question(place + "command[0]", program->command.front(), why);
+            throw campaign::input_error(place + "command[0]", program->command.front(), why);
     if (program->version_command.empty()) return campaign;
     auto versioned = std::make_shared<campaign::Program>(*program);
     try {
         workers::ProgramGuard guard;
         versioned->version = workers::ask_version(*program, guard);
     } catch (const std::runtime_error& why) {
-        throw campaign::wrong_question(place + "version", "", why.what());
+        throw campaign::input_error(place + "version", "", why.what());
     }
     campaign.space.scene = campaign::enter_program(std::move(versioned));
     return campaign;

@@ -1,6 +1,6 @@
 #include "sweep/cli/program_case.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/program_guard.hpp"
 
@@ -17,15 +17,15 @@ campaign::CaseResult answer_by_program(std::shared_ptr<const campaign::Program> 
                                        std::int64_t attempt, std::optional<double> limit_seconds, const fs::path& keep,
                                        const PictureRequest& pictures) {
     if (!pictures.folder.empty() || !pictures.page.empty())
-        throw campaign::wrong_question(pictures.folder.empty() ? "--watch" : "--vtk", "",
-                                       "a program has no pictures of its case; --keep DIR keeps its files");
+        throw campaign::input_error(pictures.folder.empty() ? "--watch" : "--vtk", "",
+                                    "a program has no pictures of its case; --keep DIR keeps its files");
     fs::path wanted = keep.empty() ? keep : fs::absolute(keep);
     if (!wanted.empty() && !wanted.has_filename()) wanted = wanted.parent_path();
     if (std::error_code none; !wanted.empty() && fs::exists(fs::symlink_status(wanted, none)))
-        throw campaign::wrong_question("--keep", keep.string(), "exists already; name a new folder");
+        throw campaign::input_error("--keep", keep.string(), "exists already; name a new folder");
     if (!wanted.empty() && program->protocol == campaign::Program::Protocol::lines)
-        throw campaign::wrong_question("--keep", keep.string(),
-                                       "a program of the protocol \"lines\" has no folder of its case");
+        throw campaign::input_error("--keep", keep.string(),
+                                    "a program of the protocol \"lines\" has no folder of its case");
     workers::ProgramGuard guard;
     const fs::path cases = fs::temp_directory_path() / fmt::format("grainsweep-{}", ::getpid());
     struct Removed {  // in the end

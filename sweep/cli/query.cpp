@@ -1,8 +1,8 @@
 #include "sweep/cli/query.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/report/workbook.hpp"
@@ -175,15 +175,14 @@ Table provenance_of(const Store& archive, const QueryRequest& request, const Sto
 void check_output(const QueryRequest& request, Format format) {
     if (format != Format::xlsx) {
         if (!request.output.empty())
-            throw campaign::wrong_question("-o", fmt::format("'{}'", request.output),
-                                           "only a workbook (--format xlsx) is written to a file; redirect other "
-                                           "formats with >");
+            throw campaign::input_error("-o", fmt::format("'{}'", request.output),
+                                        "only a workbook (--format xlsx) is written to a file; redirect other "
+                                        "formats with >");
         return;
     }
     if (!request.output.empty()) return check_page_file("-o", request.output, request.database, workbook_kind);
     if (::isatty(STDOUT_FILENO) != 0)
-        throw campaign::wrong_question("--format", "'xlsx'",
-                                       "a workbook is not shown on a terminal; name a file with -o");
+        throw campaign::input_error("--format", "'xlsx'", "a workbook is not shown on a terminal; name a file with -o");
 }
 
 void write_workbook(const std::string& bytes, const std::string& output) {
@@ -197,7 +196,7 @@ void write_workbook(const std::string& bytes, const std::string& output) {
 int query(const QueryRequest& request, Format format) {
     constexpr std::int64_t most_memory = std::int64_t{1} << 30U;
     const double seconds = request.seconds;
-    if (!(seconds >= 0)) throw campaign::wrong_question("--limit-seconds", std::to_string(seconds), "0 or more");
+    if (!(seconds >= 0)) throw campaign::input_error("--limit-seconds", std::to_string(seconds), "0 or more");
     check_output(request, format);
     const Store archive(request.database, Store::Mode::read);
     const Store::QueryLimits limits{seconds, most_memory};

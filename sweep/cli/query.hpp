@@ -13,7 +13,7 @@ struct QueryRequest {
     double seconds = 600;  ///< of processor time; 0: no limit
 };
 
-/// Runs the query and returns the exit code. Throws WrongQuestion for a refused statement, and for a workbook on a
+/// Runs the query and returns the exit code. Throws InputError for a refused statement, and for a workbook on a
 /// terminal.
 [[nodiscard]] int query(const QueryRequest& request, report::Format format);
 

@@ -1,9 +1,9 @@
 #include "sweep/cli/run_campaign.hpp"
 
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
@@ -53,8 +53,8 @@ namespace fs = std::filesystem;
 
 // ---- collect: answers of a spool
 
-/// Crew of a run that computes no case.
-class NoCrew final : public workers::Crew {
+/// WorkerPool of a run that computes no case.
+class NoCrew final : public workers::WorkerPool {
 public:
     void expect(std::size_t) override {}
     [[nodiscard]] std::optional<workers::Place> place_for(double) override { return std::nullopt; }
@@ -98,18 +98,18 @@ void note_state(const campaign::Cases& cases, const Ended& one, std::vector<stor
     }
 }
 
-/// Returns the campaign of a spool. Throws WrongQuestion if there is none, or a file that it names has changed.
+/// Returns the campaign of a spool. Throws InputError if there is none, or a file that it names has changed.
 campaign::Campaign campaign_of_spool(const fs::path& spool) {
     const auto asked = spool::Spool::asked_in(spool);
     return campaign::asked_in(spool / "campaign", [&] { return campaign::parse_campaign(asked.text, asked.folder); });
 }
 
-/// Throws WrongQuestion if these are not the cases of the spool.
+/// Throws InputError if these are not the cases of the spool.
 void refuse_other_cases(const fs::path& spool, const campaign::Cases& cases) {
     if (spool::Spool::asked_in(spool).cases == spool::hash_of_cases(cases)) return;
-    throw campaign::wrong_question("DIR", spool.string(),
-                                   "its tasks computed other cases: a file of the campaign has changed since, "
-                                   "or this program is another version");
+    throw campaign::input_error("DIR", spool.string(),
+                                "its tasks computed other cases: a file of the campaign has changed since, "
+                                "or this program is another version");
 }
 
 /// Imports the answers into the database, in which the cases must be enrolled, and into their states.
@@ -305,21 +305,20 @@ void say_first(ProgressLine& line, const campaign::Campaign& campaign, const cam
 
 void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunRequest& request, const fs::path& database) {
     if (request.calibrates && !designs::design_named(campaign.design).calibrates)
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             request.config.string() + ": $", "",
             "key 'calibration' with the measurements is missing; for a campaign with a design use run");
     if (request.spool.empty()) refuse_launcher_that_is_not_there(campaign, request.config);
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
-        throw campaign::wrong_question("--db", database.string(),
-                                       fmt::format("there is no folder '{}'", folder.string()));
+        throw campaign::input_error("--db", database.string(), fmt::format("there is no folder '{}'", folder.string()));
     if (!request.adopt.empty() && !fs::exists(database))
-        throw campaign::wrong_question("--adopt", fmt::format("'{}'", request.adopt),
-                                       fmt::format("there is no database '{}'", database.string()));
+        throw campaign::input_error("--adopt", fmt::format("'{}'", request.adopt),
+                                    fmt::format("there is no database '{}'", database.string()));
     if (request.again && designs::design_named(campaign.design).grows)
-        throw campaign::wrong_question("--again", to_string(*request.again),
-                                       fmt::format("the later points of a {} design depend on the stored results; use "
-                                                   "another campaign name: settled cases are not computed again",
-                                                   campaign.design));
+        throw campaign::input_error("--again", to_string(*request.again),
+                                    fmt::format("the later points of a {} design depend on the stored results; use "
+                                                "another campaign name: settled cases are not computed again",
+                                                campaign.design));
 }
 
 /// Puts another number of points in the place of the file's.
@@ -327,11 +326,11 @@ void ask_points(campaign::Campaign& campaign, std::int64_t points) {
     const auto& design = designs::design_named(campaign.design);
     const auto option = std::ranges::find(design.options, "points", &designs::OptionSpec::name);
     if (!design.extends || option == design.options.end())
-        throw campaign::wrong_question("--points", std::to_string(points),
-                                       fmt::format("a {} design cannot be extended by points", campaign.design));
+        throw campaign::input_error("--points", std::to_string(points),
+                                    fmt::format("a {} design cannot be extended by points", campaign.design));
     if (points > option->maximum)
-        throw campaign::wrong_question("--points", std::to_string(points),
-                                       fmt::format("must be at most {}", option->maximum));
+        throw campaign::input_error("--points", std::to_string(points),
+                                    fmt::format("must be at most {}", option->maximum));
     campaign.request.options["points"] = points;
 }
 
@@ -477,7 +476,7 @@ private:
                 judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
     }
     /// Everything is on disk when this returns.
-    void settle(schedule::Plan& plan, workers::Crew& crew, schedule::Watchers watchers) {
+    void settle(schedule::Plan& plan, workers::WorkerPool& crew, schedule::Watchers watchers) {
         store::Recorder recorder(*store_);
         schedule::Scheduler scheduler(campaign_.name, plan, crew, recorder, judge_.get(), std::move(watchers),
                                       walltime_);

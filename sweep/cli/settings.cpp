@@ -1,8 +1,8 @@
 #include "sweep/cli/settings.hpp"
 
 #include "sweep/campaign/csv_table.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/quantity.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ std::size_t factor_named(std::string_view name, std::span<const ModelFactor> fac
     const auto found = std::ranges::find(factors, name, &ModelFactor::name);
     if (found != factors.end()) return static_cast<std::size_t>(found - factors.begin());
     const auto names = names_of(factors);
-    throw campaign::wrong_question(
+    throw campaign::input_error(
         where, fmt::format("'{}'", name),
         fmt::format("is not a factor of the campaign; its factors are {}", campaign::listed(names)),
         campaign::nearest_word(name, names));
@@ -39,14 +39,13 @@ double value_of(const ModelFactor& factor, const std::string& text, std::string_
     if (factor.is_word()) {
         const auto found = std::ranges::find(factor.words, text);
         if (found != factor.words.end()) return static_cast<double>(found - factor.words.begin());
-        throw campaign::wrong_question(
-            where, fmt::format("'{}'", text),
-            fmt::format("the levels of {} are {}", factor.name, campaign::listed(factor.words)),
-            campaign::nearest_word(text, factor.words));
+        throw campaign::input_error(where, fmt::format("'{}'", text),
+                                    fmt::format("the levels of {} are {}", factor.name, campaign::listed(factor.words)),
+                                    campaign::nearest_word(text, factor.words));
     }
     const auto number = campaign::in_si(text, factor.unit);
     if (const auto* value = std::get_if<double>(&number)) return *value;
-    throw campaign::wrong_question(
+    throw campaign::input_error(
         where, fmt::format("'{}'", text),
         fmt::format("{} takes a number{}{}: {}", factor.name, factor.unit.empty() || factor.unit == "1" ? "" : " in ",
                     factor.unit == "1" ? "" : factor.unit, std::get<std::string>(number)));
@@ -58,9 +57,9 @@ void require_all(std::span<const ModelFactor> factors, const std::vector<std::op
     for (std::size_t j = 0; j < factors.size(); ++j)
         if (!values[j]) missing.push_back(factors[j].name);
     if (missing.empty()) return;
-    throw campaign::wrong_question(where, "",
-                                   fmt::format("a setting needs every factor; {} {} missing", campaign::listed(missing),
-                                               missing.size() == 1 ? "is" : "are"));
+    throw campaign::input_error(where, "",
+                                fmt::format("a setting needs every factor; {} {} missing", campaign::listed(missing),
+                                            missing.size() == 1 ? "is" : "are"));
 }
 
 /// Puts defaults in the place of factors that do not count, given or not.
@@ -80,13 +79,13 @@ constexpr std::uintmax_t largest_file = 256ULL << 20U;
 std::string text_of(const std::filesystem::path& file) {
     std::error_code none;
     if (!std::filesystem::is_regular_file(file, none))
-        throw campaign::wrong_question("--points", file.string(), "there is no such file");
+        throw campaign::input_error("--points", file.string(), "there is no such file");
     if (std::filesystem::file_size(file, none) > largest_file)
-        throw campaign::wrong_question("--points", file.string(), "the file must have at most 256 MiB");
+        throw campaign::input_error("--points", file.string(), "the file must have at most 256 MiB");
     std::string text = files::whole_file(file, none);
     if (none)
-        throw campaign::wrong_question("--points", file.string(),
-                                       fmt::format("the file cannot be read: {}", none.message()));
+        throw campaign::input_error("--points", file.string(),
+                                    fmt::format("the file cannot be read: {}", none.message()));
     return text;
 }
 
@@ -100,10 +99,10 @@ std::vector<std::optional<double>> assigned(std::span<const ModelFactor> factors
     std::vector<std::optional<double>> values(factors.size());
     for (const auto& assignment : assignments) {
         const auto equals = assignment.find('=');
-        if (equals == std::string::npos) throw campaign::wrong_question(option, assignment, "must be NAME=VALUE");
+        if (equals == std::string::npos) throw campaign::input_error(option, assignment, "must be NAME=VALUE");
         const std::string name = assignment.substr(0, equals), where = option + " " + name;
         const auto j = factor_named(name, factors, option);
-        if (values[j]) throw campaign::wrong_question(where, "", "this factor is given twice");
+        if (values[j]) throw campaign::input_error(where, "", "this factor is given twice");
         values[j] = value_of(factors[j], assignment.substr(equals + 1), where);
     }
     return values;
@@ -122,7 +121,7 @@ study::Held read_held(std::span<const ModelFactor> factors, std::span<const std:
         if (!values[j]) continue;
         const auto& factor = factors[j];
         if (!factor.is_word() && !(*values[j] >= factor.low && *values[j] <= factor.high))
-            throw campaign::wrong_question(
+            throw campaign::input_error(
                 "--hold " + factor.name, factor.text(*values[j]),
                 fmt::format("is outside of {} to {}, where the campaign has cases", factor.low, factor.high));
         held.emplace_back(j, *values[j]);
@@ -134,13 +133,12 @@ void read_references(const study::ModelCases& cases, std::span<const std::string
                      std::span<study::Objective> objectives) {
     for (const auto& assignment : assignments) {
         const auto equals = assignment.find('=');
-        if (equals == std::string::npos)
-            throw campaign::wrong_question("--reference", assignment, "must be NAME=VALUE");
+        if (equals == std::string::npos) throw campaign::input_error("--reference", assignment, "must be NAME=VALUE");
         const std::string name = assignment.substr(0, equals), text = assignment.substr(equals + 1);
         const auto objective = std::ranges::find(objectives, name, &study::Objective::name);
         if (objective == objectives.end())
-            throw campaign::wrong_question("--reference", name, "is neither of the two objectives");
-        if (objective->reference) throw campaign::wrong_question("--reference", name, "this objective is given twice");
+            throw campaign::input_error("--reference", name, "is neither of the two objectives");
+        if (objective->reference) throw campaign::input_error("--reference", name, "this objective is given twice");
         const auto observable = std::ranges::find(cases.observables, name, &study::ResponseColumn::name);
         const auto factor = std::ranges::find(cases.factors, name, &ModelFactor::name);
         const auto unit = observable != cases.observables.end() ? observable->unit
@@ -149,7 +147,7 @@ void read_references(const study::ModelCases& cases, std::span<const std::string
         const auto number = campaign::in_si(text, unit);
         const auto* value = std::get_if<double>(&number);
         if (value == nullptr || !std::isfinite(*value))
-            throw campaign::wrong_question(
+            throw campaign::input_error(
                 "--reference " + name, fmt::format("'{}'", text),
                 value == nullptr ? std::get<std::string>(number) : std::string("must be a finite number"));
         objective->reference = *value;
@@ -158,7 +156,7 @@ void read_references(const study::ModelCases& cases, std::span<const std::string
 
 std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::span<const ModelFactor> factors) {
     const std::string text = text_of(file), where = "--points " + file.string();
-    campaign::CsvTable table(text, [&](const std::string& rule) { throw campaign::wrong_question(where, "", rule); });
+    campaign::CsvTable table(text, [&](const std::string& rule) { throw campaign::input_error(where, "", rule); });
     std::vector<std::size_t> columns;
     std::vector<std::optional<double>> named(factors.size());
     for (const auto& name : table.header()) {
@@ -176,7 +174,7 @@ std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::
         }
         study::fold(factors, setting);
     }
-    if (settings.empty()) throw campaign::wrong_question(where, "", "it has no row below its header");
+    if (settings.empty()) throw campaign::input_error(where, "", "it has no row below its header");
     return settings;
 }
 

@@ -10,17 +10,17 @@
 
 namespace grainsweep::cli {
 
-/// Reads every factor once. Throws WrongQuestion with missing factors, the nearest name for an unknown factor, or a
+/// Reads every factor once. Throws InputError with missing factors, the nearest name for an unknown factor, or a
 /// value that is no number or level of its factor.
 [[nodiscard]] study::Setting read_setting(std::span<const study::ModelFactor> factors,
                                           std::span<const std::string> assignments);
 
-/// Reads some of the factors, each once and within its range. Throws WrongQuestion like read_setting, and for a value
+/// Reads some of the factors, each once and within its range. Throws InputError like read_setting, and for a value
 /// outside the range.
 [[nodiscard]] study::Held read_held(std::span<const study::ModelFactor> factors,
                                     std::span<const std::string> assignments);
 
-/// Reads the reference values of objectives, each once. Throws WrongQuestion for another name or a value that is no
+/// Reads the reference values of objectives, each once. Throws InputError for another name or a value that is no
 /// finite number.
 void read_references(const study::ModelCases& cases, std::span<const std::string> assignments,
                      std::span<study::Objective> objectives);

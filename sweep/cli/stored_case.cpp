@@ -1,9 +1,9 @@
 #include "sweep/cli/stored_case.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,7 @@ namespace grainsweep::cli {
 
 campaign::Case require_case(const store::Store& archive, const std::string& id) {
     auto found = archive.find_case(id);
-    if (!found)
-        throw campaign::wrong_question("CASE", id, "is not the id of a case of this database, nor its beginning");
+    if (!found) throw campaign::input_error("CASE", id, "is not the id of a case of this database, nor its beginning");
     return *std::move(found);
 }
 
@@ -39,8 +38,7 @@ std::string why_not_again(const campaign::Case& question) {
 }
 
 campaign::Case as_asked_today(campaign::Case question) {
-    if (const auto why = why_not_again(question); !why.empty())
-        throw campaign::wrong_question("CASE", question.id, why);
+    if (const auto why = why_not_again(question); !why.empty()) throw campaign::input_error("CASE", question.id, why);
     for (const auto& [name, value] : find_scene(question.scene)->defaults()) question.inputs.try_emplace(name, value);
     return question;
 }

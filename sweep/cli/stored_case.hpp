@@ -8,7 +8,7 @@
 
 namespace grainsweep::cli {
 
-/// Returns the case of an id or its beginning. Throws WrongQuestion if there is none.
+/// Returns the case of an id or its beginning. Throws InputError if there is none.
 [[nodiscard]] campaign::Case require_case(const store::Store& archive, const std::string& id);
 /// Returns a heading with the case and its points, so that the beginning of an id is not mistaken for the number of a
 /// point.
@@ -19,7 +19,7 @@ namespace grainsweep::cli {
 [[nodiscard]] std::string why_not_again(const campaign::Case& question);
 
 /// Returns a stored case for the present scene. New parameters of the scene get their defaults, because a missing
-/// parameter in the identity of a case means its default. Throws WrongQuestion if the case cannot be computed again.
+/// parameter in the identity of a case means its default. Throws InputError if the case cannot be computed again.
 [[nodiscard]] campaign::Case as_asked_today(campaign::Case question);
 
 }  // namespace grainsweep::cli

@@ -1,6 +1,6 @@
 #include "sweep/cli/window_run.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/written_campaign.hpp"
@@ -52,7 +52,7 @@ Standing standing_of(const WindowRun& run, study::WindowRequest request, std::in
     const auto window = study::window_of(store, cases, request);
     const bool pair = window.goals.size() == 2;
     if (!pair && window.goals.front().factor)
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "--run", request.objectives.front().name,
             "is a factor, whose value is chosen, not measured: --width needs an observable as objective");
     Standing standing;

@@ -1,6 +1,6 @@
 #include "sweep/cli/written_campaign.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fstream>
@@ -14,15 +14,14 @@ WrittenCampaign::WrittenCampaign(const std::filesystem::path& folder, const std:
     std::error_code error;
     if (const std::string found = files::whole_file(path_, error); error != std::errc::no_such_file_or_directory) {
         if (error || found != text)
-            throw campaign::wrong_question(
-                std::string(option), path_.string(),
-                "a file of this name exists; a campaign file of this command would replace it");
+            throw campaign::input_error(std::string(option), path_.string(),
+                                        "a file of this name exists; a campaign file of this command would replace it");
         ours_ = false;
         return;
     }
     std::ofstream file(path_, std::ios::binary);
     file << text << std::flush;
-    if (!file) throw campaign::wrong_question(std::string(option), path_.string(), "cannot be written in this folder");
+    if (!file) throw campaign::input_error(std::string(option), path_.string(), "cannot be written in this folder");
 }
 
 WrittenCampaign::~WrittenCampaign() {

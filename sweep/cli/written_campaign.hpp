@@ -11,7 +11,7 @@ namespace grainsweep::cli {
 /// is kept.
 class WrittenCampaign {
 public:
-    /// `option`: option of the user, for messages. Throws WrongQuestion if another file of this name exists, or none
+    /// `option`: option of the user, for messages. Throws InputError if another file of this name exists, or none
     /// can be written.
     WrittenCampaign(const std::filesystem::path& folder, const std::string& name, const std::string& text,
                     std::string_view option);

@@ -2,9 +2,9 @@
 #include "sweep/files/artefacts.hpp"
 
 #include "sweep/files/aside_file.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/descriptor.hpp"
 #include "sweep/files/locked_files.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -161,7 +161,7 @@ void ArtefactFolder::put(std::string_view key, std::span<const std::byte> conten
     std::error_code error;
     if (!std::filesystem::is_directory(folder_, error)) {
         std::filesystem::create_directories(folder_, error);
-        if (error) throw BrokenWorld(fmt::format("folder '{}': cannot be made: {}", folder_.string(), error.message()));
+        if (error) throw SystemError(fmt::format("folder '{}': cannot be made: {}", folder_.string(), error.message()));
         sync_folder(std::filesystem::absolute(folder_).parent_path());
     }
     if (!std::exchange(swept_, true))  // no file takes a day to write
@@ -180,7 +180,7 @@ void ArtefactFolder::remove(std::string_view key) {
     std::error_code error;
     std::filesystem::remove(file_of(folder_, key), error);
     if (error)
-        throw BrokenWorld(fmt::format("'{}': cannot be removed: {}", file_of(folder_, key).string(), error.message()));
+        throw SystemError(fmt::format("'{}': cannot be removed: {}", file_of(folder_, key).string(), error.message()));
 }
 
 }  // namespace grainsweep::files

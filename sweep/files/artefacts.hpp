@@ -14,7 +14,7 @@
 namespace grainsweep::files {
 
 /// Folder of files named by the hash of their key; it is made at the first put(). Any number of processes may use it at
-/// the same time. A full or failing disk throws BrokenWorld, except in get().
+/// the same time. A full or failing disk throws SystemError, except in get().
 class ArtefactFolder final : public Artefacts {
 public:
     /// `on_damage`: called with a sentence on every unusable file.

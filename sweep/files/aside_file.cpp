@@ -1,7 +1,7 @@
 #include "sweep/files/aside_file.hpp"
 
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/processes.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace grainsweep::files {
 namespace {
 
 [[noreturn]] void failed(const std::filesystem::path& file, std::string_view what) {
-    throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
+    throw SystemError(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
 }
 
 /// In the target's folder; the name does not grow with the target's.

@@ -9,7 +9,7 @@
 
 namespace grainsweep::files {
 
-/// Temporary file, which is removed unless it takes its place. Errors are BrokenWorld.
+/// Temporary file, which is removed unless it takes its place. Errors are SystemError.
 class AsideFile {
 public:
     /// Makes a hidden file beside `target`, with a unique name of this process, thread and moment that ends in

@@ -1,6 +1,6 @@
 #include "sweep/files/descriptor.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ bool write_all(int descriptor, std::string_view bytes) {
 void sync_folder(const std::filesystem::path& folder) {
     const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (opened.is_open() && (::fsync(opened.number()) == 0 || errno == EINVAL)) return;  // EINVAL: it has no such syncs
-    throw BrokenWorld(fmt::format("'{}': cannot be synced: {}", folder.string(), std::strerror(errno)));
+    throw SystemError(fmt::format("'{}': cannot be synced: {}", folder.string(), std::strerror(errno)));
 }
 
 }  // namespace grainsweep::files

@@ -32,7 +32,7 @@ private:
 /// Writes all bytes. Returns false with errno on failure.
 [[nodiscard]] bool write_all(int descriptor, std::string_view bytes);
 
-/// Syncs a folder, which makes a rename durable. Throws BrokenWorld.
+/// Syncs a folder, which makes a rename durable. Throws SystemError.
 void sync_folder(const std::filesystem::path& folder);
 
 }  // namespace grainsweep::files

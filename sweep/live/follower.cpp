@@ -1,6 +1,6 @@
 #include "sweep/live/follower.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -98,7 +98,7 @@ std::vector<Follower::Settled> Follower::fresh(std::int64_t first) {
     const auto each = [&](const std::vector<store::Table::Cell>& row) {
         const auto key = static_cast<std::size_t>(whole(row[0]));
         if (whole(row[0]) == first_open_ && found.size() < most_at_once) ++first_open_;
-        if (key > most_keys) throw BrokenWorld(fmt::format("'{}': case number {}", database_.string(), key));
+        if (key > most_keys) throw SystemError(fmt::format("'{}': case number {}", database_.string(), key));
         if (known_.size() <= key) known_.resize(key + 1 + key / 2, 0);
         const auto mark = mark_of(words(row[1]), row[4], whole(row[5]));
         if (known_[key] == mark || found.size() >= most_at_once) return;

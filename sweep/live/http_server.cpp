@@ -1,7 +1,7 @@
 #include "sweep/live/http_server.hpp"
 
 #include "sweep/campaign/overloaded.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -229,7 +229,7 @@ MicroServer::MicroServer(std::uint16_t port, Respond respond) : respond_(std::mo
                                &MicroServer::completed, nullptr, MHD_OPTION_NOTIFY_CONNECTION,
                                &MicroServer::connection_changed, this, MHD_OPTION_END);
     if (daemon_ == nullptr)
-        throw BrokenWorld(fmt::format("port {} of this machine cannot be opened: {}; --port names another", port,
+        throw SystemError(fmt::format("port {} of this machine cannot be opened: {}; --port names another", port,
                                       errno == 0 ? "it is taken" : std::strerror(errno)));
 }
 
@@ -247,7 +247,7 @@ std::uint16_t MicroServer::port() const {
 
 void MicroServer::run(std::chrono::milliseconds at_most) {
     if (MHD_run_wait(daemon_, static_cast<std::int32_t>(at_most.count())) != MHD_YES)
-        throw BrokenWorld("the server cannot go on: its connections cannot be waited for");
+        throw SystemError("the server cannot go on: its connections cannot be waited for");
     end_slow_requests();
 }
 

@@ -62,7 +62,7 @@ public:
 
 using Respond = std::function<HttpReply(const HttpQuestion&)>;
 
-/// Opens a server. Port 0: any free port. Throws BrokenWorld if the port is not available.
+/// Opens a server. Port 0: any free port. Throws SystemError if the port is not available.
 [[nodiscard]] std::unique_ptr<HttpServer> open_http_server(std::uint16_t port, Respond respond);
 
 }  // namespace grainsweep::live

@@ -1,6 +1,6 @@
 #include "sweep/live/jobs.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/workers/process_start.hpp"
 
 #include <fcntl.h>
@@ -96,7 +96,7 @@ PrivateFolder::PrivateFolder() {
     std::error_code error;
     auto name = (std::filesystem::temp_directory_path(error) / "grainsweep-XXXXXX").string();
     if (error || ::mkdtemp(name.data()) == nullptr)
-        throw BrokenWorld(
+        throw SystemError(
             fmt::format("'{}': no folder can be made there: {}", name, error ? error.message() : std::strerror(errno)));
     path_ = name;
 }

@@ -61,7 +61,7 @@ private:
 /// Folder with permissions for this user alone. The destructor removes it.
 class PrivateFolder {
 public:
-    /// Throws BrokenWorld if it cannot be made.
+    /// Throws SystemError if it cannot be made.
     PrivateFolder();
     PrivateFolder(const PrivateFolder&) = delete;
     PrivateFolder& operator=(const PrivateFolder&) = delete;

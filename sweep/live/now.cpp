@@ -2,8 +2,8 @@
 
 #include "solver/plain_text.hpp"
 #include "sweep/files/aside_file.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/processes.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -115,7 +115,7 @@ void write_now(const fs::path& file, const Now& now) {
         files::AsideFile aside(file);
         aside.write(text_of(now));
         aside.take_place_unsynced();
-    } catch (const BrokenWorld&) {  // a full disk ends the run where a result is lost, not here
+    } catch (const SystemError&) {  // a full disk ends the run where a result is lost, not here
     }
 }
 

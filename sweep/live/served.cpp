@@ -2,8 +2,8 @@
 
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/json_writer.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/processes.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/files/whole_file.hpp"
 #include "sweep/live/thread_clock.hpp"
 #include "sweep/report/page.hpp"
@@ -47,7 +47,7 @@ constexpr std::string_view film_policy =
 std::string drawn_word(std::size_t bytes) {
     std::string raw(bytes, '\0'), word;
     if (::getrandom(raw.data(), raw.size(), 0) != static_cast<ssize_t>(raw.size()))
-        throw BrokenWorld("the system gives no random numbers for the token of the page");
+        throw SystemError("the system gives no random numbers for the token of the page");
     for (const char c : raw) word += fmt::format("{:02x}", static_cast<unsigned char>(c));
     return word;
 }

@@ -1,5 +1,5 @@
 #include "sweep/files/beside_program.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/media/entries.hpp"
 
 #include <grainsweep_version.hpp>
@@ -33,13 +33,13 @@ const Entries& load() {
     constexpr const char* file = "grainsweep_media.so";
     void* const module = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
     if (module == nullptr)
-        throw BrokenWorld(
+        throw SystemError(
             fmt::format("figures, workbooks and the live page need {}, which belongs beside the program or "
                         "into ../lib/grainsweep: {}",
                         file, ::dlerror()));
     const auto* const found = static_cast<const Entries*>(::dlsym(module, "grainsweep_media"));
     if (found == nullptr || found->build != std::string_view(GRAINSWEEP_VERSION " " GRAINSWEEP_COMMIT))
-        throw BrokenWorld(fmt::format("{} belongs to another version of the program: {}", file,
+        throw SystemError(fmt::format("{} belongs to another version of the program: {}", file,
                                       found == nullptr ? "unknown" : found->build));
     return *found;
 }

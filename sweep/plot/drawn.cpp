@@ -1,5 +1,5 @@
 // Panels side by side on paper, and the paper as a file.
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/plot/axes.hpp"
 #include "sweep/plot/canvas.hpp"
 
@@ -279,7 +279,7 @@ using Context = std::unique_ptr<cairo_t, Free>;
 
 void require_drawn(cairo_status_t status) {
     if (status != CAIRO_STATUS_SUCCESS)
-        throw BrokenWorld(fmt::format("the figure cannot be drawn: {}", cairo_status_to_string(status)));
+        throw SystemError(fmt::format("the figure cannot be drawn: {}", cairo_status_to_string(status)));
 }
 
 /// Rows of panels of one width, below a legend.

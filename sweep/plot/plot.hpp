@@ -100,7 +100,7 @@ enum class FileType { pdf, svg, png };
 
 /// Returns the bytes of the file. At any width text is 7 to 8 points high and lines are 0.5 to 1 point wide; panels are
 /// side by side if there is room. PNG has 600 dots per inch. The same figure gives the same bytes on one machine,
-/// because the file has no date. Throws BrokenWorld if the library cannot draw.
+/// because the file has no date. Throws SystemError if the library cannot draw.
 [[nodiscard]] std::string drawn(const Figure& figure, double width_mm, FileType type);
 
 }  // namespace grainsweep::plot

@@ -1,6 +1,6 @@
 #include "sweep/report/accuracy.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/corrected_tables.hpp"
 #include "sweep/report/print_axes.hpp"
 #include "sweep/study/error_text.hpp"
@@ -186,9 +186,9 @@ Document accuracy_document(std::string_view campaign, std::span<const NumericsCo
     const auto known = names_in(costs);
     for (const auto& name : observables)
         if (std::ranges::count(known, name) == 0)
-            throw campaign::wrong_question(
-                "--observable", name, fmt::format("no case has a value of it; there are {}", campaign::listed(known)),
-                campaign::nearest_word(name, known));
+            throw campaign::input_error("--observable", name,
+                                        fmt::format("no case has a value of it; there are {}", campaign::listed(known)),
+                                        campaign::nearest_word(name, known));
     const std::vector<std::string> asked =
         observables.empty() ? known : std::vector<std::string>(observables.begin(), observables.end());
     for (const auto& name : asked) {

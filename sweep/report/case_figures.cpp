@@ -98,8 +98,8 @@ std::pair<const FactorColumn*, const FactorColumn*> factors_of_map(const FigureS
         if (!name.empty()) {
             const auto variable = named_variable(subject, option, name);
             if (is_factor(subject, variable.name)) return &factor_named(subject, name);
-            throw campaign::wrong_question(option, "'" + name + "'",
-                                           "a map is over two factors: " + campaign::listed(factor_panels(subject)));
+            throw campaign::input_error(option, "'" + name + "'",
+                                        "a map is over two factors: " + campaign::listed(factor_panels(subject)));
         }
         return *std::ranges::find_if(order, [&](const auto* factor) { return factor != but; });
     };
@@ -108,7 +108,7 @@ std::pair<const FactorColumn*, const FactorColumn*> factors_of_map(const FigureS
     const FactorColumn* across = pick("--across", subject.across, up);
     if (up == nullptr) up = pick("--up", subject.up, across);
     if (up == across)
-        throw campaign::wrong_question("--up", "'" + subject.up + "'", "a map is over two different factors");
+        throw campaign::input_error("--up", "'" + subject.up + "'", "a map is over two different factors");
     return {across, up};
 }
 

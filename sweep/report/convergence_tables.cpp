@@ -1,6 +1,6 @@
 #include "sweep/report/convergence_tables.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/corrected_tables.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"

@@ -47,10 +47,10 @@ struct FigureKind {
 [[nodiscard]] bool has_values(const FigureSubject& subject);
 /// Returns the factors by their share of the response's variance, the most influential first.
 [[nodiscard]] std::vector<const study::FactorColumn*> by_influence(const FigureSubject& subject);
-/// Returns the variable that an option names: factor, response or "point". Throws WrongQuestion with the nearest name.
+/// Returns the variable that an option names: factor, response or "point". Throws InputError with the nearest name.
 [[nodiscard]] Variable named_variable(const FigureSubject& subject, std::string_view option, const std::string& name);
 
-/// Returns whether the axis of the response is logarithmic, over this range. Throws WrongQuestion where that is
+/// Returns whether the axis of the response is logarithmic, over this range. Throws InputError where that is
 /// requested and the range is not positive.
 [[nodiscard]] bool has_log_axis(const FigureSubject& subject, const NumberRange& range);
 /// Returns the response as a variable, with the requested axis.

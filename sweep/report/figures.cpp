@@ -1,6 +1,6 @@
 #include "sweep/report/figures.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/figure_kinds.hpp"
 
 #include <fmt/format.h>
@@ -26,18 +26,18 @@ bool is_single(const PanelNames& panels) {
     return panels.size() == 1 && panels.front().empty();
 }
 
-campaign::WrongQuestion refused_name(const FigureSubject& subject, std::string_view name) {
+campaign::InputError refused_name(const FigureSubject& subject, std::string_view name) {
     std::vector<std::string> names;
     for (const auto& info : figures_for(subject)) names.push_back(info.name);
     const std::string rule = fmt::format("campaign '{}' has no such figure; there are {}",
                                          subject.responses.campaign.name, campaign::listed(names));
-    return campaign::wrong_question("NAME", fmt::format("'{}'", name), rule, campaign::nearest_word(name, names));
+    return campaign::input_error("NAME", fmt::format("'{}'", name), rule, campaign::nearest_word(name, names));
 }
 
 void refuse_useless_choice(const FigureSubject& subject, const FigureKind& kind) {
     const auto refuse = [&](std::string_view option, const std::string& value) {
-        throw campaign::wrong_question(option, fmt::format("'{}'", value),
-                                       fmt::format("the figure '{}' has no such choice", kind.name));
+        throw campaign::input_error(option, fmt::format("'{}'", value),
+                                    fmt::format("the figure '{}' has no such choice", kind.name));
     };
     if (!kind.has_choice && !subject.across.empty()) refuse("--across", subject.across);
     if (!kind.has_choice && !subject.up.empty()) refuse("--up", subject.up);
@@ -68,7 +68,7 @@ plot::Figure figure_named(const FigureSubject& subject, std::string_view name) {
     if (colon < name.size()) {
         const std::string wanted(name.substr(colon + 1));
         if (std::ranges::find(panels, wanted) == panels.end() || wanted.empty())
-            throw campaign::wrong_question(
+            throw campaign::input_error(
                 "NAME", fmt::format("'{}'", name),
                 is_single(panels) ? fmt::format("the figure '{}' is one panel", kind->name)
                                   : fmt::format("the panels of '{}' are {}", kind->name, campaign::listed(panels)),
@@ -119,9 +119,9 @@ Variable named_variable(const FigureSubject& subject, std::string_view option, c
         names.push_back(response.name);
     }
     if (name != "point")
-        throw campaign::wrong_question(option, fmt::format("'{}'", name),
-                                       fmt::format("is none of {}", campaign::listed(names)),
-                                       campaign::nearest_word(name, names));
+        throw campaign::input_error(option, fmt::format("'{}'", name),
+                                    fmt::format("is none of {}", campaign::listed(names)),
+                                    campaign::nearest_word(name, names));
     const std::vector<double> points(responses.points.begin(), responses.points.end());
     const auto range = finite_range(points);
     return {name, "1", {}, range.low, range.high, false, points};
@@ -130,7 +130,7 @@ Variable named_variable(const FigureSubject& subject, std::string_view option, c
 bool has_log_axis(const FigureSubject& subject, const NumberRange& range) {
     if (!subject.log.value_or(spans_decades(range))) return false;
     if (range.low > 0) return true;
-    throw campaign::wrong_question(
+    throw campaign::input_error(
         "--axis", "'log'",
         fmt::format("what the figure shows of '{}' reaches down to {:.4g}: it has no logarithmic axis",
                     subject.response.name, range.low));

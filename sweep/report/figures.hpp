@@ -32,7 +32,7 @@ struct FigureInfo {
 /// Returns the figures for which this campaign has data.
 [[nodiscard]] std::vector<FigureInfo> figures_for(const FigureSubject& subject);
 
-/// Returns the figure of a name such as "effects" or "effects:friction". Throws WrongQuestion for a name that is not in
+/// Returns the figure of a name such as "effects" or "effects:friction". Throws InputError for a name that is not in
 /// figures_for(), with the nearest one; for a refused model; and for an option that the figure does not have.
 [[nodiscard]] plot::Figure figure_named(const FigureSubject& subject, std::string_view name);
 

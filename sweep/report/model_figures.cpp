@@ -1,5 +1,5 @@
 // model, model-map: predictions of a response model between the cases.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/figure_kinds.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/study/factor_axis.hpp"

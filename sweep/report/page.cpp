@@ -4,9 +4,9 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/findings.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/report/model_page.hpp"
@@ -256,7 +256,7 @@ Json models_of(const store::Store& store, const Responses& responses, const Page
 void refuse_unknown_models(const std::vector<std::string>& names, const PageModels& asked) {
     for (const auto& name : asked.of)
         if (!std::ranges::count(names, name))
-            throw campaign::wrong_question(
+            throw campaign::input_error(
                 "--model", fmt::format("'{}'", name),
                 fmt::format("no campaign has values of such a scalar; there are {}", campaign::listed(names)),
                 campaign::nearest_word(name, names));

@@ -1,6 +1,6 @@
 #include "sweep/report/sheet_file.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::time_t no_time = 315'532'800;  // 1980-01-01, the first day of a ZIP archive
 
-BrokenWorld unwritten(std::string_view why) {
-    return BrokenWorld(fmt::format("the workbook cannot be written: {}", why));
+SystemError unwritten(std::string_view why) {
+    return SystemError(fmt::format("the workbook cannot be written: {}", why));
 }
 
 void require(lxw_error error) {

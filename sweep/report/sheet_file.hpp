@@ -34,7 +34,7 @@ public:
     [[nodiscard]] virtual std::string finish() = 0;
 };
 
-/// Returns an empty workbook file. It and its functions throw BrokenWorld if there is no room for temporary files.
+/// Returns an empty workbook file. It and its functions throw SystemError if there is no room for temporary files.
 [[nodiscard]] std::unique_ptr<SheetFile> new_sheet_file();
 
 }  // namespace grainsweep::report

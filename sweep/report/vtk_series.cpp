@@ -1,7 +1,7 @@
 #include "sweep/report/vtk_series.hpp"
 
 #include "sweep/files/aside_file.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/files/whole_file.hpp"
 #include "sweep/report/vtk_file.hpp"
 
@@ -19,7 +19,7 @@ constexpr std::string_view particles = "particles";
 void write_file(const std::filesystem::path& path, const std::string& bytes) {
     std::error_code none;
     if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, none)))
-        throw BrokenWorld("'" + path.string() + "' is a symbolic link; a picture does not replace it");
+        throw SystemError("'" + path.string() + "' is a symbolic link; a picture does not replace it");
     files::AsideFile file(path);
     file.write(bytes);
     file.take_place();
@@ -42,7 +42,7 @@ std::string VtkSeries::file_of(std::string_view what, std::string_view extension
 void VtkSeries::begin() {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    if (error) throw BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
+    if (error) throw SystemError(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
     const std::string older = files::whole_file(collection(), error);  // none there, as a rule
     constexpr std::string_view before = "file=\"";
     for (std::size_t at = older.find(before); at != std::string::npos; at = older.find(before, at)) {

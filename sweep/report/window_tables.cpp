@@ -1,6 +1,6 @@
 #include "sweep/report/window_tables.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/model_tables.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "sweep/report/workbook.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/visible_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/sheet_file.hpp"
 
 #include <fmt/format.h>
@@ -53,10 +53,10 @@ public:
     }
     void add(const std::vector<Cell>& row) {
         if (row_ > most_rows)
-            throw campaign::wrong_question("--format", "'xlsx'",
-                                           fmt::format("a sheet holds {} rows and the answer has more; take csv or "
-                                                       "json, or add LIMIT to the statement",
-                                                       most_rows));
+            throw campaign::input_error("--format", "'xlsx'",
+                                        fmt::format("a sheet holds {} rows and the answer has more; take csv or "
+                                                    "json, or add LIMIT to the statement",
+                                                    most_rows));
         for (std::size_t j = 0; j < row.size(); ++j) std::visit([&](const auto& held) { write(j, held); }, row[j]);
         ++row_;
     }

@@ -27,12 +27,12 @@ public:
 
     /// Writes the fixed first row of the sheet "rows". `units`: one per column, empty if unknown.
     void begin(const std::vector<std::string>& columns, const std::vector<std::string>& units);
-    /// Adds a row. Throws WrongQuestion beyond 1,048,575 rows, the most of a sheet.
+    /// Adds a row. Throws InputError beyond 1,048,575 rows, the most of a sheet.
     void add(const std::vector<store::Table::Cell>& row);
     /// Returns the number of texts cut so far.
     [[nodiscard]] std::int64_t cut_texts() const;
     /// Returns the bytes of the file, with the second sheet "provenance". No row may be added afterwards. Throws
-    /// BrokenWorld if there is no room for temporary files.
+    /// SystemError if there is no room for temporary files.
     [[nodiscard]] std::string finish(const store::Table& provenance);
 
 private:

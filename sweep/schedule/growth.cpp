@@ -1,8 +1,8 @@
 #include "sweep/schedule/growth.hpp"
 
 #include "sweep/campaign/experiments.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/stored_request.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::function<bool(std::span<const double>)> admission(const store::CampaignReco
     try {
         return [space = std::move(*space), filter = store::make_filter(record.condition, names)](
                    std::span<const double> u) { return filter(space.at(u)); };
-    } catch (const campaign::WrongQuestion&) {
+    } catch (const campaign::InputError&) {
         return {};
     }
 }

@@ -15,7 +15,7 @@ namespace grainsweep::schedule {
 /// For a design that calibrates, adds the campaign's `where` clause, too: excluded points are no failures.
 ///
 /// Points settled without an answer: cases that crashed or timed out in all their attempts, unstable and rejected
-/// cases, cases whose observable is undefined, and points that the `where` clause excludes. Throws WrongQuestion where
+/// cases, cases whose observable is undefined, and points that the `where` clause excludes. Throws InputError where
 /// another campaign is stored under the name.
 bool grow(campaign::Campaign& campaign, const store::Store& store);
 

@@ -23,8 +23,8 @@ constexpr double estimate_interval = 0.1;  // s; cases may end ten thousand time
 
 }  // namespace
 
-Scheduler::Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
-                     Watchers watchers, Walltime walltime)
+Scheduler::Scheduler(std::string campaign, Plan& plan, workers::WorkerPool& crew, store::Recorder& recorder,
+                     Judge* judge, Watchers watchers, Walltime walltime)
     : campaign_(std::move(campaign)),
       plan_(plan),
       crew_(crew),
@@ -51,7 +51,7 @@ Ending Scheduler::run() {
     }
     recorder_.drain();
     show();
-    if (broken_) throw BrokenWorld(*broken_);
+    if (broken_) throw SystemError(*broken_);
     return ending();
 }
 

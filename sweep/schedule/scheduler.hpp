@@ -6,7 +6,7 @@
 #include "sweep/schedule/plan.hpp"
 #include "sweep/schedule/time_left.hpp"
 #include "sweep/store/recorder.hpp"
-#include "sweep/workers/crew.hpp"
+#include "sweep/workers/worker_pool.hpp"
 
 #include <chrono>
 #include <functional>
@@ -70,11 +70,11 @@ struct Watchers {
 
 class Scheduler {
 public:
-    Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
+    Scheduler(std::string campaign, Plan& plan, workers::WorkerPool& crew, store::Recorder& recorder, Judge* judge,
               Watchers watchers, Walltime walltime = {});
 
     /// Runs until no case is left, the statistics converge or the user interrupts. All results are on disk when it
-    /// returns. Throws only BrokenWorld.
+    /// returns. Throws only SystemError.
     Ending run();
 
 private:
@@ -97,7 +97,7 @@ private:
 
     std::string campaign_;
     Plan& plan_;
-    workers::Crew& crew_;
+    workers::WorkerPool& crew_;
     store::Recorder& recorder_;
     Judge* judge_;
     Watchers watchers_;

@@ -1,6 +1,6 @@
 #include "sweep/spool/collect.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ Collected collect(const fs::path& cases_folder, const campaign::Campaign& campai
             attempts[attempt->case_id].push_back(attempt->number);
         }
     }
-    if (error) throw BrokenWorld(fmt::format("'{}': cannot be read: {}", cases_folder.string(), error.message()));
+    if (error) throw SystemError(fmt::format("'{}': cannot be read: {}", cases_folder.string(), error.message()));
 
     for (auto& [id, numbers] : attempts) {
         std::ranges::sort(numbers);

@@ -1,11 +1,11 @@
 #include "sweep/spool/spool.hpp"
 
 #include "solver/scenes/scene.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/files/aside_file.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/descriptor.hpp"
 #include "sweep/files/locked_files.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ constexpr double touches_per_lease = 5;
 constexpr off_t largest_file = off_t{32} << 20U;  // an answer is two lines of messages, of at most 16 MB
 
 [[noreturn]] void broken(const fs::path& file, std::string_view what, int number = errno) {
-    throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(number)));
+    throw SystemError(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(number)));
 }
 
 files::Descriptor opened(const fs::path& file, int flags) {
@@ -130,11 +130,11 @@ std::optional<Entry> entry_of(const fs::path& file, const campaign::Attempt& nam
 Asked Spool::asked_in(const fs::path& folder) {
     const auto text = contents_of_file(folder / "campaign");
     if (!text)
-        throw campaign::wrong_question("DIR", folder.string(),
-                                       "is no spool: 'grainsweep work CONFIG --spool DIR' makes one");
+        throw campaign::input_error("DIR", folder.string(),
+                                    "is no spool: 'grainsweep work CONFIG --spool DIR' makes one");
     auto asked = asked_of(text->text);
     if (!asked || !text->fault.empty())
-        throw BrokenWorld(fmt::format("'{}': is damaged, or no spool of this program", (folder / "campaign").string()));
+        throw SystemError(fmt::format("'{}': is damaged, or no spool of this program", (folder / "campaign").string()));
     return std::move(*asked);
 }
 
@@ -148,8 +148,8 @@ Spool::Spool(fs::path folder, const Asked& asked, const SceneInfo& scene) : fold
     // Tasks that begin together write the same.
     if (!fs::exists(file)) put_in_place(file, asked_text(asked));
     if (const auto there = asked_in(folder_); there.cases != asked.cases)
-        throw campaign::wrong_question("--spool", folder_.string(),
-                                       "is a spool of other cases; take another folder for this campaign file");
+        throw campaign::input_error("--spool", folder_.string(),
+                                    "is a spool of other cases; take another folder for this campaign file");
 }
 
 fs::path Spool::file_of(const campaign::Attempt& attempt) const {

@@ -69,10 +69,10 @@ struct Asked {
 
 class Spool {
 public:
-    /// Reads the campaign of a spool. Throws WrongQuestion if there is no spool.
+    /// Reads the campaign of a spool. Throws InputError if there is no spool.
     [[nodiscard]] static Asked asked_in(const std::filesystem::path& folder);
 
-    /// Makes the folder if there is none. Throws WrongQuestion if it is a spool of other cases, BrokenWorld if it
+    /// Makes the folder if there is none. Throws InputError if it is a spool of other cases, SystemError if it
     /// cannot be written. `scene`: scene of the cases.
     Spool(std::filesystem::path folder, const Asked& asked, const SceneInfo& scene);
 

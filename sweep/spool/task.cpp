@@ -1,7 +1,7 @@
 #include "sweep/spool/task.hpp"
 
 #include "sweep/campaign/overloaded.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ std::vector<std::uint32_t> order_of(const std::vector<double>& predicted, const 
     return order;
 }
 
-Task::Task(const Spool& spool, campaign::Cases cases, const std::vector<double>& predicted, workers::Crew& crew,
+Task::Task(const Spool& spool, campaign::Cases cases, const std::vector<double>& predicted, workers::WorkerPool& crew,
            TaskRules rules, Watchers watchers)
     : spool_(spool),
       cases_(std::move(cases)),
@@ -84,7 +84,7 @@ Ending Task::run() {
             {unanswered({id, known_[one.place].next}, Outcome::abandoned, "its task was ended", 0), one.computer});
     tally_.elsewhere = elsewhere_.size();
     watchers_.progress(tally_);
-    if (broken_) throw BrokenWorld(*broken_);
+    if (broken_) throw SystemError(*broken_);
     return ending();
 }
 

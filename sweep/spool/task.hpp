@@ -6,7 +6,7 @@
 #include "sweep/campaign/cases.hpp"
 #include "sweep/schedule/scheduler.hpp"
 #include "sweep/spool/spool.hpp"
-#include "sweep/workers/crew.hpp"
+#include "sweep/workers/worker_pool.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -52,11 +52,11 @@ public:
     };
 
     /// `predicted`: seconds of the case at each place.
-    Task(const Spool& spool, campaign::Cases cases, const std::vector<double>& predicted, workers::Crew& crew,
+    Task(const Spool& spool, campaign::Cases cases, const std::vector<double>& predicted, workers::WorkerPool& crew,
          TaskRules rules, Watchers watchers);
 
     /// Runs until no case is left for this task. Returns `limited` if other tasks compute the rest. Throws only
-    /// BrokenWorld.
+    /// SystemError.
     schedule::Ending run();
     [[nodiscard]] const Tally& tally() const { return tally_; }
 
@@ -90,7 +90,7 @@ private:
     const Spool& spool_;
     campaign::Cases cases_;
     std::vector<double> predicted_;
-    workers::Crew& crew_;
+    workers::WorkerPool& crew_;
     TaskRules rules_;
     Watchers watchers_;
     TaskFile file_;

@@ -68,9 +68,9 @@ struct Store::Impl {
     void require_group() const;
     /// Returns whether the file has the columns of migration 003.
     [[nodiscard]] bool keeps_extents() const;
-    /// Throws BrokenWorld if another file is now at the path.
+    /// Throws SystemError if another file is now at the path.
     void require_in_place() const;
-    /// Throws BrokenWorld with the first damage in the data; checked once.
+    /// Throws SystemError with the first damage in the data; checked once.
     void require_sound();
     /// Checks every row, independent of the file's checksum. Returns false if rows belong to no case.
     [[nodiscard]] bool check_rows() const;
@@ -82,7 +82,7 @@ struct Store::Impl {
     /// Checks one case.
     void require_sound(std::int64_t key);
     void refuse_damage(const std::vector<DamagedTable>& tables, const std::vector<DamagedCase>& cases) const;
-    /// Returns the key of a campaign. Throws WrongQuestion with the nearest name if there is none.
+    /// Returns the key of a campaign. Throws InputError with the nearest name if there is none.
     [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;
     /// Returns the key of an observable. Throws std::logic_error if the scene has not declared it.
     [[nodiscard]] std::int64_t observable_key(const std::string& scene, std::int64_t revision, std::string_view name);
@@ -113,12 +113,12 @@ struct KnownCampaign {
     campaign::Identity identity;
 };
 [[nodiscard]] std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name);
-/// Returns the key of the stored campaign; empty if it is new. Throws WrongQuestion if the stored campaign of this name
+/// Returns the key of the stored campaign; empty if it is new. Throws InputError if the stored campaign of this name
 /// differs.
 [[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
                                                          const campaign::Campaign& campaign);
 
-/// Returns the key of a scalar, or of a series or profile, of a campaign. Throws WrongQuestion with the nearest name if
+/// Returns the key of a scalar, or of a series or profile, of a campaign. Throws InputError with the nearest name if
 /// there is none.
 [[nodiscard]] std::int64_t measured_key(const Connection& db, std::int64_t campaign_key, std::string_view campaign,
                                         std::string_view observable, bool scalar);
@@ -129,8 +129,8 @@ struct KnownCampaign {
 [[nodiscard]] bool ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
                                      const std::vector<DeclaredParameter>& parameters, KnownCases& known);
 
-/// Stores the places of an enrolled campaign if its places do not simply extend the stored ones. Throws WrongQuestion
-/// if stored places would leave the campaign, BrokenWorld for a part of a damaged design.
+/// Stores the places of an enrolled campaign if its places do not simply extend the stored ones. Throws InputError
+/// if stored places would leave the campaign, SystemError for a part of a damaged design.
 void place_anew(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key,
                 const campaign::Cases& cases, const Placing& placing);
 /// Removes verdicts on other places or by another rule.
@@ -157,7 +157,7 @@ void store_machine(Connection& db, const campaign::Campaign& campaign);
 [[nodiscard]] std::vector<std::string> damaged_machines(const Connection& db);
 
 // files.cpp
-/// Stores the files that a campaign uses and their contents. Throws WrongQuestion if one has changed since it was read.
+/// Stores the files that a campaign uses and their contents. Throws InputError if one has changed since it was read.
 void store_files(Connection& db, std::int64_t campaign_key, const campaign::Campaign& campaign);
 /// Returns a sentence on each damaged file.
 [[nodiscard]] std::vector<std::string> damaged_files(const Connection& db);

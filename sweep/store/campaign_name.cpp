@@ -1,6 +1,6 @@
 #include "sweep/store/campaign_name.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/database.hpp"
 #include "sweep/store/schema.hpp"
 
@@ -42,7 +42,7 @@ std::optional<std::string> why_no_view(std::string_view name) {
 
 void check_campaign_name(std::string_view name) {
     if (const auto why = why_no_view(name))
-        throw campaign::wrong_question("$.campaign", name, *why, std::string(name) + "_1");
+        throw campaign::input_error("$.campaign", name, *why, std::string(name) + "_1");
 }
 
 }  // namespace grainsweep::store

@@ -5,7 +5,7 @@
 
 namespace grainsweep::store {
 
-/// Throws WrongQuestion (at $.campaign), in upper or lower case, for a name that SQLite uses itself (json_each,
+/// Throws InputError (at $.campaign), in upper or lower case, for a name that SQLite uses itself (json_each,
 /// pragma_table_info, sqlite_schema), and for a name in the database schema. Also for a word of SQL that cannot name a
 /// table without quotes (SELECT, ORDER). Other words of SQL (FIRST, PLAN, KEY) are accepted. SQLite itself decides
 /// this, not a list.

@@ -59,7 +59,7 @@ std::string select_text(const Connection& db, const Shown& shown) {
             db.ask("SELECT parameter_id, default_value FROM parameter WHERE scene = ? AND revision = ? AND name = ?",
                    shown.scene, shown.revision, factor);
         if (!rows.next())
-            throw BrokenWorld(
+            throw SystemError(
                 fmt::format("campaign '{}': its factor {} is no parameter of the scene", shown.name, factor));
         columns.add(factor, "_input",
                     fmt::format("coalesce((SELECT i.value FROM case_input AS i WHERE i.case_key = p.case_key AND "

@@ -34,7 +34,7 @@ sqlite3* open_handle(const char* name, int flags) {
     if (code == SQLITE_OK) return handle;
     const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closing(handle, sqlite3_close_v2);
     const int number = handle == nullptr ? 0 : sqlite3_system_errno(handle);
-    throw BrokenWorld(fmt::format("database '{}': cannot be opened{}: {}", name,
+    throw SystemError(fmt::format("database '{}': cannot be opened{}: {}", name,
                                   (flags & SQLITE_OPEN_CREATE) != 0 ? " to write" : "",
                                   number == 0 ? sqlite3_errstr(code) : std::strerror(number)));
 }
@@ -209,7 +209,7 @@ void Connection::open(const std::filesystem::path& file, const std::string& name
     for (descriptor_ = -1; descriptor_ < 0;) {
         const auto before = descriptors_of(file);
         if (with_a_kept_one.size() > before.size())
-            throw BrokenWorld(
+            throw SystemError(
                 fmt::format("database '{}': its descriptor is not found in /proc/self/fd", file.string()));
         handle_.reset(open_handle(name.c_str(), flags));
         for (const int number : descriptors_of(file))
@@ -223,7 +223,7 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
     if (access == Access::write) {
         open(file, file.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
         if (sqlite3_db_readonly(handle_.get(), "main") != 0)
-            throw BrokenWorld(fmt::format("database '{}': cannot be opened to write: {}", file.string(),
+            throw SystemError(fmt::format("database '{}': cannot be opened to write: {}", file.string(),
                                           ::access(file.c_str(), W_OK) == 0 ? "read-only" : std::strerror(errno)));
         configure();
         return;
@@ -241,7 +241,7 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
     };
     try {
         probe();
-    } catch (const BrokenWorld&) {
+    } catch (const SystemError&) {
         const int code = sqlite3_extended_errcode(handle_.get());
         // A write-ahead database needs its shared-memory file beside it. Where that cannot be made and no journal
         // is waiting, there is no writer either.
@@ -281,7 +281,7 @@ void Connection::use(Journal journal) {
     auto statement = prepare(ahead ? "PRAGMA journal_mode = WAL" : "PRAGMA journal_mode = DELETE");
     const std::string got = statement.step() ? statement.get<std::string>(0) : "";
     if (got != (ahead ? "wal" : "delete")) {
-        throw BrokenWorld(fmt::format("{}: its journal could not be set to '{}' (it is '{}')",
+        throw SystemError(fmt::format("{}: its journal could not be set to '{}' (it is '{}')",
                                       shown_file(handle_.get()), ahead ? "wal" : "delete", got));
     }
 }
@@ -323,7 +323,7 @@ sqlite3_file* file_behind(sqlite3* database) {
 }
 
 [[noreturn]] void fail_reading(sqlite3* database, int code) {
-    throw BrokenWorld(fmt::format("{}: reading it failed ({})", shown_file(database), sqlite3_errstr(code)));
+    throw SystemError(fmt::format("{}: reading it failed ({})", shown_file(database), sqlite3_errstr(code)));
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 //     auto row = db.ask("SELECT name FROM campaign WHERE seed > ?", 7);
 //     while (row.next()) use(row.get<std::string>(0));
 //
-// Statements are prepared once per text and kept. Errors of the disk or of other processes throw BrokenWorld with a
+// Statements are prepared once per text and kept. Errors of the disk or of other processes throw SystemError with a
 // sentence. Errors in the text of a statement throw RefusedSql with SQLite's message.
 #pragma once
 
 #include "solver/scenes/values.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/locked_files.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -32,10 +32,10 @@ namespace grainsweep::store {
 
 /// Error: SQLite refuses the statement (syntax, unknown name, not authorised, a constraint). For the program's own
 /// statements it means that the file has been changed. Callers that run a user's statement catch it.
-class RefusedSql : public BrokenWorld {
+class RefusedSql : public SystemError {
 public:
     explicit RefusedSql(std::string words, const std::string& file = "the database")
-        : BrokenWorld(file + ": not as this program made it, damaged or altered (" + words + ")"),
+        : SystemError(file + ": not as this program made it, damaged or altered (" + words + ")"),
           words_(std::move(words)) {}
     [[nodiscard]] const std::string& words() const { return words_; }  ///< message of SQLite
 
@@ -276,7 +276,7 @@ private:
 };
 
 /// Returns the first bytes of a file, at most `most`, read by SQLite without a lock, a journal or a change. Throws
-/// BrokenWorld if it cannot be opened.
+/// SystemError if it cannot be opened.
 [[nodiscard]] std::string beginning_of(const std::filesystem::path& file, std::size_t most);
 
 /// Returns whether a word, in any case, is a keyword of SQLite.

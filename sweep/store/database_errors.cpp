@@ -24,23 +24,23 @@ void fail(sqlite3* database, int code) {
     };
     switch (code & 0xff) {
         case SQLITE_FULL:
-            throw BrokenWorld(fmt::format("{}: the disk is full; free some space and run again to resume", file));
+            throw SystemError(fmt::format("{}: the disk is full; free some space and run again to resume", file));
         case SQLITE_BUSY:
         case SQLITE_LOCKED:
         case SQLITE_PROTOCOL:
-            throw BrokenWorld(fmt::format("{}: locked by another process for more than {} s", file,
+            throw SystemError(fmt::format("{}: locked by another process for more than {} s", file,
                                           std::chrono::duration_cast<std::chrono::seconds>(patience).count()));
         case SQLITE_CORRUPT:
         case SQLITE_NOTADB:
         case SQLITE_FORMAT:
-            throw BrokenWorld(fmt::format("{}: damaged ({}); {}", file, words, how_to_copy_out));
+            throw SystemError(fmt::format("{}: damaged ({}); {}", file, words, how_to_copy_out));
         case SQLITE_IOERR:
-            throw BrokenWorld(fmt::format("{}: reading or writing failed: {}", file, cause()));
+            throw SystemError(fmt::format("{}: reading or writing failed: {}", file, cause()));
         case SQLITE_CANTOPEN:
         case SQLITE_PERM:
-            throw BrokenWorld(fmt::format("{}: cannot be opened: {}", file, cause()));
+            throw SystemError(fmt::format("{}: cannot be opened: {}", file, cause()));
         case SQLITE_READONLY:
-            throw BrokenWorld(fmt::format("{}: is not writable: {}", file, cause()));
+            throw SystemError(fmt::format("{}: is not writable: {}", file, cause()));
         case SQLITE_NOMEM:
             if (sqlite3_hard_heap_limit64(-1) > 0)
                 throw StatementLimit(

@@ -1,5 +1,5 @@
 // Enrolling: enters a campaign and its cases in the archive, or joins them with stored ones.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/moment.hpp"
@@ -22,8 +22,7 @@ void refuse_taken_name(const Connection& db, const Campaign& campaign) {
     const auto taken =
         db.value<std::string>("SELECT type FROM sqlite_schema WHERE name = ? COLLATE NOCASE", campaign.name);
     if (!taken) return;
-    throw campaign::wrong_question("$.campaign", campaign.name,
-                                   fmt::format("the database has a {} of that name", *taken));
+    throw campaign::input_error("$.campaign", campaign.name, fmt::format("the database has a {} of that name", *taken));
 }
 
 /// Declares the parameters and observables of the scene; returns the parameters sorted by name.
@@ -55,7 +54,7 @@ std::vector<DeclaredParameter> declare_scene(Store::Impl& archive, const SceneIn
         const auto* spec = scene.find_parameter(parameters.back().name);
         if (spec != nullptr && spec->default_value != parameters.back().default_value) {
             // Ids do not include default values. With another default the stored answers would belong to other cases.
-            throw campaign::wrong_question(
+            throw campaign::input_error(
                 "$.scene", fmt::format("default {} = {}", spec->name, campaign::to_text(spec->default_value)),
                 fmt::format("'{}' holds revision {} of {} with default {}: a changed default needs a new revision",
                             archive.file.string(), scene.revision, scene.name,

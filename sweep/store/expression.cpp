@@ -1,6 +1,6 @@
 #include "sweep/store/expression.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/database.hpp"
 
 #include <fmt/format.h>
@@ -210,13 +210,13 @@ Written condition_of(std::string_view text, std::string_view path) {
     return {path, text, "a condition is asked of one case"};
 }
 
-campaign::WrongQuestion refusal(const Written& written, std::string_view why, std::string_view suggestion = {}) {
-    return campaign::wrong_question(written.path, written.text, why, suggestion);
+campaign::InputError refusal(const Written& written, std::string_view why, std::string_view suggestion = {}) {
+    return campaign::input_error(written.path, written.text, why, suggestion);
 }
 
 /// SQLite's words, and the nearest name where it did not know one.
-campaign::WrongQuestion refusal_by_sqlite(const Written& written, std::string_view words,
-                                          std::span<const std::string> names) {
+campaign::InputError refusal_by_sqlite(const Written& written, std::string_view words,
+                                       std::span<const std::string> names) {
     constexpr std::string_view unknown_column = "no such column: ";
     constexpr std::string_view unknown_function = "no such function: ";
     if (words.starts_with(unknown_column)) {
@@ -368,7 +368,7 @@ public:
         try {
             statement_ = db_.prepare(fmt::format("SELECT {} FROM (SELECT {}) AS inputs", columns, row_of(names)));
         } catch (const RefusedSql& refused) {  // a collation is looked up where something compares by it
-            throw campaign::wrong_question(path_, "", refused.words());
+            throw campaign::input_error(path_, "", refused.words());
         }
     }
 
@@ -382,7 +382,7 @@ public:
         try {
             if (!statement_.step()) return numbers;
         } catch (const RefusedSql& refused) {
-            throw campaign::wrong_question(path_, "", refused.words());
+            throw campaign::input_error(path_, "", refused.words());
         }
         for (int k = 0; k < statement_.columns(); ++k)
             if (!statement_.is_null(k)) numbers[static_cast<std::size_t>(k)] = statement_.get<double>(k);

@@ -13,7 +13,7 @@
 namespace grainsweep::store {
 
 /// Compiles `expression` of the given parameter names. Only deterministic operators and functions are permitted (no
-/// sub-select, random() or clock). Throws WrongQuestion (at $.where) with SQLite's message, and the nearest name for an
+/// sub-select, random() or clock). Throws InputError (at $.where) with SQLite's message, and the nearest name for an
 /// unknown column. An empty expression accepts every case. NULL counts as false.
 [[nodiscard]] campaign::Filter make_filter(std::string_view expression, std::span<const std::string> names);
 

@@ -1,6 +1,6 @@
 // Files of campaigns in the archive: who used them, their contents.
 #include "sweep/campaign/file_contents.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ void store_files(Connection& db, std::int64_t campaign_key, const campaign::Camp
             const auto path = file.path.empty() ? file.name : file.path.string();
             auto read = campaign::contents_of(FileWord{file.hash, path});
             if (const auto* why = std::get_if<std::string>(&read))
-                throw campaign::wrong_question(file.place, file.name, *why);
+                throw campaign::input_error(file.place, file.name, *why);
             db.run("INSERT INTO program_content (hash, contents) VALUES (?, ?) ON CONFLICT DO NOTHING", file.hash,
                    Blob{std::get<campaign::FileContents>(read).text});
         }
@@ -66,7 +66,7 @@ void Store::enter_files_of(const campaign::Case& question) const {
         auto contents = file ? stored_contents(impl_->db, file->hash) : std::nullopt;
         if (!contents) continue;  // an archive older than the storage of files: the file at the path is read
         if (campaign::content_hash(*contents) != file->hash)
-            throw BrokenWorld(fmt::format("database '{}': damaged: the contents of '{}' are not as written",
+            throw SystemError(fmt::format("database '{}': damaged: the contents of '{}' are not as written",
                                           impl_->file.string(), file->path));
         campaign::enter_contents(std::move(*contents));
     }

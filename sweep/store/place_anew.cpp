@@ -1,6 +1,6 @@
 // Places of a campaign that cannot simply be extended: a design with renumbered points replaces the old one, and a
 // damaged design is repaired.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/soundness.hpp"
 
@@ -79,7 +79,7 @@ Difference difference(const std::vector<Place>& stored, const std::vector<Place>
 /// A damaged design is put right by the whole of it.
 void refuse_a_part(const Store::Impl& archive, const Campaign& campaign, std::int64_t written, std::size_t asked) {
     if (static_cast<std::int64_t>(asked) >= written) return;
-    throw BrokenWorld(
+    throw SystemError(
         fmt::format("database '{}': damaged: the design of campaign '{}' is not as written. A run of the whole "
                     "campaign, {} cases, puts it right; this one asks for {}",
                     archive.file.string(), campaign.name, written, asked));
@@ -90,7 +90,7 @@ void refuse_a_loss(const Store::Impl& archive, const Campaign& campaign, const s
                    const std::vector<Place>& asked, const Place& moved) {
     const auto& design = designs::design_named(campaign.design);
     if (design.beginning == designs::Beginning::listed) {
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "$.design.rows", fmt::format("another row {}", moved.point),
             fmt::format("campaign '{}' stands in '{}' with its own: a list is extended at its end", campaign.name,
                         archive.file.string()));
@@ -98,7 +98,7 @@ void refuse_a_loss(const Store::Impl& archive, const Campaign& campaign, const s
     std::unordered_set<std::int64_t> kept;
     for (const auto& it : asked) kept.insert(it.case_key);
     if (std::ranges::all_of(stored, [&](const Place& it) { return kept.contains(it.case_key); })) return;
-    throw campaign::wrong_question(
+    throw campaign::input_error(
         "$.design", fmt::format("{} cases", asked.size()),
         fmt::format("campaign '{}' stands in '{}' with {}, and this {} does not contain them all: ask for no fewer "
                     "replicates, or give another question another name",

@@ -76,7 +76,7 @@ std::shared_ptr<const campaign::Program> Store::program(std::string_view scene) 
     const auto& db = impl_->db;
     if (!campaign::is_program(scene) || !has_programs(db)) return nullptr;
     const auto damaged = [&](const std::string& what) {
-        return BrokenWorld(fmt::format("database '{}': damaged: {}", impl_->file.string(), what));
+        return SystemError(fmt::format("database '{}': damaged: {}", impl_->file.string(), what));
     };
     std::optional<campaign::Program> program;
     {
@@ -114,7 +114,7 @@ std::map<std::int64_t, campaign::ProgramFacts> program_facts(const Connection& d
         const auto version = rows.get<std::optional<std::string>>(1);
         const auto status = rows.get<std::optional<std::int64_t>>(3);
         if (as_sql(sum_of_facts(key, number, version, rows.get<double>(2), status)) != rows.get<std::int64_t>(4))
-            throw BrokenWorld(
+            throw SystemError(
                 fmt::format("the database is damaged: table attempt_program: attempt {} of case {} is not as written",
                             number, key));
         facts.emplace(number, campaign::ProgramFacts{version.value_or(""), rows.get<double>(2), status});

@@ -1,5 +1,5 @@
 // SQL from outside: one statement that only reads.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
@@ -136,7 +136,7 @@ bool mentions(std::string_view sql, std::string_view word) {
 }
 
 /// What SQLite did not know, with the names there are and the nearest of them.
-campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view sql, std::string_view column) {
+campaign::InputError refusal_of_column(const Connection& db, std::string_view sql, std::string_view column) {
     std::string_view plain = column;
     if (const auto dot = plain.rfind('.'); dot != std::string_view::npos) plain.remove_prefix(dot + 1);
     std::vector<std::string> near, elsewhere;
@@ -153,11 +153,11 @@ campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view
     if (!elsewhere.empty()) rule += fmt::format("; '{}' is a column of {}", plain, campaign::listed(elsewhere));
     const std::string quoted = fmt::format("\"{}\"", plain);
     if (sql.find(quoted) != std::string_view::npos)
-        return campaign::wrong_question("SQL", {}, rule + "; a text stands in single quotes", std::string(plain));
-    return campaign::wrong_question("SQL", {}, rule, campaign::nearest_word(plain, near));
+        return campaign::input_error("SQL", {}, rule + "; a text stands in single quotes", std::string(plain));
+    return campaign::input_error("SQL", {}, rule, campaign::nearest_word(plain, near));
 }
 
-campaign::WrongQuestion refused_query(const Connection& db, std::string_view sql, std::string_view words) {
+campaign::InputError refused_query(const Connection& db, std::string_view sql, std::string_view words) {
     const auto after = [&](std::string_view start) {
         return words.starts_with(start) ? words.substr(start.size()) : std::string_view{};
     };
@@ -166,12 +166,12 @@ campaign::WrongQuestion refused_query(const Connection& db, std::string_view sql
     }
     if (const auto table = after("no such table: "); !table.empty()) {
         const auto tables = tables_of(db);
-        return campaign::wrong_question("SQL", {}, fmt::format("{}; there are {}", words, campaign::listed(tables)),
-                                        campaign::nearest_word(table, tables));
+        return campaign::input_error("SQL", {}, fmt::format("{}; there are {}", words, campaign::listed(tables)),
+                                     campaign::nearest_word(table, tables));
     }
     if (const auto function = after("no such function: "); !function.empty())
-        return campaign::wrong_question("SQL", {}, words, campaign::nearest_word(function, db.functions()));
-    return campaign::wrong_question("SQL", {}, words);
+        return campaign::input_error("SQL", {}, words, campaign::nearest_word(function, db.functions()));
+    return campaign::input_error("SQL", {}, words);
 }
 
 }  // namespace
@@ -194,9 +194,9 @@ void Store::query(std::string_view sql, const QueryLimits& limits, const ColumnS
         const Limited limited(impl_->db, limits);
         visit_rows(impl_->db, sql, begin, each);
     } catch (const StatementLimit& limit) {
-        throw campaign::wrong_question("SQL", {},
-                                       fmt::format("{} (limits: {} s of processor time, {} MiB)", limit.words(),
-                                                   campaign::shortest(limits.seconds), limits.bytes >> 20U));
+        throw campaign::input_error("SQL", {},
+                                    fmt::format("{} (limits: {} s of processor time, {} MiB)", limit.words(),
+                                                campaign::shortest(limits.seconds), limits.bytes >> 20U));
     } catch (const RefusedSql& refused) {
         throw refused_query(impl_->db, sql, refused.words());
     }

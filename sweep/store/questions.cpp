@@ -1,6 +1,6 @@
 // Queries of the archive by the scheduler, the statistics and the commands.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/soundness.hpp"
 
@@ -75,9 +75,8 @@ Observations observations_of(const Connection& db, std::int64_t key) {
 std::int64_t Store::Impl::campaign_key(std::string_view name) const {
     if (const auto key = db.value<std::int64_t>("SELECT campaign_id FROM campaign WHERE name = ?", name)) return *key;
     const auto names = db.column<std::string>("SELECT name FROM campaign ORDER BY campaign_id");
-    throw campaign::wrong_question("campaign", name,
-                                   fmt::format("'{}' holds {}", file.string(), campaign::listed(names)),
-                                   campaign::nearest_word(name, names));
+    throw campaign::input_error("campaign", name, fmt::format("'{}' holds {}", file.string(), campaign::listed(names)),
+                                campaign::nearest_word(name, names));
 }
 
 bool Store::Impl::keeps_extents() const {
@@ -171,7 +170,7 @@ std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) co
     }
     if (found.empty()) return std::nullopt;
     if (found.size() > 1) {
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "case", id_or_prefix,
             fmt::format("several cases begin so, {} and {} among them; give more digits", found[0].id, found[1].id));
     }
@@ -262,7 +261,7 @@ std::optional<campaign::CaseResult> Store::result(std::string_view case_id) cons
     }
     auto seconds = campaign::phases_in(phases);
     if (!seconds)
-        throw BrokenWorld(fmt::format("database '{}': damaged: the cost of attempt {} of case {} is not as written",
+        throw SystemError(fmt::format("database '{}': damaged: the cost of attempt {} of case {} is not as written",
                                       impl_->file.string(), result.attempt.number, case_id));
     result.cost.phases = std::move(*seconds);
     result.observations = observations_of(impl_->db, *key);
@@ -281,10 +280,10 @@ std::int64_t measured_key(const Connection& db, std::int64_t campaign_key, std::
         names.push_back(rows.get<std::string>(0));
         if (names.back() == observable) return rows.get<std::int64_t>(1);
     }
-    throw campaign::wrong_question("observable", observable,
-                                   fmt::format("the {} of '{}' are {}", scalar ? "scalars" : "series and profiles",
-                                               campaign, campaign::listed(names)),
-                                   campaign::nearest_word(observable, names));
+    throw campaign::input_error("observable", observable,
+                                fmt::format("the {} of '{}' are {}", scalar ? "scalars" : "series and profiles",
+                                            campaign, campaign::listed(names)),
+                                campaign::nearest_word(observable, names));
 }
 
 std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_view observable) const {

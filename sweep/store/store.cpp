@@ -1,7 +1,7 @@
 // Opening the archive, and groups of writes.
 #include "sweep/store/store.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/aggregates.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/database_errors.hpp"
@@ -21,7 +21,7 @@
 
 namespace grainsweep::store {
 
-using campaign::WrongQuestion;
+using campaign::InputError;
 
 namespace {
 
@@ -46,7 +46,7 @@ std::uint32_t big_endian(const char* bytes) {
 }
 
 [[noreturn]] void refuse_stranger(const std::filesystem::path& file) {
-    throw WrongQuestion(fmt::format("'{}' is a database of another program, not grainsweep's.", file.string()));
+    throw InputError(fmt::format("'{}' is a database of another program, not grainsweep's.", file.string()));
 }
 
 /// A file that never was SQLite's, or is another program's, is a wrong question; one whose header is gone is damage.
@@ -62,16 +62,16 @@ void check_header(const std::filesystem::path& file) {
         return;
     }
     if (seen.front() == '\0')
-        throw BrokenWorld(fmt::format("database '{}': damaged, its header is gone", file.string()));
-    throw WrongQuestion(fmt::format("'{}' is not a grainsweep database.", file.string()));
+        throw SystemError(fmt::format("database '{}': damaged, its header is gone", file.string()));
+    throw InputError(fmt::format("'{}' is not a grainsweep database.", file.string()));
 }
 
 void check_readable(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
-        throw WrongQuestion(fmt::format("there is no database '{}'.", file.string()));
+        throw InputError(fmt::format("there is no database '{}'.", file.string()));
     if (!std::filesystem::is_regular_file(file, ignored))
-        throw WrongQuestion(fmt::format("'{}' is not a file.", file.string()));
+        throw InputError(fmt::format("'{}' is not a file.", file.string()));
     check_header(file);
 }
 
@@ -85,8 +85,8 @@ std::int64_t schema_version(const Connection& db, const std::filesystem::path& f
     if (id != application || version < 1) refuse_stranger(file);
     const auto known = static_cast<std::int64_t>(schema_migrations().size());
     if (version > known) {
-        throw WrongQuestion(fmt::format("'{}' was written by a newer grainsweep (schema {}, this one knows {}).",
-                                        file.string(), version, known));
+        throw InputError(fmt::format("'{}' was written by a newer grainsweep (schema {}, this one knows {}).",
+                                     file.string(), version, known));
     }
     return version;
 }
@@ -100,7 +100,7 @@ void check_tables(const Connection& db, const std::filesystem::path& file) {
         "program",  "attempt_computer", "program_content", "attempt_program", "machine",        "campaign_file"};
     constexpr std::size_t of_the_first_version = 10;
     const auto refuse = [&](std::string_view what) {
-        throw BrokenWorld(fmt::format("database '{}': not as this program made it: {}", file.string(), what));
+        throw SystemError(fmt::format("database '{}': not as this program made it: {}", file.string(), what));
     };
     for (std::size_t k = 0; k < tables.size(); ++k) {
         auto objects = db.prepare("SELECT type, rootpage FROM sqlite_schema WHERE name = ?1 COLLATE NOCASE");
@@ -124,7 +124,7 @@ void check_tables(const Connection& db, const std::filesystem::path& file) {
 /// Numbers that no run writes, of a file without checksums: with them they would become the truth.
 void refuse_impossible(const Connection& db, const std::filesystem::path& file) {
     for (const auto& one : damaged_numbers(db))
-        throw BrokenWorld(fmt::format("database '{}': damaged: table {}: {}", file.string(), one.name, one.what));
+        throw SystemError(fmt::format("database '{}': damaged: table {}: {}", file.string(), one.name, one.what));
 }
 
 /// Brings the file to the newest schema. Inside a transaction.
@@ -154,31 +154,31 @@ std::string holder_of(const std::filesystem::path& file) {
         const auto host = rows.get<std::string>(1);
         const bool ended = host == host_name() && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
         return ended ? "" : fmt::format("process {} on {} since {}", process, host, rows.get<std::string_view>(2));
-    } catch (const BrokenWorld&) {  // the file is not whole yet
+    } catch (const SystemError&) {  // the file is not whole yet
         return {};
     }
 }
 
 [[noreturn]] void refuse_second_writer(const std::filesystem::path& file) {
     const std::string holder = holder_of(file);
-    throw BrokenWorld(fmt::format("database '{}': {} is writing to it; one run at a time", file.string(),
+    throw SystemError(fmt::format("database '{}': {} is writing to it; one run at a time", file.string(),
                                   holder.empty() ? "another run" : "the run of " + holder));
 }
 
 /// A name that SQLite, or a shell's habit, would read as something else than a file.
 void check_name(const std::filesystem::path& file) {
     const std::string name = file.string();
-    if (name == ":memory:") throw WrongQuestion("':memory:' is no database file: what a run stores must outlive it.");
+    if (name == ":memory:") throw InputError("':memory:' is no database file: what a run stores must outlive it.");
     if (name.starts_with("file:"))
-        throw WrongQuestion(fmt::format("'{}' is an address; a database is given by its file name.", name));
-    if (name.empty()) throw WrongQuestion("a database needs a file name.");
+        throw InputError(fmt::format("'{}' is an address; a database is given by its file name.", name));
+    if (name.empty()) throw InputError("a database needs a file name.");
 }
 
 /// The journal of a file lies beside one of its names and is not found beside another.
 void refuse_several_names(const std::filesystem::path& file) {
     struct stat status {};
     if (stat(file.c_str(), &status) != 0 || status.st_nlink <= 1) return;
-    throw WrongQuestion(
+    throw InputError(
         fmt::format("'{}' has {} names (hard links): results written under one are not seen under another; remove the "
                     "other names, or copy the file.",
                     file.string(), status.st_nlink));
@@ -193,7 +193,7 @@ void check_structure(const Connection& db, const std::filesystem::path& file) {
         auto rows = db.prepare(fmt::format("PRAGMA {}", what));
         while (rows.step()) {
             if (rows.get<std::string_view>(0) == "ok") continue;
-            throw BrokenWorld(
+            throw SystemError(
                 fmt::format("database '{}': damaged ({}); `grainsweep verify {}` names all that is "
                             "damaged, and {}",
                             file.string(), rows.get<std::string_view>(0), file.string(), how_to_copy_out));
@@ -242,8 +242,7 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     check_readable(file);
     Connection db(file, Connection::Access::read);
     const std::int64_t version = schema_version(db, file);
-    if (version == 0)
-        throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
+    if (version == 0) throw InputError(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
     check_tables(db, file);
     // An older schema is read unchanged; the next run migrates it. So queries for data that a migration added first
     // check whether they exist (keeps_extents).
@@ -276,7 +275,7 @@ void Store::Impl::require_writer() const {
 }
 void Store::Impl::require_in_place() const {
     if (!db.has_moved()) return;
-    throw BrokenWorld(
+    throw SystemError(
         fmt::format("database '{}': it was moved, deleted or replaced while this run was writing to it; put it back, "
                     "with '{}-wal' beside it where there is one, and run again to resume",
                     file.string(), file.string()));
@@ -321,7 +320,7 @@ std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
         "host) "
         "= (?, ?, ?, ?, ?, ?)",
         by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
-    if (!key) throw BrokenWorld(fmt::format("database '{}': a row just written is not there", file.string()));
+    if (!key) throw SystemError(fmt::format("database '{}': a row just written is not there", file.string()));
     return found->second = *key;
 }
 
@@ -330,13 +329,13 @@ void Store::remember_file() {
     if (impl_->in_group) throw std::logic_error("the file is remembered inside a group");
     if (!impl_->whole || impl_->is_older() || enrols() || impl_->db.file_bytes() > most_remembered_bytes) return;
     impl_->require_in_place();
-    std::optional<BrokenWorld> damage;
+    std::optional<SystemError> damage;
     const auto checked = [&](auto check) {
         return [this, &damage, check] {
             const Transaction one_state(impl_->db, Transaction::Kind::read);
             try {
                 return check();
-            } catch (const BrokenWorld& found) {
+            } catch (const SystemError& found) {
                 damage = found;
                 return false;
             }
@@ -347,7 +346,7 @@ void Store::remember_file() {
                              {checked([this] { return impl_->check_rows_on_two_cores(); }), described_tables,
                               checked([this] { return impl_->check_descriptions(); })});
         impl_->pages_then.clear();  // a later call sums what was written since, too
-    } catch (const BrokenWorld&) {  // all results are on disk; the next to open the file checks its rows
+    } catch (const SystemError&) {  // all results are on disk; the next to open the file checks its rows
     }
     if (damage) throw *damage;
 }

@@ -10,7 +10,7 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -142,7 +142,7 @@ public:
     /// create: makes the file and its schema if absent, and takes the writer's lock. The first transaction that writes
     /// updates an older schema. A second
     /// writer is refused with a sentence that names the first. read: changes neither content nor schema. Throws
-    /// BrokenWorld, or WrongQuestion if the file is no grainsweep database.
+    /// SystemError, or InputError if the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
@@ -151,7 +151,7 @@ public:
     /// Stores or extends campaign and cases, makes its view, and closes attempts of a dead main program as abandoned.
     /// Repeating it has no effect. Returns the state of each case, in the given order. Not inside group().
     ///
-    /// Throws WrongQuestion with both values if scene, revision, default, factor set, range, fixed value, condition,
+    /// Throws InputError with both values if scene, revision, default, factor set, range, fixed value, condition,
     /// seed, kind of design, scramble or first index differ under the same name. Another size of a design that is not
     /// extensible (latin_hypercube, levels of a lattice) throws, too. More points or replicates extend the campaign. A
     /// smaller extent is accepted, removes nothing, and is stored beside the larger one (CampaignRecord). New levels of
@@ -172,13 +172,13 @@ public:
     /// Returns a sentence on each damage found by the last enrol and its treatment.
     [[nodiscard]] const std::vector<std::string>& notes() const;
 
-    /// Throws BrokenWorld if the file was moved, deleted or replaced since it was opened; group() does, too.
+    /// Throws SystemError if the file was moved, deleted or replaced since it was opened; group() does, too.
     void require_in_place() const;
     /// Returns whether another Store, of any process, has the lock of the writer.
     [[nodiscard]] bool is_being_written() const;
 
     /// Checks every row, then stores a checksum of the file, so that an unchanged file needs no further check. Throws
-    /// BrokenWorld with damage that occurred during the run. Does nothing if there was damage before.
+    /// SystemError with damage that occurred during the run. Does nothing if there was damage before.
     void remember_file();
 
     /// Origin of results. The rate of a run counts those that it computed.
@@ -201,27 +201,27 @@ public:
     /// Stores the points at which the campaign converged and stopped; empty: it continues.
     void stop(std::string_view campaign, std::optional<std::int64_t> points);
 
-    // Queries. Queries of results check the checksums, once per Store, and throw BrokenWorld with the damage; status,
+    // Queries. Queries of results check the checksums, once per Store, and throw SystemError with the damage; status,
     // places, attempts and query do not.
     [[nodiscard]] std::vector<CampaignRecord> campaigns() const;
     /// Returns the names of a campaign's factors in the order of its design's dimensions; empty if there is no campaign
     /// of this name.
     [[nodiscard]] std::vector<std::string> factor_order(std::string_view campaign) const;
-    /// Returns the stored campaign of this name, if there is one. Throws WrongQuestion like enrol() if it differs.
+    /// Returns the stored campaign of this name, if there is one. Throws InputError like enrol() if it differs.
     [[nodiscard]] std::optional<CampaignRecord> stored(const campaign::Campaign& campaign) const;
     /// Returns how many of these cases are settled, by any campaign.
     [[nodiscard]] std::int64_t settled(const campaign::Cases& cases) const;
     [[nodiscard]] bool is_settled(std::string_view case_id) const;
     [[nodiscard]] StoredPlaces placement(std::string_view campaign) const;
-    /// Returns the case of an id or its beginning. Throws WrongQuestion if several cases match.
+    /// Returns the case of an id or its beginning. Throws InputError if several cases match.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     /// Returns the program of a scene, with the contents of its files; empty for other scenes, or if the database has
-    /// no programs. Throws BrokenWorld if it is damaged.
+    /// no programs. Throws SystemError if it is damaged.
     [[nodiscard]] std::shared_ptr<const campaign::Program> program(std::string_view scene) const;
     /// Returns the files of the campaigns of a case.
     [[nodiscard]] std::vector<StoredFile> files_of(std::string_view case_id) const;
     /// Registers the stored contents of the files of a case in this process; they have precedence over the files at
-    /// their paths. Throws BrokenWorld if they are damaged.
+    /// their paths. Throws SystemError if they are damaged.
     void enter_files_of(const campaign::Case& question) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
     [[nodiscard]] std::vector<CasePlace> places(std::string_view case_id) const;
@@ -255,7 +255,7 @@ public:
     /// and endless.
     [[nodiscard]] std::string rows_of(std::string_view campaign) const;
     /// Runs one statement of read-only SQL, with SQLite's functions and the aggregates of aggregates.hpp. Anything else
-    /// throws WrongQuestion with SQLite's message, the existing names and the nearest one.
+    /// throws InputError with SQLite's message, the existing names and the nearest one.
     [[nodiscard]] Table query(std::string_view sql) const;
     /// Limits of a query that returns its rows one by one, with bounded memory.
     struct QueryLimits {

@@ -70,7 +70,7 @@ template <class Check>
 void guarded(Check&& check, std::vector<Damage>& found) {
     try {
         check();
-    } catch (const BrokenWorld& broken) {
+    } catch (const SystemError& broken) {
         found.push_back({"file", "", "", "", broken.what()});
     }
 }
@@ -134,7 +134,7 @@ void Store::Impl::refuse_damage(const std::vector<DamagedTable>& tables, const s
     const Damage first = tables.empty() ? described(db, cases.front()) : described(db, tables.front());
     const std::size_t count = tables.size() + cases.size();
     const std::string more = count > 1 ? fmt::format(" (the first of {})", count) : "";
-    throw BrokenWorld(fmt::format("database '{}': damaged: {}{}. `grainsweep verify {}` names all that is damaged{}",
+    throw SystemError(fmt::format("database '{}': damaged: {}{}. `grainsweep verify {}` names all that is damaged{}",
                                   file.string(), in_words(first), more, file.string(),
                                   tables.empty() ? "; the next run of its campaign asks a damaged case again" : ""));
 }
@@ -162,7 +162,7 @@ bool Store::Impl::check_rows_on_two_cores() const {
         const bool all_belong = check_contents();
         refuse_damage(order.get(), {});
         return all_belong;
-    } catch (const BrokenWorld&) {
+    } catch (const SystemError&) {
         if (order.valid()) refuse_damage(order.get(), {});  // is named first, as on one core
         throw;
     }

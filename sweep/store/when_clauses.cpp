@@ -1,7 +1,7 @@
 #include "sweep/store/when_clauses.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/json_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ struct Waiting {
 };
 
 void check_reads(const Waiting& one, const campaign::ParameterSpace& space) {
-    const auto refuse = [&](const std::string& rule) { throw campaign::wrong_question(one.path, one.text, rule); };
+    const auto refuse = [&](const std::string& rule) { throw campaign::input_error(one.path, one.text, rule); };
     bool varies = false;
     for (const auto& name : one.reads) {
         if (name == one.clause.factor) refuse(fmt::format("'{}' cannot decide by itself whether it counts", name));
@@ -44,8 +44,8 @@ void check_reads(const Waiting& one, const campaign::ParameterSpace& space) {
     }
     std::string ring = next;
     for (auto step = std::ranges::find(path, next) + 1; step != path.end(); ++step) ring += " needs " + *step;
-    throw campaign::wrong_question(of(next)->path, of(next)->text,
-                                   fmt::format("conditions cannot need one another: {} needs {}", ring, next));
+    throw campaign::input_error(of(next)->path, of(next)->text,
+                                fmt::format("conditions cannot need one another: {} needs {}", ring, next));
 }
 
 }  // namespace

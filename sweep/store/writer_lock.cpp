@@ -1,7 +1,7 @@
 #include "sweep/store/writer_lock.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/campaign/input_error.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ namespace {
 constexpr off_t locked_byte = off_t{1} << 61U;
 
 [[noreturn]] void fail_to(const std::filesystem::path& database, const char* what, int number) {
-    throw BrokenWorld(fmt::format("database '{}': {}: {}", database.string(), what, std::strerror(number)));
+    throw SystemError(fmt::format("database '{}': {}: {}", database.string(), what, std::strerror(number)));
 }
 
 struct flock locked_range(short kind) {
@@ -92,7 +92,7 @@ long file_system_of(const std::filesystem::path& file) {
 void refuse_network(const std::filesystem::path& database, long magic) {
     const auto name = network_file_system(magic);
     if (name.empty()) return;
-    throw campaign::WrongQuestion(fmt::format(
+    throw campaign::InputError(fmt::format(
         "'{}' lies on a network file system ({}), where two nodes may both write a database: give --db a file on a "
         "disk of this machine and copy it afterwards, or compute with 'grainsweep work' and collect there, or say "
         "--network-disk where one node at a time is all that ever writes it",

@@ -12,7 +12,7 @@ namespace grainsweep::store {
 class WriterLock {
 public:
     /// Takes the lock with the descriptor of a connection (Connection::descriptor), which must outlive this object.
-    /// Returns nothing if another connection has the lock. Throws BrokenWorld if the file system has no locks.
+    /// Returns nothing if another connection has the lock. Throws SystemError if the file system has no locks.
     [[nodiscard]] static std::optional<WriterLock> take(int descriptor, const std::filesystem::path& database);
     WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
     WriterLock& operator=(WriterLock&& other) noexcept {
@@ -35,7 +35,7 @@ private:
 /// Returns the name of a network or cluster file system; empty for others. Hosts do not share memory there, so
 /// write-ahead logs would be damaged.
 [[nodiscard]] std::string_view network_file_system(long magic);
-/// Throws WrongQuestion, with an alternative, for a database on a network file system.
+/// Throws InputError, with an alternative, for a database on a network file system.
 void refuse_network(const std::filesystem::path& database, long magic);
 
 }  // namespace grainsweep::store

@@ -1,7 +1,7 @@
 #include "sweep/study/answers.hpp"
 
 #include "stats/group_test.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 

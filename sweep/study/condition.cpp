@@ -1,6 +1,6 @@
 #include "sweep/study/condition.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ private:
 
     [[noreturn]] void refuse(std::string_view expected, std::string_view suggestion = {}) const {
         const auto rest = text_.substr(at_, 30);
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             "--where", text_,
             fmt::format("{} at {}; a condition compares observables and factors with numbers by <, <=, >, >= or "
                         "between, joined by and, or, not and brackets",

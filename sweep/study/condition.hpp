@@ -19,7 +19,7 @@ namespace grainsweep::study {
 
 class Condition {
 public:
-    /// Parses a condition of the given names. Throws WrongQuestion at --where with the expected words and the nearest
+    /// Parses a condition of the given names. Throws InputError at --where with the expected words and the nearest
     /// name.
     [[nodiscard]] static Condition read(std::string_view text, std::span<const std::string> names);
 

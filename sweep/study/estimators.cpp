@@ -1,6 +1,6 @@
 #include "sweep/study/estimators.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/designs/design.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/effects.hpp"

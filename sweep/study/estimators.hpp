@@ -33,7 +33,7 @@ struct Estimators {
     std::string scatter_from;       ///< "replicates" or the observable that states it; empty: unknown
 };
 
-/// Returns both estimates, and those of `levels` with the model. Throws WrongQuestion if a feature of the campaign file
+/// Returns both estimates, and those of `levels` with the model. Throws InputError if a feature of the campaign file
 /// cannot be evaluated.
 [[nodiscard]] Estimators estimators_of(const store::Store& store, const Responses& responses,
                                        const ResponseColumn& response, std::span<const stats::Level> levels = {});

@@ -87,13 +87,13 @@ struct Ratio {
 };
 
 [[nodiscard]] Features default_features(std::span<const ModelFactor> factors, std::span<const Ratio> ratios = {});
-/// Returns the features of the campaign file. Throws WrongQuestion at $.model.features[k] for an expression that SQLite
+/// Returns the features of the campaign file. Throws InputError at $.model.features[k] for an expression that SQLite
 /// cannot evaluate.
 [[nodiscard]] Features written_features(std::span<const ModelFactor> factors, std::span<const std::string> expressions);
 /// Returns the ratios to try: of two varied positive factors with the same unit, which is not 1.
 [[nodiscard]] std::vector<Ratio> candidate_ratios(std::span<const ModelFactor> factors);
 
-/// Throws WrongQuestion if a feature of the campaign file cannot be evaluated.
+/// Throws InputError if a feature of the campaign file cannot be evaluated.
 void check_features(const campaign::Campaign& campaign);
 
 }  // namespace grainsweep::study

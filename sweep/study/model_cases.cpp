@@ -2,9 +2,9 @@
 
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <fmt/format.h>
@@ -84,7 +84,7 @@ std::vector<store::CampaignRecord> chosen_campaigns(const store::Store& store, s
         if (!asks_the_same(record, first)) others.push_back(record.name);
     if (name.empty() && !others.empty()) {
         others.insert(others.begin(), first.name);
-        throw campaign::wrong_question("--campaign", "", fmt::format("which of {}?", campaign::listed(others)));
+        throw campaign::input_error("--campaign", "", fmt::format("which of {}?", campaign::listed(others)));
     }
     std::erase_if(records,
                   [&](const auto& record) { return record.name == first.name || !asks_the_same(record, first); });
@@ -197,7 +197,7 @@ std::function<bool(const Setting&)> admission(const store::Store& store, const M
     campaign::Filter filter;
     try {
         filter = store::make_filter(cases.campaign.condition, names);
-    } catch (const campaign::WrongQuestion&) {  // an older version accepted a setting that is refused now
+    } catch (const campaign::InputError&) {  // an older version accepted a setting that is refused now
         return by_shares;
     }
     return [complete, filter, shares_fit](const Setting& setting) {

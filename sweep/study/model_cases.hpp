@@ -38,7 +38,7 @@ struct ModelCases {
     /// setting.
     std::function<bool(const Setting&)> possible;
 
-    /// Returns the observable of this name; empty name: the main observable. Throws WrongQuestion with the nearest
+    /// Returns the observable of this name; empty name: the main observable. Throws InputError with the nearest
     /// name.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
     [[nodiscard]] std::vector<std::string> observable_names() const;
@@ -46,7 +46,7 @@ struct ModelCases {
 };
 
 /// Returns the cases of the named campaign. Empty name: of the only campaign, or of all campaigns that differ in their
-/// points alone; throws WrongQuestion if more than one choice is left. `left_out`: outcomes of failed cases that are
+/// points alone; throws InputError if more than one choice is left. `left_out`: outcomes of failed cases that are
 /// not used.
 [[nodiscard]] ModelCases read_model_cases(const store::Store& store, std::string_view campaign,
                                           std::span<const campaign::Outcome> left_out = {});

@@ -1,7 +1,7 @@
 #include "sweep/study/model_influence.hpp"
 
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/sample_parts.hpp"
 

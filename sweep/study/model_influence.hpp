@@ -33,7 +33,7 @@ struct ModelInfluence {
     [[nodiscard]] bool depends() const { return !dependent.empty(); }
 };
 
-/// Fits a model and returns its indices. Throws WrongQuestion if a feature of the campaign file cannot be evaluated.
+/// Fits a model and returns its indices. Throws InputError if a feature of the campaign file cannot be evaluated.
 [[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response);
 /// Returns the indices of a model fitted to settled_cases(responses).
 [[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response,

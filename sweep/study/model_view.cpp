@@ -1,6 +1,6 @@
 #include "sweep/study/model_view.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/study/box_search.hpp"
 
 #include <fmt/format.h>
@@ -69,9 +69,9 @@ private:
 void check_defined(const Mapped& mapped, const std::vector<double>& features) {
     for (std::size_t k = 0; k < features.size(); ++k)
         if (!std::isfinite(features[k]))
-            throw campaign::wrong_question(fmt::format("$.model.features[{}]", k), mapped.name(k),
-                                           "is undefined somewhere in the ranges of the factors, and the rule "
-                                           "\"assisted\" integrates a model over all of them");
+            throw campaign::input_error(fmt::format("$.model.features[{}]", k), mapped.name(k),
+                                        "is undefined somewhere in the ranges of the factors, and the rule "
+                                        "\"assisted\" integrates a model over all of them");
 }
 
 /// Features of scramblings of one size: of each as many points as every one has within the `where` clause.
@@ -92,10 +92,10 @@ std::vector<double> view_points(const campaign::Campaign& campaign, const Mapped
         least = std::min(least, parts[k].size());
     }
     if (least < fewest_of_set * mapped.dimensions())
-        throw campaign::wrong_question("$.where", campaign.where,
-                                       fmt::format("leaves less than {} % of the ranges, too little to integrate a "
-                                                   "model over: give narrower ranges, or the rule \"replicates\"",
-                                                   100 * fewest_of_set / points_of_set));
+        throw campaign::input_error("$.where", campaign.where,
+                                    fmt::format("leaves less than {} % of the ranges, too little to integrate a "
+                                                "model over: give narrower ranges, or the rule \"replicates\"",
+                                                100 * fewest_of_set / points_of_set));
     std::vector<double> all;
     for (const auto& part : parts)
         all.insert(all.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(least));
@@ -143,8 +143,8 @@ schedule::ModelView model_view(const campaign::Campaign& campaign, std::int64_t 
     }
     for (std::size_t k = 0; k < d; ++k)
         if (!(view.space.high[k] > view.space.low[k]))
-            throw campaign::wrong_question(fmt::format("$.model.features[{}]", k), mapped->name(k),
-                                           "is the same everywhere in the ranges of the factors");
+            throw campaign::input_error(fmt::format("$.model.features[{}]", k), mapped->name(k),
+                                        "is the same everywhere in the ranges of the factors");
     designs::DesignRequest request = campaign.request;
     request.options["points"] = std::max(candidates, campaign::candidates_of(campaign));
     const auto design =

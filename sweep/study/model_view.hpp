@@ -17,7 +17,7 @@ namespace grainsweep::study {
 /// Models are integrated over 8 scramblings of 2^12 Sobol points, mapped to the factors like the design's points. Only
 /// points that `filter` accepts count. The features come from the campaign file, else by default; the answers do not
 /// affect them.
-/// Throws WrongQuestion at $.model.features if a feature is undefined somewhere in the ranges, and at $.where if the
+/// Throws InputError at $.model.features if a feature is undefined somewhere in the ranges, and at $.where if the
 /// clause excludes almost all of the ranges.
 [[nodiscard]] schedule::ModelView model_view(const campaign::Campaign& campaign, std::int64_t candidates,
                                              const campaign::Filter& filter);

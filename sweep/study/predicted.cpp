@@ -1,6 +1,6 @@
 #include "sweep/study/predicted.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -18,10 +18,9 @@ void refuse_undefined(const ModelCases& cases, const ObservableModel& model, std
         const auto row = model.features.of(setting);
         const auto bad = std::ranges::find_if_not(row, [](double x) { return std::isfinite(x); });
         if (bad != row.end())
-            throw campaign::wrong_question(
-                "", setting_text(cases.factors, setting),
-                fmt::format("the feature '{}' of the model has no number there",
-                            model.features.names[static_cast<std::size_t>(bad - row.begin())]));
+            throw campaign::input_error("", setting_text(cases.factors, setting),
+                                        fmt::format("the feature '{}' of the model has no number there",
+                                                    model.features.names[static_cast<std::size_t>(bad - row.begin())]));
     }
 }
 

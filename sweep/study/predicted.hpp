@@ -19,7 +19,7 @@ struct Predicted {
     std::vector<double> answers_low, answers_high;  ///< ends of its 95 % interval
     std::vector<Near> near;
 };
-/// Returns the predictions. Throws WrongQuestion if a feature is undefined at a setting.
+/// Returns the predictions. Throws InputError if a feature is undefined at a setting.
 [[nodiscard]] Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
                                 bool extrapolate);
 

@@ -1,8 +1,8 @@
 #include "sweep/study/process_window.hpp"
 
 #include "stats/confidence.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/design.hpp"
 
 #include <fmt/format.h>
@@ -341,13 +341,13 @@ void say_what_was_found(Window& window, const WindowRequest& request) {
 
 Window window_of(const store::Store& store, const ModelCases& cases, const WindowRequest& request) {
     if (request.where.empty() && request.objectives.empty())
-        throw campaign::wrong_question("window", "", "give a condition by --where, or --maximize or --minimize NAME");
+        throw campaign::input_error("window", "", "give a condition by --where, or --maximize or --minimize NAME");
     if (!(request.risk > 0 && request.risk < 1))
-        throw campaign::wrong_question("--risk", fmt::format("{}", request.risk), "must lie between 0 and 1");
+        throw campaign::input_error("--risk", fmt::format("{}", request.risk), "must lie between 0 and 1");
     const WindowQuestion question(cases, request, admission(store, cases));
     auto points = question.space().spread(question.space().averages() ? request.candidates / 4 : request.candidates);
     if (points.empty())
-        throw campaign::wrong_question("window", "", "the campaign's `where` leaves no setting of the box");
+        throw campaign::input_error("window", "", "the campaign's `where` leaves no setting of the box");
     Window window;
     window.risk = request.risk;
     window.models = question.models();
@@ -358,10 +358,10 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     auto judged = question.judge(window.searched, "settings of the box", window.searched.size() / share_of_doubted);
 
     if (std::ranges::none_of(judged, [](const auto& one) { return one.answers >= 0.5; }))
-        throw campaign::wrong_question("window", "",
-                                       fmt::format("{}, and at every setting of the box a case is likelier to fail "
-                                                   "than not: none can be recommended",
-                                                   failed_text(cases)));
+        throw campaign::input_error("window", "",
+                                    fmt::format("{}, and at every setting of the box a case is likelier to fail "
+                                                "than not: none can be recommended",
+                                                failed_text(cases)));
     const auto share = [&](const auto& is) {
         return static_cast<double>(std::ranges::count_if(judged, is)) / static_cast<double>(judged.size());
     };

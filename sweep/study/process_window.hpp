@@ -72,7 +72,7 @@ struct Window {
     std::vector<std::string> notes;
 };
 
-/// Computes the window. Throws WrongQuestion for an invalid condition, an unknown name, and refused models.
+/// Computes the window. Throws InputError for an invalid condition, an unknown name, and refused models.
 [[nodiscard]] Window window_of(const store::Store& store, const ModelCases& cases, const WindowRequest& request);
 
 /// Returns the predictions of a window's models at other settings.

@@ -1,6 +1,6 @@
 #include "sweep/study/response_models.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -223,7 +223,7 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
 ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable, Unexplained unexplained) {
     auto learned = learn(cases, observable, unexplained);
     if (auto* refused = std::get_if<stats::Refusal>(&learned)) {
-        throw campaign::wrong_question(
+        throw campaign::input_error(
             fmt::format("campaign {}, observable '{}'", cases.campaign.name, observable.name), "",
             refused->sentence.starts_with("no response model") ? refused->sentence
                                                                : "no response model: " + refused->sentence);

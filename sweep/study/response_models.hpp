@@ -53,11 +53,11 @@ enum class Unexplained {
     scatter  ///< the model counts it as scatter of single runs, with a note
 };
 
-/// Fits a model of one observable. Throws WrongQuestion if a written feature cannot be evaluated.
+/// Fits a model of one observable. Throws InputError if a written feature cannot be evaluated.
 [[nodiscard]] std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases,
                                                                   const ResponseColumn& observable,
                                                                   Unexplained unexplained = Unexplained::refused);
-/// Fits a model of one observable. Throws WrongQuestion with the reason if the model is refused.
+/// Fits a model of one observable. Throws InputError with the reason if the model is refused.
 [[nodiscard]] ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& observable,
                                               Unexplained unexplained = Unexplained::refused);
 

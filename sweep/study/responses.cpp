@@ -3,11 +3,11 @@
 #include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_request.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
@@ -312,15 +312,15 @@ const ResponseColumn* Responses::main_observable() const {
 
 const ResponseColumn& named_observable(std::span<const ResponseColumn> observables, std::string_view name,
                                        const store::CampaignRecord& campaign) {
-    if (name.empty()) throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
+    if (name.empty()) throw campaign::input_error("campaign " + campaign.name, "", "its scene measures no scalar");
     const auto found = std::ranges::find(observables, name, &ResponseColumn::name);
     if (found != observables.end()) return *found;
     std::vector<std::string> names;
     for (const auto& response : observables) names.push_back(response.name);
-    throw campaign::wrong_question("--observable", fmt::format("'{}'", name),
-                                   fmt::format("scene '{}' measures no such scalar; it measures {}",
-                                               shown_scene(campaign.scene), campaign::listed(names)),
-                                   campaign::nearest_word(name, names));
+    throw campaign::input_error("--observable", fmt::format("'{}'", name),
+                                fmt::format("scene '{}' measures no such scalar; it measures {}",
+                                            shown_scene(campaign.scene), campaign::listed(names)),
+                                campaign::nearest_word(name, names));
 }
 
 const ResponseColumn& Responses::observable(std::string_view name) const {
@@ -437,15 +437,15 @@ Responses read_response(const store::Store& store, const store::CampaignRecord& 
 
 std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std::string_view name) {
     auto records = store.campaigns();
-    if (records.empty()) throw campaign::wrong_question("", "", "the database holds no campaign yet");
+    if (records.empty()) throw campaign::input_error("", "", "the database holds no campaign yet");
     if (name.empty()) return records;
     std::vector<std::string> names;
     for (const auto& record : records) names.push_back(record.name);
     std::erase_if(records, [&](const auto& record) { return record.name != name; });
     if (!records.empty()) return records;
-    throw campaign::wrong_question("--campaign", fmt::format("'{}'", name),
-                                   fmt::format("the database holds {}", campaign::listed(names)),
-                                   campaign::nearest_word(name, names));
+    throw campaign::input_error("--campaign", fmt::format("'{}'", name),
+                                fmt::format("the database holds {}", campaign::listed(names)),
+                                campaign::nearest_word(name, names));
 }
 
 std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses& responses) {

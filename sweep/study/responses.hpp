@@ -101,7 +101,7 @@ struct Responses {
     /// Returns the main observable; nullptr without scalars. It is the deciding observable, else the scene's first
     /// observable with a value, else its first.
     [[nodiscard]] const ResponseColumn* main_observable() const;
-    /// Returns the observable of this name; empty name: the main observable. Throws WrongQuestion with the nearest
+    /// Returns the observable of this name; empty name: the main observable. Throws InputError with the nearest
     /// name.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
     /// Returns whether there is a scalar of this name; empty name: any scalar.
@@ -111,7 +111,7 @@ struct Responses {
     [[nodiscard]] bool ordered_sample() const;
 };
 
-/// Returns the observable of this name. Throws WrongQuestion with the nearest name, or, for an empty name, with the
+/// Returns the observable of this name. Throws InputError with the nearest name, or, for an empty name, with the
 /// message that there is none.
 [[nodiscard]] const ResponseColumn& named_observable(std::span<const ResponseColumn> observables, std::string_view name,
                                                      const store::CampaignRecord& campaign);
@@ -128,7 +128,7 @@ struct Responses {
 [[nodiscard]] Responses read_response(const store::Store& store, const store::CampaignRecord& campaign,
                                       const std::string& observable);
 
-/// Returns the record of the named campaign; empty name: of all campaigns. Throws WrongQuestion with the nearest name,
+/// Returns the record of the named campaign; empty name: of all campaigns. Throws InputError with the nearest name,
 /// or if the database has no campaign.
 [[nodiscard]] std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std::string_view name);
 

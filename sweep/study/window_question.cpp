@@ -1,7 +1,7 @@
 #include "sweep/study/window_question.hpp"
 
 #include "stats/confidence.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ WindowQuestion::WindowQuestion(const ModelCases& cases, const WindowRequest& req
     for (const auto& name : cases.factor_names()) names_.push_back(name);
     if (!stated_.condition.empty()) condition_ = Condition::read(stated_.condition, names_);
     if (request.objectives.size() == 2 && request.objectives[0].name == request.objectives[1].name)
-        throw campaign::wrong_question("--minimize", request.objectives[1].name, "is named twice: one goal for each");
+        throw campaign::input_error("--minimize", request.objectives[1].name, "is named twice: one goal for each");
     for (const auto& objective : request.objectives) goals_.push_back(goal_of(objective, learned));
     if (goals_.size() == 2) find_references();
     if (condition_)
@@ -88,14 +88,14 @@ Goal WindowQuestion::goal_of(const Objective& objective, std::span<const Observa
     if (place < observables) return {.sign = sign, .factor = {}, .model = add_model(place, learned)};
     const auto* const option = objective.maximise ? "--maximize" : "--minimize";
     if (place == names_.size())
-        throw campaign::wrong_question(option, name, "is neither observable nor factor of the campaign",
-                                       campaign::nearest_word(name, names_));
+        throw campaign::input_error(option, name, "is neither observable nor factor of the campaign",
+                                    campaign::nearest_word(name, names_));
     if (cases_->factors[place - observables].is_word())
-        throw campaign::wrong_question(option, name, "is a factor whose levels are words: none is the largest");
+        throw campaign::input_error(option, name, "is a factor whose levels are words: none is the largest");
     if (!condition_ && request_->objectives.size() == 1)
-        throw campaign::wrong_question(option, name, "is a factor: it needs a condition by --where that limits it");
+        throw campaign::input_error(option, name, "is a factor: it needs a condition by --where that limits it");
     if (!space_.searches(place - observables))
-        throw campaign::wrong_question(option, name, "is not searched: it is noise, held, or named by 'for all'");
+        throw campaign::input_error(option, name, "is not searched: it is noise, held, or named by 'for all'");
     return {.sign = sign, .factor = place - observables, .model = {}};
 }
 
@@ -108,8 +108,8 @@ std::vector<double> WindowQuestion::values_of(const Goal& goal) const {
 
 void WindowQuestion::find_references() {
     if (goals_[0].factor && goals_[1].factor)
-        throw campaign::wrong_question("window", request_->objectives[1].name,
-                                       "is a factor like the first objective: one of two is an observable");
+        throw campaign::input_error("window", request_->objectives[1].name,
+                                    "is a factor like the first objective: one of two is an observable");
     for (std::size_t k = 0; k < goals_.size(); ++k) {
         auto& goal = goals_[k];
         double worst = std::numeric_limits<double>::infinity();

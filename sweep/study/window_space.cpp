@@ -1,6 +1,6 @@
 #include "sweep/study/window_space.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <fmt/format.h>
 
@@ -101,11 +101,11 @@ StatedCondition split_condition(std::string_view where) {
     for (std::smatch found; std::regex_search(rest, found, name); rest = found.suffix())
         stated.for_all.push_back(found[1]);
     if (stated.for_all.empty() || !rest.empty())
-        throw campaign::wrong_question("--where", where,
-                                       "'for all' stands at the end, with names of factors that have levels: \"mfr >= "
-                                       "0.3 for all powder\"");
+        throw campaign::input_error("--where", where,
+                                    "'for all' stands at the end, with names of factors that have levels: \"mfr >= "
+                                    "0.3 for all powder\"");
     if (std::ranges::all_of(stated.condition, [](char c) { return c == ' '; }))
-        throw campaign::wrong_question("--where", where, "a condition stands before 'for all'");
+        throw campaign::input_error("--where", where, "a condition stands before 'for all'");
     return stated;
 }
 
@@ -118,7 +118,7 @@ WindowSpace::WindowSpace(const ModelCases& cases, const Held& held, const std::v
     for (const auto& name : for_all) {
         const auto j = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
         const auto refuse = [&](std::string_view why, std::string_view word = {}) {
-            throw campaign::wrong_question("--where", fmt::format("for all {}", name), why, word);
+            throw campaign::input_error("--where", fmt::format("for all {}", name), why, word);
         };
         if (j == names.size()) refuse("is no factor of the campaign", campaign::nearest_word(name, names));
         if (levels_in(factors_[j]) == 0) refuse("needs a factor with \"levels\"");
@@ -131,14 +131,14 @@ WindowSpace::WindowSpace(const ModelCases& cases, const Held& held, const std::v
     }
     searched_factors_ = factors_at(factors_, searched_);
     if (searched_.empty())
-        throw campaign::wrong_question("window", "",
-                                       "no factor is left to be searched: each is held, noise, or named by 'for all'");
+        throw campaign::input_error("window", "",
+                                    "no factor is left to be searched: each is held, noise, or named by 'for all'");
     const auto shares = std::ranges::count_if(factors_, &ModelFactor::share);
     for (const auto* some : {&searched_, &noise_})
         if (const auto count = std::ranges::count_if(*some, [&](std::size_t j) { return factors_[j].share; });
             count != 0 && count != shares)
-            throw campaign::wrong_question("window", "",
-                                           "shares that add to one are all searched, all held, or all noise");
+            throw campaign::input_error("window", "",
+                                        "shares that add to one are all searched, all held, or all noise");
 }
 
 std::vector<BoxPoint> WindowSpace::embedded(std::vector<BoxPoint> points) const {

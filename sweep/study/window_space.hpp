@@ -31,12 +31,12 @@ struct StatedCondition {
     std::string condition;
     std::vector<std::string> for_all;
 };
-/// Splits a text into these parts. Throws WrongQuestion at --where for a `for all` without a name.
+/// Splits a text into these parts. Throws InputError at --where for a `for all` without a name.
 [[nodiscard]] StatedCondition split_condition(std::string_view where);
 
 class WindowSpace {
 public:
-    /// Throws WrongQuestion for a name in `for_all` that is no factor, has no levels or is held, and if no factor is
+    /// Throws InputError for a name in `for_all` that is no factor, has no levels or is held, and if no factor is
     /// left to search.
     WindowSpace(const ModelCases& cases, const Held& held, const std::vector<std::string>& for_all, Admits admits);
 

@@ -30,7 +30,7 @@ struct Camera {
 /// Computes a case. The outcome is `skipped` if the answer is proven without a run. It is `rejected` if the scene
 /// cannot be made from the inputs, or an input file has changed. It is `unstable` if the state became unphysical, else
 /// `completed`. `resume`: checkpoint from which the case continues; one that does not fit is ignored and the case
-/// starts anew. Returns empty if `watch` returned false. Throws BrokenWorld if an input file exists but cannot be read.
+/// starts anew. Returns empty if `watch` returned false. Throws SystemError if an input file exists but cannot be read.
 [[nodiscard]] std::optional<campaign::CaseResult> compute(const campaign::Case& question, std::int64_t attempt,
                                                           Artefacts& artefacts, const std::optional<Bytes>& resume,
                                                           const Watch& watch, const Camera& camera = {});

@@ -41,7 +41,7 @@ void CoreSharing::begin(PoolWorker& worker) const {
 }
 
 void CoreSharing::share(std::span<const std::shared_ptr<PoolWorker>> workers, std::size_t waiting,
-                        const Crew::SecondsLeft& left) {
+                        const WorkerPool::SecondsLeft& left) {
     if (threads_ || (!shared_ && waiting >= cores_)) return;
     Shares now;
     std::map<std::size_t, std::vector<PoolWorker*>> at_work;  // by node

@@ -3,8 +3,8 @@
 // bits for any number of threads.
 #pragma once
 
-#include "sweep/workers/crew.hpp"
 #include "sweep/workers/pool_worker.hpp"
+#include "sweep/workers/worker_pool.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,7 @@ public:
     void begin(PoolWorker& worker) const;
     /// Shares the cores while `waiting` cases have no worker.
     void share(std::span<const std::shared_ptr<PoolWorker>> workers, std::size_t waiting,
-               const Crew::SecondsLeft& left);
+               const WorkerPool::SecondsLeft& left);
 
 private:
     /// Workers that have cases, and their threads. Resent only when this list changes.

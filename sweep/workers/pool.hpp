@@ -2,7 +2,7 @@
 // given up and replaced. child.hpp starts, reads and ends the processes; worker_state.hpp has the protocol.
 #pragma once
 
-#include "sweep/workers/crew.hpp"
+#include "sweep/workers/worker_pool.hpp"
 #include "sweep/workers/worker_state.hpp"
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct PoolOptions {
     Expected expected;
 };
 
-class Pool final : public Crew {
+class Pool final : public WorkerPool {
 public:
     /// Starts workers only as cases need them, and replaces lost ones. If several launches in a row fail while other
     /// workers run, the next launch is delayed. expect() and wait() throw std::runtime_error if no worker can be

@@ -1,10 +1,10 @@
 // Worker of the pool: its process, the state of its protocol, and messages about it.
 #pragma once
 
-#include "sweep/workers/crew.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 #include "sweep/workers/process.hpp"
+#include "sweep/workers/worker_pool.hpp"
 #include "sweep/workers/worker_state.hpp"
 
 #include <memory>

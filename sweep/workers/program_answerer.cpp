@@ -1,7 +1,7 @@
 #include "sweep/workers/program_answerer.hpp"
 
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/descriptor.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/workers/program_process.hpp"
 #include "sweep/workers/program_results.hpp"
 #include "sweep/workers/worker_state.hpp"
@@ -35,7 +35,7 @@ struct Pipe {
     Pipe() {
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-            throw BrokenWorld(fmt::format("no pipe to a program: {}", std::strerror(errno)));
+            throw SystemError(fmt::format("no pipe to a program: {}", std::strerror(errno)));
         from = files::Descriptor(ends[0]);
         to = files::Descriptor(ends[1]);
     }
@@ -54,7 +54,7 @@ public:
     enum class Go { on, stop, give_up };
     enum class Heard { reply, end, ended_before, too_long, unasked, stopped, given_up };
 
-    /// Starts the program in a folder of its own within `cases`. Throws BrokenWorld if it cannot be started.
+    /// Starts the program in a folder of its own within `cases`. Throws SystemError if it cannot be started.
     ProgramLines(const campaign::Program& program, const std::filesystem::path& cases, ProgramGuard& guard)
         : folder_(cases / fmt::format("alive.{}{}", ::getpid(), running_suffix)) {
         std::signal(SIGPIPE, SIG_IGN);  // a write to one that ended is an error code
@@ -71,7 +71,7 @@ public:
         try {
             process_ = std::make_unique<ProgramProcess>(start, guard);
         } catch (const std::runtime_error& error) {
-            throw BrokenWorld(error.what());
+            throw SystemError(error.what());
         }
         in_ = std::move(question.to);
         out_ = std::move(reply.from);
@@ -267,7 +267,7 @@ std::unique_ptr<ProgramProcess> start_case(const Program& program, const campaig
     try {
         return std::make_unique<ProgramProcess>(start, guard);
     } catch (const std::runtime_error& why) {
-        throw BrokenWorld(why.what());
+        throw SystemError(why.what());
     }
 }
 
@@ -289,12 +289,12 @@ void ProgramAnswerer::check_version() {
     if (program_->version_command.empty() || std::exchange(version_checked_, true)) return;
     try {
         if (const auto here = ask_version(*program_, guard_); here != program_->version)
-            throw BrokenWorld(fmt::format("{} is version {} here, and the campaign was read with version {}",
+            throw SystemError(fmt::format("{} is version {} here, and the campaign was read with version {}",
                                           program_->version_command.front(), here, program_->version));
-    } catch (const BrokenWorld&) {
+    } catch (const SystemError&) {
         throw;
     } catch (const std::runtime_error& why) {
-        throw BrokenWorld(
+        throw SystemError(
             fmt::format("the version of {} cannot be asked: {}", program_->version_command.front(), why.what()));
     }
 }

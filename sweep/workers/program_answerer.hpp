@@ -33,7 +33,7 @@ public:
     ProgramAnswerer& operator=(const ProgramAnswerer&) = delete;
     ~ProgramAnswerer();
 
-    /// Returns the answer; empty if `pulse` interrupted the case. Throws BrokenWorld if the program cannot be started
+    /// Returns the answer; empty if `pulse` interrupted the case. Throws SystemError if the program cannot be started
     /// here, has another version than when the campaign was read, or a file cannot be written.
     [[nodiscard]] std::optional<campaign::CaseResult> answer(const campaign::Case& question, std::int64_t attempt,
                                                              const Pulse& pulse);
@@ -61,7 +61,7 @@ private:
 [[nodiscard]] std::string why_not_here(const campaign::Program& program);
 
 /// Stores a program and its files under the name of its scene; staged_program() returns the stored program. Files
-/// larger than a megabyte stay in their place on disk. Both throw BrokenWorld.
+/// larger than a megabyte stay in their place on disk. Both throw SystemError.
 void stage_program(const campaign::Program& program, const std::filesystem::path& cases);
 [[nodiscard]] std::shared_ptr<const campaign::Program> staged_program(std::string_view scene,
                                                                       const std::filesystem::path& cases);

@@ -1,6 +1,6 @@
 #include "sweep/workers/program_folder.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -26,7 +26,7 @@ using files::Descriptor;
 constexpr std::int64_t most_files_counted = 1'000'000;
 
 [[noreturn]] void broken(const fs::path& what, int number) {
-    throw BrokenWorld(fmt::format("'{}': cannot be written: {}", what.string(), std::strerror(number)));
+    throw SystemError(fmt::format("'{}': cannot be written: {}", what.string(), std::strerror(number)));
 }
 
 struct CloseDir {
@@ -174,7 +174,7 @@ void ProgramFolder::write(const std::string& name, std::string_view contents, bo
 void ProgramFolder::copy(const std::string& name, const fs::path& from, bool executable) const {
     const Descriptor source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
     const auto unreadable = [&] {
-        return BrokenWorld(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
+        return SystemError(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
     };
     if (!source.is_open()) throw unreadable();
     const auto file = create(name);

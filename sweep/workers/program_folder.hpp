@@ -14,7 +14,7 @@ namespace grainsweep::workers {
 
 class ProgramFolder {
 public:
-    /// Makes a new empty folder; an older one with its name is removed first. Throws BrokenWorld if it cannot be made.
+    /// Makes a new empty folder; an older one with its name is removed first. Throws SystemError if it cannot be made.
     explicit ProgramFolder(std::filesystem::path path);
     struct Kept {};
     /// Opens the folder of an earlier case for reading; is_open() is false if there is none.
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] int descriptor() const { return folder_.number(); }
     [[nodiscard]] bool is_open() const { return folder_.is_open(); }
 
-    /// Writes a file of the case, and makes the folders in its name. Throws BrokenWorld.
+    /// Writes a file of the case, and makes the folders in its name. Throws SystemError.
     void write(const std::string& name, std::string_view contents, bool executable) const;
     void copy(const std::string& name, const std::filesystem::path& from, bool executable) const;
     /// Makes a new file for writing.

@@ -1,6 +1,6 @@
 #include "sweep/workers/program_guard.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -112,7 +112,7 @@ void keep_only(int descriptor) {
 
 ProgramGuard::ProgramGuard() {
     const auto refuse = [](const char* what) {
-        throw BrokenWorld(fmt::format("programs cannot be watched over: {}: {}", what, std::strerror(errno)));
+        throw SystemError(fmt::format("programs cannot be watched over: {}: {}", what, std::strerror(errno)));
     };
     std::uint64_t number = 0;
     if (::getrandom(&number, sizeof number, 0) != sizeof number) number = static_cast<std::uint64_t>(::time(nullptr));

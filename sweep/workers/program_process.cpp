@@ -1,6 +1,6 @@
 #include "sweep/workers/program_process.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ ProgramProcess::ProgramProcess(ProcessStart start, ProgramGuard& guard) : guard_
     std::error_code error;
     id_ = start_process(start, error);
     if (id_ < 0 && (error == std::errc::resource_unavailable_try_again || error == std::errc::not_enough_memory))
-        throw BrokenWorld(fmt::format("a program cannot be started: {}", error.message()));
+        throw SystemError(fmt::format("a program cannot be started: {}", error.message()));
     if (id_ < 0)
         throw std::runtime_error(fmt::format("'{}' cannot be executed: {}", start.argv.front(), error.message()));
     guard_.watch(id_);

@@ -22,7 +22,7 @@ struct ProgramEnd {
 
 class ProgramProcess {
 public:
-    /// Starts the program. Throws std::runtime_error with a sentence if it cannot be started, BrokenWorld if this
+    /// Starts the program. Throws std::runtime_error with a sentence if it cannot be started, SystemError if this
     /// machine has no process or descriptor left.
     ProgramProcess(ProcessStart start, ProgramGuard& guard);
     ProgramProcess(const ProgramProcess&) = delete;

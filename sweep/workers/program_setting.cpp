@@ -1,7 +1,7 @@
 // Surroundings of a program: its command, environment and files for a case. Also how workers find the program itself.
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/files/whole_file.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/program_process.hpp"
@@ -46,7 +46,7 @@ std::optional<std::string> value_named(std::string_view name, std::string_view f
     if (name == "seed_prime") return formatted(campaign::prime_of(question->seed), format);
     if (name == "case") return question->id;
     if (own) return std::nullopt;
-    throw BrokenWorld(fmt::format("the case has no '{}'", name));
+    throw SystemError(fmt::format("the case has no '{}'", name));
 }
 
 fs::path place_of(std::string_view scene, const fs::path& cases) {
@@ -56,7 +56,7 @@ fs::path place_of(std::string_view scene, const fs::path& cases) {
 std::string text_of(const fs::path& file) {
     std::error_code error;
     std::string text = files::whole_file(file, error);
-    if (error) throw BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), error.message()));
+    if (error) throw SystemError(fmt::format("'{}': cannot be read: {}", file.string(), error.message()));
     return text;
 }
 
@@ -67,7 +67,7 @@ void put(const fs::path& file, std::string_view text) {
     stream.close();
     std::error_code error;
     if (stream) fs::rename(aside, file, error);
-    if (!stream || error) throw BrokenWorld(fmt::format("'{}': cannot be written", file.string()));
+    if (!stream || error) throw SystemError(fmt::format("'{}': cannot be written", file.string()));
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ std::vector<std::string> program_argv(const Program& program, const campaign::Ca
     for (const auto& word : program.command) argv.push_back(campaign::filled_command(word, value));
     if (argv.front().find('/') != std::string::npos) return argv;  // its own file, or where the user says
     auto path = find_program(argv.front());
-    if (path.empty()) throw BrokenWorld(fmt::format("there is no program '{}' on the search path", argv.front()));
+    if (path.empty()) throw SystemError(fmt::format("there is no program '{}' on the search path", argv.front()));
     argv.front() = std::move(path);
     return argv;
 }
@@ -165,7 +165,7 @@ void stage_program(const Program& program, const fs::path& cases) {
     const auto folder = place_of(campaign::program_scene_name(program), cases);
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) throw BrokenWorld(fmt::format("'{}': cannot be made: {}", folder.string(), error.message()));
+    if (error) throw SystemError(fmt::format("'{}': cannot be made: {}", folder.string(), error.message()));
     for (const auto& file : program.files) {
         if (!file.path.empty() && fs::equivalent(file.path, folder / file.hash, error)) continue;
         put(folder / file.hash, file.path.empty() ? file.contents : text_of(file.path));
@@ -179,14 +179,14 @@ std::shared_ptr<const Program> staged_program(std::string_view scene, const fs::
     try {
         *program = campaign::program_in(text_of(folder / "definition.json"));
     } catch (const std::invalid_argument& why) {
-        throw BrokenWorld(fmt::format("'{}': {}", (folder / "definition.json").string(), why.what()));
+        throw SystemError(fmt::format("'{}': {}", (folder / "definition.json").string(), why.what()));
     }
     if (campaign::program_scene_name(*program) != scene)
-        throw BrokenWorld(fmt::format("'{}': is not as it was written", (folder / "definition.json").string()));
+        throw SystemError(fmt::format("'{}': is not as it was written", (folder / "definition.json").string()));
     for (auto& file : program->files) {
         auto contents = text_of(folder / file.hash);
         if (campaign::content_hash(contents) != file.hash)
-            throw BrokenWorld(fmt::format("'{}': is not as it was written", (folder / file.hash).string()));
+            throw SystemError(fmt::format("'{}': is not as it was written", (folder / file.hash).string()));
         if (contents.size() > largest_in_memory)
             file.path = folder / file.hash;
         else

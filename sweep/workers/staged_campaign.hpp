@@ -8,7 +8,7 @@
 
 namespace grainsweep::workers {
 
-/// Stores the campaign's machine and the files that the program made where workers find them. Throws BrokenWorld.
+/// Stores the campaign's machine and the files that the program made where workers find them. Throws SystemError.
 void stage_campaign(const campaign::Campaign& campaign, Artefacts& artefacts);
 /// Registers the stored data that a case needs in this process, if it is unchanged.
 void enter_staged(const campaign::Case& question, Artefacts& artefacts);

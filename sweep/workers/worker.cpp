@@ -2,8 +2,8 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/machine.hpp"
-#include "sweep/files/broken_world.hpp"
 #include "sweep/files/descriptor.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/workers/asking_signals.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
@@ -68,18 +68,19 @@ constexpr int nonsense_was_written = 2;
 ///
 /// The thread that computes makes the desk. It blocks the signals that it waits for, so make it before any other thread
 /// starts.
-class Desk {
+class MainConnection {
 public:
     struct Limits {
         double lease_seconds = 600;
         double give_back_seconds = 20;
     };
-    explicit Desk(const Limits& limits) : limits_(limits), progress_(std::numeric_limits<double>::quiet_NaN()) {
+    explicit MainConnection(const Limits& limits)
+        : limits_(limits), progress_(std::numeric_limits<double>::quiet_NaN()) {
         hold_asking_signals();
         ::pthread_getcpuclockid(::pthread_self(), &computing_);
     }
-    Desk(const Desk&) = delete;
-    Desk& operator=(const Desk&) = delete;
+    MainConnection(const MainConnection&) = delete;
+    MainConnection& operator=(const MainConnection&) = delete;
 
     /// Sends that the worker is ready, and starts to read.
     void open(const campaign::Computer& computer) {
@@ -273,7 +274,7 @@ public:
     /// Looks for the checkpoint of an earlier attempt. Returns whether the case continues from it.
     [[nodiscard]] virtual bool prepare(const Run& run) = 0;
     /// Returns the answer of the case prepared last; empty if the case was interrupted because the worker must end.
-    /// Throws BrokenWorld for an error that every other case would meet, too.
+    /// Throws SystemError for an error that every other case would meet, too.
     [[nodiscard]] virtual std::optional<campaign::CaseResult> answer(const Run& run) = 0;
     /// Returns whether a checkpoint of the case is stored, which is useless once the case is answered.
     [[nodiscard]] virtual bool left_checkpoint() const = 0;
@@ -337,7 +338,7 @@ private:
 /// worker must end.
 class CaseWatch {
 public:
-    CaseWatch(const WorkerOptions& options, Desk& desk, Checkpoints& checkpoints)
+    CaseWatch(const WorkerOptions& options, MainConnection& desk, Checkpoints& checkpoints)
         : options_(options), desk_(desk), checkpoints_(checkpoints) {}
 
     bool operator()(const Scene& scene) {
@@ -359,7 +360,7 @@ private:
     static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
     const WorkerOptions& options_;
-    Desk& desk_;
+    MainConnection& desk_;
     Checkpoints& checkpoints_;
     Clock::time_point saved_ = Clock::now();
     std::optional<Clock::time_point> ending_seen_;
@@ -368,7 +369,7 @@ private:
 /// Cases of the solver's scenes.
 class Simulations final : public Answerer {
 public:
-    Simulations(const WorkerOptions& options, Desk& desk) : options_(options), desk_(desk) {
+    Simulations(const WorkerOptions& options, MainConnection& desk) : options_(options), desk_(desk) {
         if (options.artefacts.empty()) return;
         folder_.emplace(options.artefacts, [this](const std::string& sentence) {
             std::fprintf(stderr, "grainsweep: %s\n", sentence.c_str());
@@ -396,7 +397,7 @@ public:
 
 private:
     const WorkerOptions& options_;
-    Desk& desk_;
+    MainConnection& desk_;
     std::optional<files::ArtefactFolder> folder_;
     std::string damage_;  ///< met while computing the present case
     std::optional<Checkpoints> checkpoints_;
@@ -406,7 +407,7 @@ private:
 /// Cases of programs, found by the names of their scenes.
 class Programs final : public Answerer {
 public:
-    Programs(const WorkerOptions& options, Desk& desk, ProgramGuard& guard)
+    Programs(const WorkerOptions& options, MainConnection& desk, ProgramGuard& guard)
         : options_(options), desk_(desk), guard_(guard) {}
     bool prepare(const Run&) override { return false; }
     std::optional<campaign::CaseResult> answer(const Run& run) override {
@@ -431,18 +432,18 @@ private:
     }
 
     const WorkerOptions& options_;
-    Desk& desk_;
+    MainConnection& desk_;
     ProgramGuard& guard_;
     std::map<std::string, std::unique_ptr<ProgramAnswerer>> programs_;
     std::optional<Clock::time_point> ending_seen_;
 };
 
-void answer(const Run& run, Answerer& answerer, Desk& desk) {
+void answer(const Run& run, Answerer& answerer, MainConnection& desk) {
     desk.begin({run.question.id, run.attempt}, answerer.prepare(run));
     std::optional<campaign::CaseResult> result;
     try {
         result = answerer.answer(run);
-    } catch (const BrokenWorld& broken) {  // not the case's fault, and the next would meet it, too
+    } catch (const SystemError& broken) {  // not the case's fault, and the next would meet it, too
         desk.break_off(
             fmt::format("what its cases need cannot be read or written: {}; mend that, free some space for "
                         "one, and run again to resume",
@@ -515,7 +516,7 @@ int work(const WorkerOptions& options) {
     if (!options.cases.empty()) guard.emplace();
 
     // Outlives main: its threads are never joined.
-    static Desk* desk = new Desk({options.lease_seconds, options.give_back_seconds});
+    static MainConnection* desk = new MainConnection({options.lease_seconds, options.give_back_seconds});
     std::unique_ptr<Answerer> answerer;
     if (guard)
         answerer = std::make_unique<Programs>(options, *desk, *guard);

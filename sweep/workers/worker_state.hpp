@@ -4,8 +4,8 @@
 
 #include "solver/scenes/values.hpp"
 #include "sweep/campaign/case.hpp"
-#include "sweep/workers/crew.hpp"
 #include "sweep/workers/message.hpp"
+#include "sweep/workers/worker_pool.hpp"
 
 #include <cstddef>
 #include <deque>

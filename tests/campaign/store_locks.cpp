@@ -55,7 +55,7 @@ TEST_F(StoreLocks, AReaderKeepsThemWhileOthersOfItsProcessComeAndGo) {
     expect_that_others_see_us();
     {
         Store writer(file, Store::Mode::create);
-        EXPECT_THROW(Store(file, Store::Mode::create), BrokenWorld) << "one writer";
+        EXPECT_THROW(Store(file, Store::Mode::create), SystemError) << "one writer";
         (void)writer.enrol(asked, cases, here());
         settle(writer, cases[1].question, 1);
         expect_that_others_see_us();

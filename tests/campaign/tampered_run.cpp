@@ -48,7 +48,7 @@ struct TamperedRun : testing::Test {
                     const Connection db(file, Connection::Access::read);
                     auto rows = db.prepare("SELECT count(*) FROM sim_case WHERE outcome IS NOT NULL");
                     if (rows.step() && rows.get<std::int64_t>(0) >= cases) return;
-                } catch (const grainsweep::BrokenWorld&) {  // not made yet
+                } catch (const grainsweep::SystemError&) {  // not made yet
                 }
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -1,6 +1,6 @@
 // Two-way coupling: what particles give, the fluid gets.
 #include "solver/coupling/drag.hpp"
-#include "solver/coupling/own_wake.hpp"
+#include "solver/coupling/self_disturbance.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/observables/flow_state.hpp"
 #include "tests/support/flow_boxes.hpp"

@@ -1,6 +1,6 @@
 // One flipped bit anywhere in an archive: found, harmless, or asked again. Never a wrong answer.
 #include "stats/random.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/whole_campaign.hpp"
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ template <class Question>
 auto asked(Question&& question) -> std::optional<decltype(question())> {
     try {
         return question();
-    } catch (const BrokenWorld&) {
-    } catch (const campaign::WrongQuestion&) {
+    } catch (const SystemError&) {
+    } catch (const campaign::InputError&) {
     }
     return std::nullopt;
 }

@@ -1,6 +1,6 @@
 // Files cut short, overwritten with zeros or with noise: a sentence, or an answer, never a crash.
 #include "stats/random.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/whole_campaign.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Finding ask_everything(const WholeCampaign& whole, const std::filesystem::path& 
         for (const auto& record : store.campaigns()) {
             try {
                 (void)store.values(record.name, "y");
-            } catch (const campaign::WrongQuestion&) {  // a name may have been hit
+            } catch (const campaign::InputError&) {  // a name may have been hit
             }
         }
         for (const auto& it : whole.cases) {
@@ -43,8 +43,8 @@ Finding ask_everything(const WholeCampaign& whole, const std::filesystem::path& 
         }
         if (mode == Store::Mode::create) store.enrol(whole.campaign, whole.cases, here());
         return Finding::answered;
-    } catch (const BrokenWorld&) {
-    } catch (const campaign::WrongQuestion&) {
+    } catch (const SystemError&) {
+    } catch (const campaign::InputError&) {
     }
     return Finding::refused;
 }

@@ -1,4 +1,4 @@
-// The N-th call of SQLite to the disk fails, N = 1, 2, ... until none is left: the program gets it as BrokenWorld, the
+// The N-th call of SQLite to the disk fails, N = 1, 2, ... until none is left: the program gets it as SystemError, the
 // archive stays whole, what was shown is there, and running again ends with the same text.
 #include "tests/support/failing_disk.hpp"
 #include "tests/support/tried.hpp"
@@ -59,7 +59,7 @@ TEST_P(StoreFaults, EveryFaultIsReportedAndSurvived) {
         std::int64_t shown = -1;
         try {
             whole.run(file, [&](std::size_t settled) { shown = static_cast<std::int64_t>(settled); });
-        } catch (const BrokenWorld& broken) {
+        } catch (const SystemError& broken) {
             ++reported;
             EXPECT_TRUE(is_sentence_of(broken.what(), failing)) << broken.what();
         }

@@ -129,7 +129,7 @@ TEST(StoreKill, ReadersAndASecondWriter) {
     child.go_on();
     const int shown = child.next();  // and there it waits, in the midst of its campaign
     EXPECT_GE(completed_in(file), shown) << "a writer does not stop readers";
-    EXPECT_THROW(store::Store(file, store::Store::Mode::create), BrokenWorld) << "it has the lock";
+    EXPECT_THROW(store::Store(file, store::Store::Mode::create), SystemError) << "it has the lock";
 }
 
 TEST(StoreKill, TheQuotaEndsInMidWrite) {
@@ -146,7 +146,7 @@ TEST(StoreKill, TheQuotaEndsInMidWrite) {
             setrlimit(RLIMIT_FSIZE, &quota);
             try {
                 whole.run(file, [](std::size_t) {});
-            } catch (const BrokenWorld&) {
+            } catch (const SystemError&) {
                 _exit(3);
             } catch (...) {
                 _exit(4);

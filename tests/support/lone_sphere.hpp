@@ -1,7 +1,7 @@
 // A sphere alone in a closed box of fluid, two-way coupled: does it feel its own wake?
 #pragma once
 
-#include "solver/coupling/own_wake.hpp"
+#include "solver/coupling/self_disturbance.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "tests/support/flow_boxes.hpp"
 

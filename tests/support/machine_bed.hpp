@@ -34,7 +34,7 @@ struct Bed {
         species.push_back(of);
         density.push_back(of == 0 ? 1000 : 3000);
     }
-    machine::Sight sight() {
+    machine::Frame frame() {
         if (!engine) {
             setup.gravity = {0, 0, -9.81};
             engine = dem::make_engine(setup, {});
@@ -45,7 +45,7 @@ struct Bed {
     }
     /// Takes a sphere away, as one that has left the domain.
     void lose(std::size_t place) {
-        (void)sight();
+        (void)frame();
         const auto at = static_cast<std::ptrdiff_t>(place);
         state.id.erase(state.id.begin() + at);
         state.position.erase(state.position.begin() + at);
@@ -55,7 +55,7 @@ struct Bed {
         state.mobile.erase(state.mobile.begin() + at);
     }
     double look(const char* probe, const machine::Options& options = {}) {
-        return machine::find_probe(probe)->make(options)->look(sight());
+        return machine::find_probe(probe)->make(options)->look(frame());
     }
 };
 

@@ -1,7 +1,7 @@
 // A crew without processes and without a clock: a script answers its cases, one after another.
 #pragma once
 
-#include "sweep/workers/crew.hpp"
+#include "sweep/workers/worker_pool.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace grainsweep::tests {
 
 /// Answers its oldest case with what the script says of it; takes `room` cases at once.
-class ScriptedCrew final : public workers::Crew {
+class ScriptedCrew final : public workers::WorkerPool {
 public:
     using Script = std::function<workers::PoolEvent(const campaign::Attempt&)>;
     explicit ScriptedCrew(Script script, std::size_t room = 1) : script_(std::move(script)), room_(room) {}

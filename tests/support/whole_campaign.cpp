@@ -1,6 +1,6 @@
 #include "tests/support/whole_campaign.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/database.hpp"
 
 #include <algorithm>
@@ -69,7 +69,7 @@ std::int64_t completed_in(const std::filesystem::path& file) {
         if (status.rows.empty()) return -1;
         const auto column = std::ranges::find(status.columns, "completed") - status.columns.begin();
         return std::get<std::int64_t>(status.rows[0][static_cast<std::size_t>(column)]);
-    } catch (const campaign::WrongQuestion&) {  // nothing there yet
+    } catch (const campaign::InputError&) {  // nothing there yet
         return -1;
     }
 }

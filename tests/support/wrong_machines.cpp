@@ -1,6 +1,6 @@
 #include "tests/support/wrong_machines.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ const FileTexts& wrong_files() {
 std::string refusal_of(const json& document, const Inputs& chosen) {
     try {
         machine::Run run(spec_of(document, chosen, wrong_files()), 1);
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         return wrong.what();
     } catch (const std::invalid_argument& wrong) {
         return wrong.what();

@@ -1,6 +1,6 @@
 // Every wrong distribution or sample gets one sentence: where, what value, which rule, the nearest right word.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST_P(WrongDistribution, GetsItsSentence) {
         (void)parse_campaign(R"({"campaign": "c", "scene": "rehearsal", "factors": [)" +
                                  std::string(GetParam().factors) + R"(], "design": {"kind": "halton", "points": 8}})",
                              folder.path());
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         sentence = wrong.what();
     }
     EXPECT_EQ(sentence, GetParam().sentence);
@@ -181,7 +181,7 @@ TEST(WrongDistributions, ACalibrationBeginsFromIndependentFactors) {
             {"name": "x2", "sample": "two.csv"}], "calibration": {"targets": [{"observable": "y", "value": 1, "error": 0.1}],
             "discrepancy": {"y": 0.1}}})",
                              folder.path());
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         sentence = wrong.what();
     }
     EXPECT_EQ(sentence,

@@ -1,9 +1,9 @@
 // Factors that follow a distribution or a sample: what is read, what is asked of the scene, what an archive keeps.
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/stored_request.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ Campaign read(const std::string& factors, const std::filesystem::path& folder = 
 std::string refusal(const std::function<void()>& ask) {
     try {
         ask();
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         return wrong.what();
     }
     return "accepted";

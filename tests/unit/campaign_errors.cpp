@@ -1,6 +1,6 @@
 // Every wrong campaign file gets one sentence: where, what value, which rule, the nearest right word.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ constexpr const char* sound = R"({
 std::string sentence_of(std::string_view text, const std::filesystem::path& folder = ".") {
     try {
         (void)parse_campaign(text, folder);
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         return wrong.what();
     }
     return "no complaint";
@@ -270,14 +270,14 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "add", "path": "/execution", "value": {"launcher": [""]}}])",
               "$.execution.launcher[0]: got \"\"; must be a non-empty text."}));
 
-TEST(WrongQuestion, ShowsTheBeginningOfALongValueOnOneLineThatMovesNoCursor) {
-    const std::string words = wrong_question("$.where", "a\x1b[2J\nb" + std::string(100000, 'x'), "is wrong").what();
+TEST(InputError, ShowsTheBeginningOfALongValueOnOneLineThatMovesNoCursor) {
+    const std::string words = input_error("$.where", "a\x1b[2J\nb" + std::string(100000, 'x'), "is wrong").what();
     EXPECT_THAT(words, ::testing::HasSubstr("got a\\u001b[2J bxxx"));
     EXPECT_THAT(words, ::testing::EndsWith(" ...; is wrong."));
     EXPECT_LT(words.size(), 500u);
     std::string umlauts;
     for (int k = 0; k < 400; ++k) umlauts += "\xC3\xA4";
-    const std::string cut = wrong_question("", "a" + umlauts, "is wrong").what();
+    const std::string cut = input_error("", "a" + umlauts, "is wrong").what();
     EXPECT_THAT(cut, ::testing::HasSubstr("\xC3\xA4 ...")) << "cut between two characters";
 }
 
@@ -349,11 +349,11 @@ TEST(CampaignText, AMissingFileIsRefusedWithTheNearestName) {
     try {
         (void)read_campaign(folder / "quikstart.json");
         FAIL() << "it was read";
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         EXPECT_EQ(std::string(wrong.what()), (folder / "quikstart.json").string() +
                                                  ": there is no such campaign file. Did you mean 'quickstart.json'?");
     }
-    EXPECT_THROW((void)read_campaign(folder), WrongQuestion);
+    EXPECT_THROW((void)read_campaign(folder), InputError);
     std::filesystem::remove_all(folder);
 }
 

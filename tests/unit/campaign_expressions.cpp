@@ -4,9 +4,9 @@
 #include "sweep/campaign/installed_machines.hpp"
 
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ json with(json file, const std::string& patch) {
 std::string sentence_of(const json& file) {
     try {
         (void)unfold(parse_campaign(file.dump(), "."), {});
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         return wrong.what();
     }
     return "";

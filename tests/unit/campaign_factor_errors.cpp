@@ -1,6 +1,6 @@
 // What steps, groups, shares and conditions of factors may not be: one sentence each.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/when_clauses.hpp"
 
@@ -25,7 +25,7 @@ std::string sentence_of(const json& patch) {
         auto campaign = parse_campaign(text.dump(), ".");
         campaign.space.when = store::when_clauses(campaign.space);
         (void)unfold(campaign, store::make_filter(campaign.where, filter_names(campaign)));
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         return wrong.what();
     }
     return "no complaint";

@@ -1,10 +1,10 @@
 // Steps, whole numbers, groups, shares and conditions of factors: how values follow, and what is one case.
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/step.hpp"
 #include "sweep/campaign/stored_request.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/when_clauses.hpp"
 
@@ -119,7 +119,7 @@ TEST(Step, OfADistributionIsReadStoredAndRefused) {
     try {
         (void)read(text);
         FAIL() << "a fraction of 0";
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         EXPECT_THAT(wrong.what(), testing::HasSubstr("values round to 0, where 'time_step_fraction' has no value"));
     }
 }
@@ -258,7 +258,7 @@ TEST(FactorRules, StandInTheIdentityAndComeBackFromIt) {
     EXPECT_EQ(request_of(identity).group_count(), 4U);
     EXPECT_EQ(candidates_of(campaign), 4 * 6);
     text["factors"][0]["step"] = 0.2;
-    EXPECT_THROW(require_same(identity, identity_of(read(text)), "a.db"), WrongQuestion);
+    EXPECT_THROW(require_same(identity, identity_of(read(text)), "a.db"), InputError);
 }
 
 TEST(FactorRules, GoTogetherWithDistributions) {

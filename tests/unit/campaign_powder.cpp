@@ -5,7 +5,7 @@
 #include "solver/particles/size_table.hpp"
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/file_contents.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
@@ -92,7 +92,7 @@ TEST(PowderFiles, RefuseWrongSizes) {
     const auto refusal = [&](const std::string& sizes) -> std::string {
         try {
             (void)read_sizes(folder, sizes);
-        } catch (const campaign::WrongQuestion& wrong) {
+        } catch (const campaign::InputError& wrong) {
             return wrong.what();
         }
         return "accepted";

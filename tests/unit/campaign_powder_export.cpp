@@ -1,6 +1,6 @@
 // Exports of instruments and sieve sheets, as they come, and the questions they leave open.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/powder_export.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include "solver/particles/size_table.hpp"
 
@@ -234,7 +234,7 @@ INSTANTIATE_TEST_SUITE_P(PowderExport, Exports, testing::ValuesIn(exports()),
 std::string refusal(const std::string& bytes, const ExportChoices& choices = {}) {
     try {
         (void)campaign::import_sizes(bytes, choices);
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         return wrong.what();
     }
     return "accepted";

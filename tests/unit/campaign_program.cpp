@@ -1,12 +1,12 @@
 // "program" of a campaign file: what is read, what is refused with which sentence, and what is identity.
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_changes.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ std::string said_of(const json& file, const Beside& beside) {
     try {
         (void)parse_campaign(file.dump(), beside.path());
         return {};
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         return wrong.what();
     }
 }
@@ -374,7 +374,7 @@ TEST(ProgramQuantities, ExpressionsLinkParameters) {
         const std::vector<double> u = {0.5};
         check_expressions(half.space, half.space.at(u));
         FAIL() << "1.25 is no whole number";
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         EXPECT_NE(std::string(wrong.what()).find("'n' must be a whole number, and it is 1.25 where gap = 2"),
                   std::string::npos)
             << wrong.what();
@@ -507,7 +507,7 @@ TEST(ProgramChanges, AreNamed) {
     EXPECT_EQ(change.kind, Kind::adoptable);
     try {
         refuse_changed_program("c", "c.db", {change});
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         const std::string said = wrong.what();
         EXPECT_NE(said.find("$.program.templates: in.deck changed since 'c.db' ("), std::string::npos) << said;
         EXPECT_NE(said.find("give the campaign a new name, which computes every case, or a new name and --adopt c"),

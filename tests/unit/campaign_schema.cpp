@@ -1,10 +1,10 @@
 // The schema and the reader know the same keys: whatever one refuses, so does the other.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/schema.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/places.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ bool reads(const json& document) {
     try {
         (void)parse_campaign(document.dump(), ".");
         return true;
-    } catch (const WrongQuestion&) {
+    } catch (const InputError&) {
         return false;
     }
 }
@@ -236,7 +236,7 @@ TEST(MachineSchema, RefusesAtTheSamePlaceAsTheReader) {
         try {
             (void)make_machine(document, "$", [](const std::string&) { return std::string(); });
             return true;
-        } catch (const WrongQuestion&) {
+        } catch (const InputError&) {
             return false;
         }
     };

@@ -1,9 +1,9 @@
 // Words of other programs and of the field lead to the names used here.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/synonyms.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/design.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // From a campaign to its cases: values of factors, identity, seeds, numbering.
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <gmock/gmock.h>
@@ -94,7 +94,7 @@ TEST(Identity, IsTheHashOfWhatIsAskedAndDiffersFromTheDefaults) {
 }
 
 TEST(Identity, AnUnknownParameterIsRefused) {
-    EXPECT_THROW((void)make_case(rehearsal(), {{"x17", 0.5}}, 1), WrongQuestion);
+    EXPECT_THROW((void)make_case(rehearsal(), {{"x17", 0.5}}, 1), InputError);
 }
 
 TEST(Unfold, NumbersPointsThenReplicatesWithTheLastFactorFastest) {
@@ -138,7 +138,7 @@ TEST(Unfold, FilteredPointsLeaveGapsInTheNumbers) {
     ASSERT_EQ(kept.size(), 8U);
     EXPECT_EQ(kept[4].point, 4);
     EXPECT_EQ(kept[4].question, all[8].question);
-    EXPECT_THROW((void)unfold(campaign, [](const Inputs&) { return false; }), WrongQuestion);
+    EXPECT_THROW((void)unfold(campaign, [](const Inputs&) { return false; }), InputError);
 }
 
 TEST(Unfold, ACaseIsMadeWhenItIsAskedForAndFoundByItsId) {
@@ -193,11 +193,11 @@ TEST(Unfold, ImpossibleDesignsAreRefused) {
         "factors": [{"name": "x1", "between": [0, 1]}],
         "design": {"kind": "halton", "points": 8, "sequences": 2, "scramble": "none"}})"),
                               {}),
-                 WrongQuestion);
+                 InputError);
     EXPECT_THROW((void)unfold(read(R"({"campaign": "trial", "scene": "rehearsal", "replicates": 1000000,
         "factors": [{"name": "x1", "between": [0, 1]}], "design": {"kind": "halton", "points": 11}})"),
                               {}),
-                 WrongQuestion);
+                 InputError);
 }
 
 TEST(ListedRows, FromAFileAreThoseWrittenIn) {
@@ -218,7 +218,7 @@ TEST(ListedRows, FromAFileAreThoseWrittenIn) {
         std::ofstream(folder / "rows.csv") << contents;
         try {
             (void)read(text(R"("file": "rows.csv")"), folder);
-        } catch (const WrongQuestion& wrong) {
+        } catch (const InputError& wrong) {
             return wrong.what();
         }
         return "no complaint";
@@ -250,7 +250,7 @@ TEST(ListedRows, OfAFileThatCannotBeReadToItsEndAreRefused) {
             "design": {"kind": "list", "file": "rows.csv"}})",
                    folder);
         ADD_FAILURE() << "a file that cannot be read was read";
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         EXPECT_NE(std::string(wrong.what()).find("rows.csv; the file cannot be read: Input/output error"),
                   std::string::npos)
             << wrong.what();
@@ -278,7 +278,7 @@ TEST(FileWords, AreIdentifiedByTheirContents) {
     try {
         (void)word("pakcing.csv");
         FAIL() << "it was read";
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         EXPECT_STREQ(wrong.what(),
                      "--set packing: got \"pakcing.csv\"; must be 'generated' or a file beside the campaign file, and "
                      "there is no such file. Did you mean 'packing.csv'?");
@@ -288,7 +288,7 @@ TEST(FileWords, AreIdentifiedByTheirContents) {
     try {
         (void)word("packing.csv");
         FAIL() << "it was read";
-    } catch (const WrongQuestion& wrong) {
+    } catch (const InputError& wrong) {
         EXPECT_STREQ(wrong.what(), "--set packing: got \"packing.csv\"; the file cannot be read: Input/output error.");
     }
     std::filesystem::remove_all(folder);

@@ -1,7 +1,7 @@
 // However many threads compute flow and particles, their state has the same bytes after every step.
 #include "solver/coupling/dense_suspension.hpp"
-#include "solver/coupling/own_wake.hpp"
 #include "solver/coupling/projected_contacts.hpp"
+#include "solver/coupling/self_disturbance.hpp"
 #include "solver/coupling/solids_pressure.hpp"
 #include "solver/coupling/spring_contacts.hpp"
 #include "solver/coupling/suspension.hpp"

@@ -3,8 +3,8 @@
 #include "solver/geometry/stl.hpp"
 #include "solver/particles/packing.hpp"
 #include "stats/random.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/workers/message.hpp"
 
 #include <gtest/gtest.h>
@@ -97,7 +97,7 @@ TEST(HostileReaders, CampaignFiles) {
         "convergence": {"observable": "mfr", "rule": "replicates", "gates": ["mean"], "tolerance": 0.01, "block": 4},
         "accuracy": "fast", "limits": {"wall_seconds": 60, "attempts": 2},
         "execution": {"workers": 1, "launcher": ["nice"]}})";
-    read_altered<campaign::WrongQuestion>(sound, 2000, [](const std::string& text) {
+    read_altered<campaign::InputError>(sound, 2000, [](const std::string& text) {
         (void)campaign::parse_campaign(text, std::filesystem::path("/nowhere"));
     });
 }

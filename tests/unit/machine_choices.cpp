@@ -1,8 +1,8 @@
 // What a case of a machine chooses: files, sizes by a word, checks, glued particles, ends of a phase, names of
 // measurements.
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "tests/support/machines.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(MachineChoices, AWordChoosesSizesAndAFileBringsThem) {
     ASSERT_EQ(spec.warnings.size(), 1U);
     EXPECT_EQ(spec.warnings[0].kind, "fine");
     EXPECT_EQ(spec.warnings[0].sentence, "file has 1 mm");
-    EXPECT_THROW((void)campaign::machine_spec(*machine, inputs), campaign::WrongQuestion) << "contents are not given";
+    EXPECT_THROW((void)campaign::machine_spec(*machine, inputs), campaign::InputError) << "contents are not given";
 }
 
 TEST(MachineChoices, ParametersSayWhenTheyMatter) {

@@ -27,11 +27,11 @@ dem::ContactForce contact(std::int32_t first, std::int32_t second, const Vec3& n
             .tangential_force = tangential};
 }
 
-std::vector<Sample> profile_of(const char* name, const Options& options, const machine::Sight& sight) {
+std::vector<Sample> profile_of(const char* name, const Options& options, const machine::Frame& frame) {
     const auto probe = machine::find_probe(name)->make(options);
-    (void)probe->look(sight);
+    (void)probe->look(frame);
     std::vector<Sample> bins;
-    probe->profile(sight, bins);
+    probe->profile(frame, bins);
     return bins;
 }
 
@@ -39,7 +39,7 @@ std::vector<Sample> profile_of(const char* name, const Options& options, const m
 struct Pair : Bed {
     explicit Pair(std::vector<dem::ContactForce> given) {
         add({0, 0, 0}, 0), add({0.002, 0, 0}, 0);
-        (void)sight();
+        (void)frame();
         contacts = std::move(given);
     }
 };
@@ -63,7 +63,7 @@ TEST(MachineStress, IsForceTimesBranch) {
     const auto quarter = box({-0.005, -0.005, -0.005}, {0.0005, 0.005, 0.005});
     EXPECT_DOUBLE_EQ(pair.look("stress", with("in", quarter)), 0.25 * 0.002 / 0.55e-6);
     const auto slabs = profile_of(
-        "stress_profile", with("along", ex, "from", -0.001, "to", 0.003, "bins", 4.0, "section", 1e-4), pair.sight());
+        "stress_profile", with("along", ex, "from", -0.001, "to", 0.003, "bins", 4.0, "section", 1e-4), pair.frame());
     ASSERT_EQ(slabs.size(), 4U);
     EXPECT_EQ(slabs[0].value, 0);
     EXPECT_DOUBLE_EQ(slabs[1].value, 0.001 / (1e-4 * 0.001));
@@ -100,7 +100,7 @@ TEST(MachineStress, HasAKineticPartAboutTheMean) {
     const auto one = profile_of(
         "stress_profile",
         with("along", ex, "from", -0.001, "to", 0.003, "bins", 2.0, "section", 1e-4, "part", word("kinetic")),
-        pair.sight());
+        pair.frame());
     EXPECT_NEAR(one[0].value, 0, 1e-12) << "a slab with one sphere has no motion about its mean";
 }
 
@@ -170,14 +170,14 @@ TEST(MachineWear, IsForceTimesSlidingDistance) {
     pair.contacts.back().slip = {3, 4, 0};  // sticks
     pair.contacts.push_back(contact(1, -1, ez, -100));
     pair.contacts.back().slip = {3, 4, 0}, pair.contacts.back().slides = true;  // attracts
-    machine::Sight sight = pair.sight();
-    sight.time_step = 0.1;
+    machine::Frame frame = pair.frame();
+    frame.time_step = 0.1;
     const auto wear = [&](const char* probe, const Options& options) {
         const auto made = machine::find_probe(probe)->make(options);
-        made->step(sight);
+        made->step(frame);
         std::vector<Sample> bins;
-        made->profile(sight, bins);
-        const double sum = made->look(sight);
+        made->profile(frame, bins);
+        const double sum = made->look(frame);
         return std::pair{sum, bins};
     };
     EXPECT_DOUBLE_EQ(wear("wall_wear", with("wall", of({0}))).first, (2 + 5) * 5 * 0.1);
@@ -230,7 +230,7 @@ TEST(MachineContactForces, HaveADensityAboutTheirMean) {
                contact(0, -1, ex, 100)});
     EXPECT_DOUBLE_EQ(pair.look("contact_force"), 2);
     EXPECT_TRUE(std::isnan(pair.look("contact_force", with("of", of({1})))));
-    const auto bins = profile_of("contact_force_density", with("to", 3.0, "bins", 3.0), pair.sight());
+    const auto bins = profile_of("contact_force_density", with("to", 3.0, "bins", 3.0), pair.frame());
     ASSERT_EQ(bins.size(), 3U);
     EXPECT_DOUBLE_EQ(bins[0].value, 0.75);
     EXPECT_DOUBLE_EQ(bins[1].value, 0);

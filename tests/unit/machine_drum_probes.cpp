@@ -25,7 +25,7 @@ struct Drum : Bed {
     std::unique_ptr<machine::Probe> probe;
     Drum(const char* name, const Options& options) : probe(machine::find_probe(name)->make(options)) {}
     void put(const Vec3& x, double radius, const Vec3& v = {}) {
-        if (!engine) (void)sight();
+        if (!engine) (void)frame();
         state.id.push_back(static_cast<std::int32_t>(state.id.size()));
         state.position.push_back(x), state.velocity.push_back(v), state.radius.push_back(radius);
         state.mobile.push_back(1), species.push_back(0), density.push_back(1000);
@@ -33,12 +33,12 @@ struct Drum : Bed {
     void clear() { state = {}, species.clear(), density.clear(); }
     double at(double when) {
         time = when;
-        return probe->look(sight());
+        return probe->look(frame());
     }
     std::map<double, double> profile(double when) {
         time = when;
         std::vector<Sample> samples;
-        probe->profile(sight(), samples);
+        probe->profile(frame(), samples);
         std::map<double, double> bins;
         for (const auto& sample : samples) bins[sample.bin] = sample.value;
         return bins;
@@ -85,12 +85,12 @@ TEST(MachineDrum, TheAxisMayLieAnywhereAcrossGravity) {
     Drum drum("bed_surface_angle", options);
     for (const double y : {-0.015, -0.005, 0.005, 0.015}) drum.put({7, 1 + y, 2 + y}, grain / 2);
     EXPECT_NEAR(drum.at(1), 45, 1e-9);
-    auto sight = drum.sight();
-    sight.time = 2;
-    sight.gravity = {1, 0, 0};
-    EXPECT_NEAR(drum.probe->look(sight), 45, 1e-9) << "gravity along the axis: nothing is added";
-    sight.gravity = {1, 0, -1};
-    EXPECT_NEAR(drum.probe->look(sight), 45, 1e-9) << "the part across the axis counts";
+    auto frame = drum.frame();
+    frame.time = 2;
+    frame.gravity = {1, 0, 0};
+    EXPECT_NEAR(drum.probe->look(frame), 45, 1e-9) << "gravity along the axis: nothing is added";
+    frame.gravity = {1, 0, -1};
+    EXPECT_NEAR(drum.probe->look(frame), 45, 1e-9) << "the part across the axis counts";
     Drum upright("wall_layer_speed", with("axis", ez, "radius", drum_radius, "diameter", grain));
     upright.put({0.095, 0, 0}, grain / 2, ey);
     EXPECT_TRUE(std::isnan(upright.at(0)));
@@ -191,7 +191,7 @@ TEST(MachineDrum, TheLayerAtTheWallIsInItsLowerHalf) {
 TEST(MachineDrum, RollingMomentsAreSummedByWall) {
     Bed bed;
     bed.add({}, 0), bed.add({0.01, 0, 0}, 0);
-    (void)bed.sight();
+    (void)bed.frame();
     const auto touch = [&](std::int32_t first, std::int32_t second, const Vec3& moment) {
         dem::ContactForce contact;
         contact.first = first, contact.second = second, contact.rolling_moment = moment;

@@ -23,7 +23,7 @@ struct Watched : Bed {
     double last = 0;
     Watched(const char* name, const Options& options) : probe(machine::find_probe(name)->make(options)) {}
     double at(double x, double, double when, double z = 0) {
-        const auto now = sight();
+        const auto now = frame();
         state.position[0] = {x, 0, z};
         const auto place = [&](std::size_t) { return state.position[0]; };
         const auto mobile = [](std::size_t) { return true; };
@@ -144,12 +144,12 @@ TEST(MachineFlow, ResidenceTimesHaveADensity) {
     for (const std::size_t plane : {0U, 1U})
         for (std::size_t id = 0; id < 3; ++id)
             for (const auto* probe : {&density, &mean, &deviation})
-                (*probe)->passed(bed.sight(), {id, plane, true, plane == 0 ? 0.05 : 0.05 + times[id], {0.1, 0, 0}});
-    (void)density->look(bed.sight());
-    EXPECT_NEAR(mean->look(bed.sight()), (0.2 + 0.2 + 0.1) / 3, 1e-12);
-    EXPECT_NEAR(deviation->look(bed.sight()), 0.1 * std::sqrt(2.0) / 3, 1e-12);
+                (*probe)->passed(bed.frame(), {id, plane, true, plane == 0 ? 0.05 : 0.05 + times[id], {0.1, 0, 0}});
+    (void)density->look(bed.frame());
+    EXPECT_NEAR(mean->look(bed.frame()), (0.2 + 0.2 + 0.1) / 3, 1e-12);
+    EXPECT_NEAR(deviation->look(bed.frame()), 0.1 * std::sqrt(2.0) / 3, 1e-12);
     std::vector<Sample> bins;
-    density->profile(bed.sight(), bins);
+    density->profile(bed.frame(), bins);
     ASSERT_EQ(bins.size(), 3U);
     EXPECT_NEAR(bins[0].value + bins[1].value + bins[2].value, 10, 1e-12) << "density times 0.1 s is 1";
     const auto flaw = machine::find_probe("residence_time")->flaw;

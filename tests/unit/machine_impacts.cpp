@@ -81,22 +81,22 @@ TEST_P(StepContacts, AnImpactDissipatesByItsRestitution) {
     for (int k = 0; k < 20000; ++k) {
         bed.engine->run(1);
         bed.engine->step_contacts(bed.contacts);
-        machine::Sight sight{*bed.engine, bed.state, bed.contacts, bed.species, bed.density, bed.domain, {},
+        machine::Frame frame{*bed.engine, bed.state, bed.contacts, bed.species, bed.density, bed.domain, {},
                              k * 1e-7,    0,         bed.radius,   1e-7};
-        sight.by_partners = order.of(bed.contacts);
-        for (auto* probe : {spectrum.get(), energy.get(), number.get(), tangential.get()}) probe->step(sight);
+        frame.by_partners = order.of(bed.contacts);
+        for (auto* probe : {spectrum.get(), energy.get(), number.get(), tangential.get()}) probe->step(frame);
     }
     const double expected = (1 - 0.36) * 1000 * volume(0.002) * 0.4 * 0.4 / 4;
-    EXPECT_NEAR(energy->look(bed.sight()) / expected, 1, 2e-3) << "the restitution of Hertz's damper is 0.6 to 1e-3";
-    EXPECT_EQ(number->look(bed.sight()), 1);
-    EXPECT_NEAR(tangential->look(bed.sight()) / expected, 0, 1e-12);
+    EXPECT_NEAR(energy->look(bed.frame()) / expected, 1, 2e-3) << "the restitution of Hertz's damper is 0.6 to 1e-3";
+    EXPECT_EQ(number->look(bed.frame()), 1);
+    EXPECT_NEAR(tangential->look(bed.frame()) / expected, 0, 1e-12);
     std::vector<Sample> bins;
-    spectrum->profile(bed.sight(), bins);
+    spectrum->profile(bed.frame(), bins);
     ASSERT_EQ(bins.size(), 6U);
     const auto place = static_cast<std::size_t>(std::floor(std::log10(expected) + 9));
     EXPECT_NEAR(bins[place].bin, std::pow(10, -8.5 + static_cast<double>(place)), 1e-3 * bins[place].bin);
     for (std::size_t b = 0; b < bins.size(); ++b)
-        EXPECT_EQ(bins[b].value, b == place ? energy->look(bed.sight()) : 0) << b;
+        EXPECT_EQ(bins[b].value, b == place ? energy->look(bed.frame()) : 0) << b;
 }
 
 TEST(PartnerOrder, IsByTheLargerIdThenBySmallerAndKeepsPlacesOnAWall) {

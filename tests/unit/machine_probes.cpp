@@ -60,7 +60,7 @@ TEST(MachineProbes, VelocitiesAreWeightedByMass) {
 TEST(MachineProbes, SpinIsTheMeanAngularVelocity) {
     Bed bed;
     bed.add({0, 0, 0}, 0), bed.add({0.01, 0, 0}, 1);
-    (void)bed.sight();
+    (void)bed.frame();
     bed.state.angular_velocity = {{0, 5, 0}, {0, -2, 7}};
     const double a = 1000 * volume(0.002), b = 3000 * volume(0.004);
     EXPECT_DOUBLE_EQ(bed.look("spin", with("along", ey)), (5 * a - 2 * b) / (a + b));
@@ -200,7 +200,7 @@ TEST(MachineProbes, AWallCarriesTheWeightOfARestingSphere) {
     bed.setup.material.density = 3000;
     bed.setup.material.restitution = 0.1;
     bed.setup.time_step = 1e-6;
-    (void)bed.sight();
+    (void)bed.frame();
     bed.engine->run(60000);
     bed.engine->state(bed.state);
     bed.engine->contacts(bed.contacts);
@@ -241,9 +241,9 @@ TEST(MachineProbes, ProfilesAreBinsAlongADirection) {
         Options options = more;
         options.set("along", ex), options.set("from", 0.0), options.set("to", 0.03), options.set("bins", 3.0);
         const auto probe = machine::find_probe("profile")->make(options);
-        EXPECT_TRUE(std::isnan(probe->look(bed.sight())));
+        EXPECT_TRUE(std::isnan(probe->look(bed.frame())));
         std::vector<Sample> samples;
-        probe->profile(bed.sight(), samples);
+        probe->profile(bed.frame(), samples);
         EXPECT_EQ(samples.size(), 3U);
         EXPECT_DOUBLE_EQ(samples[1].bin, 0.015);
         return samples;

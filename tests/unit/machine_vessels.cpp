@@ -76,7 +76,7 @@ TEST(MachineVessels, AHeapHasAnOutlineAndAnAngle) {
     const auto options = with("cell", 0.01, "reach", 0.04);
     const auto outline = [&](Bed& of_it, const Options& given) {
         std::vector<Sample> samples;
-        machine::find_probe("heap_outline")->make(given)->profile(of_it.sight(), samples);
+        machine::find_probe("heap_outline")->make(given)->profile(of_it.frame(), samples);
         return samples;
     };
     const auto rings = outline(bed, options);

@@ -1,6 +1,6 @@
 // Where cases failed nothing is recommended, counted, drawn or predicted: windows, predictions, pages.
 #include "stats/random.hpp"
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/window_page.hpp"
@@ -110,7 +110,7 @@ TEST_F(FailedCases, WhereNearlyAllFailedThereIsNoWindow) {
         const auto window = window_of(store, known, {.where = "y >= 0.5", .objectives = {{"y"}}});
         EXPECT_LT(window.share_of_box, 0.1);
         EXPECT_GT(window.share_failed, 0.8);
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         EXPECT_THAT(wrong.what(), HasSubstr("80 of 96 cases failed (80 unstable)"));
         EXPECT_THAT(wrong.what(), HasSubstr("none can be recommended"));
     }

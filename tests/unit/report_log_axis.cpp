@@ -1,5 +1,5 @@
 // When the axis of a response in a figure is logarithmic.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/figures.hpp"
 #include "sweep/report/print_axes.hpp"
 #include "tests/support/study.hpp"
@@ -62,14 +62,14 @@ TEST_F(LogAxis, OfADistributionHasBarsOfEqualWidthOnIt) {
 TEST_F(LogAxis, IsTakenOnRequestIfItCanBe) {
     EXPECT_TRUE(figure(linear, "against:x1", true).panels.front().y.log) << "1 to 4";
     EXPECT_FALSE(figure(linear, "against:x1").panels.front().y.log);
-    EXPECT_THROW((void)figure(linear, "sensitivity", true), campaign::WrongQuestion) << "it has no such axis";
+    EXPECT_THROW((void)figure(linear, "sensitivity", true), campaign::InputError) << "it has no such axis";
 }
 
 TEST_F(LogAxis, IsRefusedBelowZero) {
     try {
         (void)figure([](const Inputs& inputs) { return input(inputs, "x1") - 0.5; }, "against:x1", true);
         FAIL();
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         EXPECT_THAT(wrong.what(), HasSubstr("--axis: got 'log'; what the figure shows of 'y' reaches down to -0.4"));
     }
 }

@@ -1,5 +1,5 @@
 // What the report shows of a response model: averages, slices and bands of a response that is known.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/page.hpp"
@@ -115,7 +115,7 @@ TEST_F(ModelPage, LargeCampaignsHaveOneWhereItIsAskedFor) {
     try {
         (void)data(60, "", {.of = {"yy"}, .unasked_cases = 50});
         ADD_FAILURE() << "an unknown scalar passed";
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         EXPECT_THAT(wrong.what(), HasSubstr("--model: got 'yy'"));
         EXPECT_THAT(wrong.what(), HasSubstr("Did you mean 'y'?"));
     }

@@ -1,6 +1,6 @@
 // What the models of the rule `assisted` see of a campaign's points.
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/study/model_view.hpp"
 
@@ -39,7 +39,7 @@ double number(const Inputs& inputs, const char* name) {
 std::string refusal(const std::string& more) {
     try {
         (void)view_of(read(more));
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         return wrong.what();
     }
     return "accepted";

@@ -1,9 +1,9 @@
 // What response models see of a case, conditions of a process window, and what both refuse.
 #include "stats/confidence.hpp"
 #include "stats/random.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stored_text.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/condition.hpp"
@@ -40,7 +40,7 @@ template <class Ask>
 std::string refusal(const Ask& ask) {
     try {
         (void)ask();
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         return wrong.what();
     }
     return "accepted";

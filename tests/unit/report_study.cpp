@@ -1,5 +1,5 @@
 // The study: moments, verdicts and influences recomputed from stored answers, and what is said about them.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/convergence_tables.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/report/page.hpp"
@@ -306,18 +306,18 @@ TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
     try {
         (void)study::find_campaigns(store, "sprad");
         FAIL();
-    } catch (const campaign::WrongQuestion& error) {
+    } catch (const campaign::InputError& error) {
         EXPECT_THAT(error.what(), HasSubstr("Did you mean 'spread'?"));
     }
     const auto responses = ask("spread");
     try {
         (void)responses.observable("yy");
         FAIL();
-    } catch (const campaign::WrongQuestion& error) {
+    } catch (const campaign::InputError& error) {
         EXPECT_THAT(error.what(), HasSubstr("Did you mean 'y'?"));
     }
     Store empty(folder / "empty.db", Store::Mode::create);
-    EXPECT_THROW((void)study::find_campaigns(empty, ""), campaign::WrongQuestion);
+    EXPECT_THROW((void)study::find_campaigns(empty, ""), campaign::InputError);
 }
 
 TEST_F(Study, ExtremesHaveUnits) {

@@ -1,5 +1,5 @@
 // A window of two objectives: its front, hypervolume and next cases on a published problem, and what its output holds.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
 #include "sweep/study/response_models.hpp"
@@ -119,9 +119,9 @@ TEST_F(TwoObjectives, OneMayBeAFactorButNotBoth) {
     EXPECT_EQ(json["objectives"][0]["factor"], "x1");
     EXPECT_EQ(json["computed_front"][0]["observables"].size(), 1U);
     const WindowRequest both{.objectives = {{"x1", true}, {"x2", false}}};
-    EXPECT_THROW((void)window_of(store, cases, both), campaign::WrongQuestion);
+    EXPECT_THROW((void)window_of(store, cases, both), campaign::InputError);
     const WindowRequest twice{.objectives = {{"f1", true}, {"f1", false}}};
-    EXPECT_THROW((void)window_of(store, cases, twice), campaign::WrongQuestion);
+    EXPECT_THROW((void)window_of(store, cases, twice), campaign::InputError);
 }
 
 TEST_F(TwoObjectives, NoCaseOfTheFrontIsWhereCasesFail) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "sweep/report/vtk_file.hpp"
 #include "sweep/report/vtk_series.hpp"
 #include "tests/support/process.hpp"
@@ -253,7 +253,7 @@ TEST(VtkSeries, AFolderThatCannotBeMadeIsSaid) {
     const tests::Folder folder;
     folder.write("file", "in the way");
     report::VtkSeries series(folder / "file/inside", "cell");
-    EXPECT_THROW(series.add(three_particles(), 0), BrokenWorld);
+    EXPECT_THROW(series.add(three_particles(), 0), SystemError);
     report::VtkSeries empty(folder / "other", "cell");  // a series without a picture leaves no folder
     EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }
@@ -265,7 +265,7 @@ TEST(VtkSeries, ReplacesNothingThroughASymbolicLink) {
     for (const char* name : {"cell_0000.vtp", "cell_0001.vtp"})
         std::filesystem::create_symlink(folder / "precious", folder / "p" / name);
     report::VtkSeries series(folder / "p", "cell");
-    EXPECT_THROW(series.add(three_particles(), 0), BrokenWorld);
+    EXPECT_THROW(series.add(three_particles(), 0), SystemError);
     EXPECT_EQ(contents(folder / "precious"), "kept");
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "p/cell_0000.vtp"));
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "p/cell_0001.vtp"));

@@ -216,7 +216,7 @@ TEST_F(SchedulerLoop, AFullDiskEndsTheRunAndIsNoFailureOfTheCase) {
     try {
         run(full);
         ADD_FAILURE() << "a broken world ends the run";
-    } catch (const BrokenWorld& broken) {
+    } catch (const SystemError& broken) {
         EXPECT_EQ(std::string(broken.what()), "folder 'x': no space left");
     }
     const auto log = store.attempts(placed[3].question.id);

@@ -1,7 +1,7 @@
 // The files of a spool: what is written is read again, and what is damaged, half or foreign is noticed.
 #include "sweep/spool/spool.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/spool/collect.hpp"
 #include "sweep/spool/task.hpp"
 #include "tests/support/archive.hpp"
@@ -170,8 +170,8 @@ TEST_F(SpoolFolder, ASpoolOfOtherCasesIsRefused) {
     EXPECT_EQ(Spool::asked_in(folder / "spool").cases, asked.cases);
     EXPECT_EQ(Spool::asked_in(folder / "spool").text, asked.text);
     asked.cases = hash_of_cases(campaign::Cases(tests::small_design(campaign, 7)));
-    EXPECT_THROW((void)open(), campaign::WrongQuestion);
-    EXPECT_THROW((void)Spool::asked_in(folder.path()), campaign::WrongQuestion);
+    EXPECT_THROW((void)open(), campaign::InputError);
+    EXPECT_THROW((void)Spool::asked_in(folder.path()), campaign::InputError);
 }
 
 TEST_F(SpoolFolder, ATaskThatDoesNotTouchItsFileIsDead) {

@@ -1,7 +1,7 @@
+#include "stats/batches.hpp"
 #include "stats/confidence.hpp"
 #include "stats/convergence.hpp"
 #include "stats/random.hpp"
-#include "stats/stretches.hpp"
 #include "tests/support/ask_design.hpp"
 
 #include <gtest/gtest.h>

@@ -72,7 +72,7 @@ TEST(Levels, RareOnesHaveTheBinomialInterval) {
     const auto campaign = ask_judged(line, "halton", 400, 5);
     auto sorted = campaign.values;
     std::ranges::sort(sorted);
-    GroupedSample sample{.sorted = sorted, .groups = stretches_of(campaign.values)};
+    GroupedSample sample{.sorted = sorted, .groups = batches_of(campaign.values)};
     const auto none = level_of(Exceedance{2, true}, sample);
     EXPECT_EQ(none.value, 0);
     // Clopper & Pearson of 0 in 400, one side: 1 - 0.025^(1/400).
@@ -92,7 +92,7 @@ TEST(Levels, AboveAndBelowShareTiesOut) {
                                         0, 1, 1, 1, 2, 2, 3, 4, 0, 1, 1, 1, 2, 2, 3, 4, 0, 1, 1, 1, 2, 2, 3, 4};
     auto sorted = values;
     std::ranges::sort(sorted);
-    const GroupedSample sample{.sorted = sorted, .groups = stretches_of(values)};
+    const GroupedSample sample{.sorted = sorted, .groups = batches_of(values)};
     EXPECT_EQ(level_of(Exceedance{1, true}, sample).value, 0.5);
     EXPECT_EQ(level_of(Exceedance{1, false}, sample).value, 0.125);
     EXPECT_EQ(level_of(Quantile{0.25}, sample).value, 1);

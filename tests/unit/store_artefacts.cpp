@@ -1,6 +1,6 @@
 // Keyed files: whole or absent, whatever happened to them and however many processes write them at once.
 #include "sweep/files/artefacts.hpp"
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 #include "tests/support/archive.hpp"
 
 #include <gtest/gtest.h>
@@ -224,7 +224,7 @@ TEST_F(StoreArtefacts, WhatIsOverIsSweptByItsKey) {
 TEST_F(StoreArtefacts, AFolderThatCannotBeMadeIsABrokenWorld) {
     write(folder / "file", "in the way");
     ArtefactFolder impossible(folder.path() / "file" / "artefacts");
-    EXPECT_THROW(impossible.put("key", bytes(3)), BrokenWorld);
+    EXPECT_THROW(impossible.put("key", bytes(3)), SystemError);
     EXPECT_FALSE(impossible.get("key"));
 }
 

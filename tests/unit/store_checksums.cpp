@@ -54,7 +54,7 @@ struct StoreChecksums : testing::Test {
         const Store store(file, Store::Mode::read);
         try {
             question(store);
-        } catch (const BrokenWorld& broken) {
+        } catch (const SystemError& broken) {
             return broken.what();
         }
         return "answered";
@@ -136,7 +136,7 @@ TEST_F(StoreChecksums, WhateverChangesIsFound) {
         std::string text;
         try {
             text = dump_of(store);
-        } catch (const BrokenWorld&) {
+        } catch (const SystemError&) {
         }
         EXPECT_TRUE(text.empty() || text == whole) << change;
     }
@@ -194,7 +194,7 @@ TEST_F(StoreChecksums, RowsOutOfOrderAreNotWrittenTo) {
     const auto damaged = [&](auto&& use) {
         try {
             use();
-        } catch (const BrokenWorld& broken) {
+        } catch (const SystemError& broken) {
             return std::string(broken.what());
         }
         return std::string();
@@ -222,7 +222,7 @@ TEST_F(StoreChecksums, ADesignThatChangedIsPutRight) {
     damage("UPDATE campaign_case SET sequence = 1 - sequence WHERE point = 2; UPDATE convergence SET mean = 2");
     {
         Store store(file, Store::Mode::create);
-        EXPECT_THROW(store.enrol(asked, small_design(asked, 3), here()), BrokenWorld) << "it knows a part only";
+        EXPECT_THROW(store.enrol(asked, small_design(asked, 3), here()), SystemError) << "it knows a part only";
         store.enrol(asked, cases, here());
         EXPECT_TRUE(store.verify().empty());
         EXPECT_TRUE(store.convergence("c", "y").empty()) << "verdicts are given anew";
@@ -233,7 +233,7 @@ TEST_F(StoreChecksums, ADesignThatChangedIsPutRight) {
 TEST_F(StoreChecksums, ADescriptionThatChangedEndsTheRun) {
     damage("UPDATE observable SET name = 'z' WHERE name = 'y'");
     Store store(file, Store::Mode::create);
-    EXPECT_THROW(store.enrol(asked, cases, here()), BrokenWorld) << "which observable this was, nothing tells";
+    EXPECT_THROW(store.enrol(asked, cases, here()), SystemError) << "which observable this was, nothing tells";
 }
 
 TEST_F(StoreChecksums, AFileFromBeforeIsProtectedFromTheNextRunOn) {

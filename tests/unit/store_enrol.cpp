@@ -1,5 +1,5 @@
 // Enrolling the same campaign is resuming, a longer one extends it, another one under its name is refused.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/database.hpp"
 #include "tests/support/archive.hpp"
@@ -25,7 +25,7 @@ struct StoreEnrol : testing::Test {
         const auto before = dump_of(store);
         try {
             store.enrol(campaign, cases, here());
-        } catch (const campaign::WrongQuestion& wrong) {
+        } catch (const campaign::InputError& wrong) {
             EXPECT_EQ(dump_of(store), before) << "a refused campaign leaves no trace";
             return wrong.what();
         }
@@ -304,7 +304,7 @@ TEST(CampaignName, AWordOfSqlIsRefused) {
         try {
             store::check_campaign_name(name);
             ADD_FAILURE() << name;
-        } catch (const campaign::WrongQuestion& wrong) {
+        } catch (const campaign::InputError& wrong) {
             EXPECT_THAT(wrong.what(), AllOf(HasSubstr("$.campaign"), HasSubstr("is a word of SQL")));
         }
     }

@@ -1,5 +1,5 @@
 // The `where` clause: true, false, NULL; what it may not do; the sentence for a misspelling.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ bool holds(std::string_view expression) {
 std::string refusal(std::string_view expression) {
     try {
         (void)store::make_filter(expression, names);
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         return wrong.what();
     }
     return "accepted";
@@ -88,7 +88,7 @@ TEST(StoreExpression, FeaturesHaveRealQuotientsToo) {
     const std::vector<Value> values = {std::int64_t{7}, 0.004};
     EXPECT_THAT(numbers(values), testing::ElementsAre(3.5, 0.002, 3));
     const std::vector<std::string> chain = {"0 < gap < 1"};
-    EXPECT_THROW((void)store::make_numbers(chain, two, "$.model.features"), campaign::WrongQuestion);
+    EXPECT_THROW((void)store::make_numbers(chain, two, "$.model.features"), campaign::InputError);
 }
 
 TEST(StoreExpression, AChainOfComparisonsIsRefused) {
@@ -195,7 +195,7 @@ TEST(StoreExpression, AnErrorWhileEvaluatingIsAWrongQuestion) {
     const auto filter = store::make_filter("abs(particles) > 0", names);
     Inputs extreme = inputs;
     extreme["particles"] = std::numeric_limits<std::int64_t>::min();
-    EXPECT_THROW((void)filter(extreme), campaign::WrongQuestion);
+    EXPECT_THROW((void)filter(extreme), campaign::InputError);
     EXPECT_TRUE(filter(inputs)) << "and the next case is judged as ever";
 }
 
@@ -203,7 +203,7 @@ TEST(StoreExpression, TimeAndMemoryAreLimited) {
     const auto evaluation = [](const std::string& expression) {
         try {
             (void)holds(expression);
-        } catch (const campaign::WrongQuestion& wrong) {
+        } catch (const campaign::InputError& wrong) {
             return std::string(wrong.what());
         }
         return std::string("answered");
@@ -218,7 +218,7 @@ TEST(StoreExpression, TimeAndMemoryAreLimited) {
 
 TEST(StoreExpression, AFeatureOfAnUnknownCollationIsAWrongQuestion) {
     const std::vector<std::string> expressions = {"gap collate nowhere"};
-    EXPECT_THROW((void)store::make_numbers(expressions, names, "$.model.features"), campaign::WrongQuestion);
+    EXPECT_THROW((void)store::make_numbers(expressions, names, "$.model.features"), campaign::InputError);
 }
 
 }  // namespace grainsweep::tests::store_expression_test

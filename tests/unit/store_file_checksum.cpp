@@ -74,7 +74,7 @@ TEST_F(FileChecksum, TellsAnyBitThatChanged) {
         flip_bit(file, byte);
         try {
             EXPECT_FALSE(remembered(file)) << byte;
-        } catch (const BrokenWorld&) {  // SQLite told it: the schema no longer reads
+        } catch (const SystemError&) {  // SQLite told it: the schema no longer reads
         }
         flip_bit(file, byte);
     }
@@ -102,7 +102,7 @@ TEST_F(FileChecksum, DamageElsewhereIsNotRemembered) {
         store.remember_file();
     }
     EXPECT_FALSE(remembered(file)) << "a case of the first campaign is damaged";
-    EXPECT_THROW((void)dump_of(Store(file, Store::Mode::read)), BrokenWorld);
+    EXPECT_THROW((void)dump_of(Store(file, Store::Mode::read)), SystemError);
     {
         Store store(file, Store::Mode::create);
         EXPECT_EQ(store.enrol(asked, cases, here())[1].outcome, Outcome::abandoned);

@@ -1,5 +1,5 @@
 // Opening: what is no database, who writes, where the journal belongs.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/database.hpp"
 #include "sweep/store/writer_lock.hpp"
 #include "tests/support/archive.hpp"
@@ -18,7 +18,7 @@
 
 namespace grainsweep::tests::store_files_test {
 
-using campaign::WrongQuestion;
+using campaign::InputError;
 using store::Store;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -39,12 +39,12 @@ std::string sentence(const std::filesystem::path& file, Store::Mode mode) {
 
 TEST(StoreFiles, WhatIsNotThereCannotBeRead) {
     const Folder folder;
-    EXPECT_THAT(sentence<WrongQuestion>(folder / "none.db", Store::Mode::read), HasSubstr("there is no database"));
-    EXPECT_THAT(sentence<WrongQuestion>(folder.path(), Store::Mode::read), HasSubstr("is not a file"));
+    EXPECT_THAT(sentence<InputError>(folder / "none.db", Store::Mode::read), HasSubstr("there is no database"));
+    EXPECT_THAT(sentence<InputError>(folder.path(), Store::Mode::read), HasSubstr("is not a file"));
     EXPECT_FALSE(std::filesystem::exists(folder / "none.db")) << "reading makes no file";
     write(folder / "empty.db", "");
-    EXPECT_THAT(sentence<WrongQuestion>(folder / "empty.db", Store::Mode::read), HasSubstr("is empty"));
-    EXPECT_EQ(sentence<WrongQuestion>(folder / "empty.db", Store::Mode::create), "opened");
+    EXPECT_THAT(sentence<InputError>(folder / "empty.db", Store::Mode::read), HasSubstr("is empty"));
+    EXPECT_EQ(sentence<InputError>(folder / "empty.db", Store::Mode::create), "opened");
 }
 
 TEST(StoreFiles, AStrangersFileIsLeftAlone) {
@@ -54,8 +54,8 @@ TEST(StoreFiles, AStrangersFileIsLeftAlone) {
     auto foreign = store::Connection(folder / "foreign.db", store::Connection::Access::write);
     foreign.execute("CREATE TABLE t (x); INSERT INTO t VALUES (1)");
     for (const auto mode : {Store::Mode::read, Store::Mode::create}) {
-        EXPECT_THAT(sentence<WrongQuestion>(folder / "config.json", mode), HasSubstr("not a grainsweep database"));
-        EXPECT_THAT(sentence<WrongQuestion>(folder / "foreign.db", mode), HasSubstr("another program"));
+        EXPECT_THAT(sentence<InputError>(folder / "config.json", mode), HasSubstr("not a grainsweep database"));
+        EXPECT_THAT(sentence<InputError>(folder / "foreign.db", mode), HasSubstr("another program"));
     }
     EXPECT_EQ(std::filesystem::file_size(folder / "config.json"), config.size());
     EXPECT_FALSE(std::filesystem::exists(folder / "foreign.db-wal")) << "its journal stays as it was";
@@ -69,13 +69,13 @@ TEST(StoreFiles, ANewerSchemaIsNotTouched) {
         db.execute("PRAGMA user_version = 999");
     }
     for (const auto mode : {Store::Mode::read, Store::Mode::create}) {
-        EXPECT_THAT(sentence<WrongQuestion>(folder / "a.db", mode), HasSubstr("newer grainsweep"));
+        EXPECT_THAT(sentence<InputError>(folder / "a.db", mode), HasSubstr("newer grainsweep"));
     }
 }
 
 TEST(StoreFiles, AFolderThatIsMissingIsABrokenWorld) {
     const Folder folder;
-    EXPECT_THAT(sentence<BrokenWorld>(folder.path() / "no" / "a.db", Store::Mode::create), HasSubstr("No such file"));
+    EXPECT_THAT(sentence<SystemError>(folder.path() / "no" / "a.db", Store::Mode::create), HasSubstr("No such file"));
 }
 
 std::vector<std::string> names_in(const Folder& folder) {
@@ -92,32 +92,32 @@ TEST(StoreFiles, TheSecondWriterIsToldWhoTheFirstIs) {
     const auto hard_link = folder / "hard.db";
     {
         Store first(folder / "a.db", Store::Mode::create);
-        EXPECT_THAT(sentence<BrokenWorld>(folder / "a.db", Store::Mode::create),
+        EXPECT_THAT(sentence<SystemError>(folder / "a.db", Store::Mode::create),
                     HasSubstr("another run is writing to it; one run at a time"));
         std::filesystem::create_symlink(folder / "a.db", link);
         std::filesystem::create_hard_link(folder / "a.db", hard_link);
         const auto campaign = small_campaign("c");
         first.enrol(campaign, small_design(campaign, 3), here());
         for (const auto& name : {folder / "a.db", link}) {
-            EXPECT_THAT(sentence<BrokenWorld>(name, Store::Mode::create),
+            EXPECT_THAT(sentence<SystemError>(name, Store::Mode::create),
                         AllOf(HasSubstr("process " + std::to_string(getpid()) + " on a host"), HasSubstr("since"),
                               HasSubstr("one run at a time")));
         }
         // Under another name the journal of the first is not found, and the lock is.
-        EXPECT_THAT(sentence<BrokenWorld>(hard_link, Store::Mode::create), HasSubstr("one run at a time"));
-        EXPECT_EQ(sentence<BrokenWorld>(folder / "a.db", Store::Mode::read), "opened");
+        EXPECT_THAT(sentence<SystemError>(hard_link, Store::Mode::create), HasSubstr("one run at a time"));
+        EXPECT_EQ(sentence<SystemError>(folder / "a.db", Store::Mode::read), "opened");
     }
-    EXPECT_THAT(sentence<WrongQuestion>(folder / "a.db", Store::Mode::create), HasSubstr("2 names (hard links)"));
-    EXPECT_THAT(sentence<WrongQuestion>(hard_link, Store::Mode::create), HasSubstr("2 names (hard links)"));
+    EXPECT_THAT(sentence<InputError>(folder / "a.db", Store::Mode::create), HasSubstr("2 names (hard links)"));
+    EXPECT_THAT(sentence<InputError>(hard_link, Store::Mode::create), HasSubstr("2 names (hard links)"));
     std::filesystem::remove(hard_link);
-    EXPECT_EQ(sentence<BrokenWorld>(folder / "a.db", Store::Mode::create), "opened") << "the lock goes with its holder";
+    EXPECT_EQ(sentence<SystemError>(folder / "a.db", Store::Mode::create), "opened") << "the lock goes with its holder";
 }
 
 TEST(StoreFiles, WhatIsNoFileNameIsAWrongQuestion) {
     for (const auto mode : {Store::Mode::read, Store::Mode::create}) {
-        EXPECT_THAT(sentence<WrongQuestion>(":memory:", mode), HasSubstr("no database file"));
-        EXPECT_THAT(sentence<WrongQuestion>("file:a.db?mode=rwc", mode), HasSubstr("is an address"));
-        EXPECT_THAT(sentence<WrongQuestion>("", mode), HasSubstr("needs a file name"));
+        EXPECT_THAT(sentence<InputError>(":memory:", mode), HasSubstr("no database file"));
+        EXPECT_THAT(sentence<InputError>("file:a.db?mode=rwc", mode), HasSubstr("is an address"));
+        EXPECT_THAT(sentence<InputError>("", mode), HasSubstr("needs a file name"));
     }
 }
 
@@ -136,11 +136,11 @@ TEST(StoreFiles, ADatabaseThatIsNoLongerInItsPlaceEndsTheRun) {
                 if (how == "deleted") std::filesystem::remove(file);
                 if (how != "deleted") std::filesystem::rename(file, folder / "elsewhere.db");
                 if (how == "replaced") write(file, "another file");
-                EXPECT_THROW(store.require_in_place(), BrokenWorld) << how;
+                EXPECT_THROW(store.require_in_place(), SystemError) << how;
                 try {
                     settle(store, cases[1].question, 1);
                     ADD_FAILURE() << how;
-                } catch (const BrokenWorld& broken) {
+                } catch (const SystemError& broken) {
                     EXPECT_THAT(broken.what(),
                                 AllOf(HasSubstr(file.string()), HasSubstr("moved, deleted or replaced")));
                 }
@@ -171,8 +171,8 @@ TEST(StoreFiles, AReaderChangesNothing) {
     const Folder folder;
     { const Store writer(folder / "a.db", Store::Mode::create); }
     store::Connection reader(folder / "a.db", store::Connection::Access::read);
-    EXPECT_THROW(reader.execute("DELETE FROM campaign"), BrokenWorld);
-    EXPECT_THROW(reader.execute("CREATE TABLE t (x)"), BrokenWorld);
+    EXPECT_THROW(reader.execute("DELETE FROM campaign"), SystemError);
+    EXPECT_THROW(reader.execute("CREATE TABLE t (x)"), SystemError);
 }
 
 TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
@@ -221,7 +221,7 @@ TEST(StoreFiles, ADatabaseOnANetworkDiskIsRefusedWithWhatToDo) {
     try {
         store::refuse_network("shared/x.db", 0x47504653);
         FAIL();
-    } catch (const campaign::WrongQuestion& wrong) {
+    } catch (const campaign::InputError& wrong) {
         const std::string sentence = wrong.what();
         for (const char* part : {"shared/x.db", "GPFS", "--db", "grainsweep work", "--network-disk"})
             EXPECT_NE(sentence.find(part), std::string::npos) << part;

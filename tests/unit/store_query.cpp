@@ -1,5 +1,5 @@
 // The views keep the contract's columns, a query only reads, the statistics agree with their definitions.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/archive.hpp"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ struct StoreQuery : testing::Test {
     std::string refusal(std::string_view sql) {
         try {
             (void)store.query(sql);
-        } catch (const campaign::WrongQuestion& wrong) {
+        } catch (const campaign::InputError& wrong) {
             return wrong.what();
         }
         return "answered";
@@ -38,7 +38,7 @@ TEST_F(StoreQuery, TimeAndMemoryAreLimited) {
         try {
             store.query(
                 sql, limits, [](const auto&) {}, [&](const auto&) { ++rows; });
-        } catch (const campaign::WrongQuestion& wrong) {
+        } catch (const campaign::InputError& wrong) {
             return std::string(wrong.what());
         }
         return std::to_string(rows) + " rows";

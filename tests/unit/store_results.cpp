@@ -1,5 +1,5 @@
 // What is written comes back: cases, attempts, answers, costs; stale answers do not.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/archive.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST_F(StoreResults, ACaseIsFoundCompleteByIdAndByPrefix) {
     EXPECT_EQ(*found, one);
     EXPECT_EQ(store.find_case(one.id), one);
     EXPECT_FALSE(store.find_case("zz"));
-    EXPECT_THROW((void)store.find_case(""), campaign::WrongQuestion);
+    EXPECT_THROW((void)store.find_case(""), campaign::InputError);
 }
 
 TEST_F(StoreResults, ACurveIsReadAtAnyPlaceBetweenItsEnds) {
@@ -73,7 +73,7 @@ TEST_F(StoreResults, ACurveIsReadAtAnyPlaceBetweenItsEnds) {
     EXPECT_EQ(at(1.5, 4), 5.5) << "a profile: its last time";
     EXPECT_TRUE(std::isnan(at(1, 5))) << "no answer yet";
     EXPECT_FALSE(store.values_along("first", "y_series", 1)[5].outcome);
-    EXPECT_THROW((void)store.values_along("first", "y", 1), campaign::WrongQuestion) << "a scalar";
+    EXPECT_THROW((void)store.values_along("first", "y", 1), campaign::InputError) << "a scalar";
 }
 
 // A program writes the places of a curve in any order, some of them twice.
@@ -309,7 +309,7 @@ TEST_F(StoreResults, ConvergenceComesBackWithItsHoles) {
     EXPECT_EQ(
         only_cell(store, "SELECT count(*) FROM convergence_history WHERE campaign = 'first' AND kurtosis IS NULL"),
         "2");
-    EXPECT_THROW(store.group([&] { store.record("fist", row); }), campaign::WrongQuestion);
+    EXPECT_THROW(store.group([&] { store.record("fist", row); }), campaign::InputError);
 }
 
 TEST_F(StoreResults, ValuesStandInDesignOrder) {
@@ -326,8 +326,8 @@ TEST_F(StoreResults, ValuesStandInDesignOrder) {
             EXPECT_TRUE(std::isnan(values[k].value));
         }
     }
-    EXPECT_THROW((void)store.values("first", "z"), campaign::WrongQuestion);
-    EXPECT_THROW((void)store.values("frist", "y"), campaign::WrongQuestion);
+    EXPECT_THROW((void)store.values("first", "z"), campaign::InputError);
+    EXPECT_THROW((void)store.values("frist", "y"), campaign::InputError);
 }
 
 TEST_F(StoreResults, StatusCounts) {

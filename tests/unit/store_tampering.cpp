@@ -1,6 +1,6 @@
 // What others do to the file while a run holds it, and files that no run of ours made: no wrong value is remembered as
 // sound, nothing is read without end, and numbers that no run writes end in a sentence.
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/database.hpp"
 #include "sweep/store/file_checksum.hpp"
@@ -39,7 +39,7 @@ template <class Ask>
 std::string refusal_of(Ask&& ask) {
     try {
         ask();
-    } catch (const BrokenWorld& broken) {
+    } catch (const SystemError& broken) {
         return broken.what();
     }
     return {};
@@ -346,7 +346,7 @@ TEST(CampaignName, WhatSqliteResolvesByItselfIsRefused) {
         }
     }
     EXPECT_GT(names.size(), 30u);
-    for (const auto& name : names) EXPECT_THROW(store::check_campaign_name(name), campaign::WrongQuestion) << name;
+    for (const auto& name : names) EXPECT_THROW(store::check_campaign_name(name), campaign::InputError) << name;
     for (const char* name : {"pragma", "pragma_mine", "json_mine", "sqlite", "table_info", "c"})
         EXPECT_NO_THROW(store::check_campaign_name(name)) << name;
 }
@@ -357,8 +357,8 @@ TEST_F(StoreTampering, AViewNamedLikeAFunctionOfSqliteHidesNothing) {
     for (const char* name : {"pragma_table_info", "pragma_function_list", "pragma_table_list", "json_each"})
         by_another(file, std::string("CREATE VIEW ") + name + " AS SELECT 1 AS one");
     EXPECT_EQ(dump_of(Store(file, Store::Mode::read)), text);
-    EXPECT_THROW((void)Store(file, Store::Mode::read).query("SELECT pint FROM c"), campaign::WrongQuestion);
-    EXPECT_THROW((void)Store(file, Store::Mode::read).query("SELECT medain(y) FROM c"), campaign::WrongQuestion);
+    EXPECT_THROW((void)Store(file, Store::Mode::read).query("SELECT pint FROM c"), campaign::InputError);
+    EXPECT_THROW((void)Store(file, Store::Mode::read).query("SELECT medain(y) FROM c"), campaign::InputError);
     Store again(file, Store::Mode::create);
     again.enrol(asked, cases, here());
     again.remember_file();

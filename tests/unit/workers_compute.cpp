@@ -1,7 +1,7 @@
 // What a worker refuses to compute.
 #include "sweep/workers/compute.hpp"
 
-#include "sweep/files/broken_world.hpp"
+#include "sweep/files/system_error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(Compute, RejectsACaseWhoseFileHasChanged) {
     EXPECT_THAT(answer(), HasSubstr("cannot read"));
     // A disk that fails in the middle of the file says nothing about the case: it must not be settled by that.
     std::filesystem::create_symlink("/proc/self/mem", file);
-    EXPECT_THROW((void)answer(), BrokenWorld);
+    EXPECT_THROW((void)answer(), SystemError);
     std::filesystem::remove(file);
 }
 

@@ -1,6 +1,6 @@
 // Integration of particles whose forces are complete: leapfrog v(t+dt/2) = v(t-dt/2) + dt f/m, x(t+dt) = x(t) + dt
 // v(t+dt/2), which is velocity Verlet with half-step velocities in the contact law. Rounding errors are carried to the
-// next step: of position and velocity as in left_over.hpp, of the spin in the sum of the torques. The files of the
+// next step: of position and velocity as in residual.hpp, of the spin in the sum of the torques. The files of the
 // instruction paths include this file after their lanes; it has internal linkage on purpose.
 #pragma once
 
@@ -25,7 +25,7 @@ GRAINSWEEP_LANES Stepper stepper(const Constants& c, const Tally& t) {
 
 /// Advances one particle. `may_be_held`: particles with inverse mass 0 get no gravity.
 template <class Kernel, bool may_be_held>
-GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* left_over, Stepper& s) {
+GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* residual, Stepper& s) {
     const F8 inverse_mass = broadcast8(r.inverse_mass);
     const F8 sum = load8(force.force);
     F8 change = sum * s.turning;
@@ -38,7 +38,7 @@ GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* left_over, 
     F4 of_position;
     F8 of_velocity;
     if constexpr (Kernel::unequal) {
-        const F8 residue = load8(left_over->position);
+        const F8 residue = load8(residual->position);
         of_position = low(residue);
         of_velocity = join(high(residue), broadcast4(0.0f));
     } else {
@@ -72,7 +72,7 @@ GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual* left_over, 
     store4(r.position, position);
     store8(r.velocity, now);
     if constexpr (Kernel::unequal) {
-        store8(left_over->position, join(left, low(lost)));
+        store8(residual->position, join(left, low(lost)));
         const float radius = r.rest[3];
         store4(r.rest, high(now) * broadcast4(radius));
         r.rest[3] = radius;

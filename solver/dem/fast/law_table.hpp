@@ -15,7 +15,7 @@ template <class Laws>
 class LawTable {
     static_assert(std::is_trivially_copyable_v<Laws> && sizeof(Laws) % sizeof(F) == 0);
     static constexpr std::size_t count = sizeof(Laws) / sizeof(F);
-    static constexpr std::size_t rows_at_most = kinds_at_most * kinds_at_most;
+    static constexpr std::size_t rows_at_most = materials_at_most * materials_at_most;
 
 public:
     /// Takes `rows` of constants_at_most constants each.

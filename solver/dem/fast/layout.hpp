@@ -53,7 +53,7 @@ struct alignas(64) Record {
 };
 
 /// Rounding errors of the last additions to position and velocity, carried to the next step. A separate column if radii
-/// differ, otherwise stored in Record and Force (left_over.hpp).
+/// differ, otherwise stored in Record and Force (residual.hpp).
 struct alignas(32) Residual {
     float position[4];
     float velocity[4];

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/mixed_stepping.hpp"
+#include "solver/dem/fast/residual.hpp"
 #include "solver/dem/shaking.hpp"
 
 namespace grainsweep::dem::fast {

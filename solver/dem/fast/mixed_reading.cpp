@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/mixed_stepping.hpp"
+#include "solver/dem/fast/residual.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -32,7 +32,7 @@ void MixedEngine::state(State& into) const {
     for (std::size_t k = 0; k < n; ++k) {
         const std::int32_t i = order[k];
         const Record& r = field_.records[i];
-        const Residual residual = left_over(field_, i);
+        const Residual residual = residual_of(field_, i);
         into.id[k] = columns_.id[static_cast<std::size_t>(i)];
         into.radius[k] = static_cast<double>(r.radius) * s.length;
         into.mobile[k] = r.inverse_mass > 0 ? 1 : 0;
@@ -58,7 +58,7 @@ std::vector<Velocities> MixedEngine::motions(double share) const {
     std::vector<Velocities> all(size());
     for (std::int32_t i = 0; i < field_.count; ++i) {
         const Record& r = field_.records[i];
-        const Residual residual = left_over(field_, i);
+        const Residual residual = residual_of(field_, i);
         Velocities& m = all[static_cast<std::size_t>(i)];
         for (int a = 0; a < 3; ++a) {
             const auto axis = static_cast<std::size_t>(a);

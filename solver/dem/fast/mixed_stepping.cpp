@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/fast/residual.hpp"
 #include "solver/dem/fast/wall_lists.hpp"
 #include "solver/dem/shaking.hpp"
 
@@ -106,7 +106,7 @@ void MixedEngine::take_parts() {
     const auto factor = static_cast<float>(space_.scale.time / before);  // a power of two: exact
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
-        Residual residual = left_over(field_, i);
+        Residual residual = residual_of(field_, i);
         for (int a = 0; a < 3; ++a) {
             r.velocity[a] *= factor;
             residual.velocity[a] *= factor;
@@ -333,7 +333,7 @@ double MixedEngine::half_spin_change(std::int32_t i, int a) const {
 void MixedEngine::full_step_velocities() {
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
-        Residual residual = left_over(field_, i);
+        Residual residual = residual_of(field_, i);
         for (int a = 0; a < 3; ++a) {
             const double v =
                 static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a);
@@ -362,7 +362,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     note_overlaps();
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
-        Residual residual = left_over(field_, i);
+        Residual residual = residual_of(field_, i);
         for (int a = 0; a < 3; ++a) {
             const double v =
                 static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) - half_change(i, a);

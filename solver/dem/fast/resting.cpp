@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/dem/fast/left_over.hpp"
+#include "solver/dem/fast/residual.hpp"
 #include "solver/geometry/vector.hpp"
 
 namespace grainsweep::dem::fast {
@@ -33,7 +33,7 @@ bool is_mobile(const Field& f, std::size_t i) {
 }
 
 void stop(Field& f, std::int32_t i) {
-    Residual residual = left_over(f, i);
+    Residual residual = residual_of(f, i);
     for (int a = 0; a < 3; ++a) {
         f.records[i].velocity[a] = residual.velocity[a] = 0;
         set_spin(f, i, a, 0);

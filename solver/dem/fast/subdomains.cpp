@@ -4,9 +4,9 @@
 #include <limits>
 #include <utility>
 
-#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/fast/residual.hpp"
 #include "solver/own_cores.hpp"
 
 namespace grainsweep::dem::fast {

@@ -11,10 +11,10 @@ template <Amount of>
 class AmountProbe final : public machine::Probe {
 public:
     explicit AmountProbe(const Options& options) : selection_(options) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double sum = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            sum += of == Amount::count ? 1 : of == Amount::mass ? sight.mass(i) : sight.volume(i);
+        selection_.each(frame, [&](std::size_t i) {
+            sum += of == Amount::count ? 1 : of == Amount::mass ? frame.mass(i) : frame.volume(i);
         });
         return sum;
     }
@@ -26,10 +26,10 @@ private:
 class MeanDiameter final : public machine::Probe {
 public:
     explicit MeanDiameter(const Options& options) : selection_(options) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double diameters = 0, number = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            diameters += 2 * sight.state.radius[i];
+        selection_.each(frame, [&](std::size_t i) {
+            diameters += 2 * frame.state.radius[i];
             number += 1;
         });
         return number > 0 ? diameters / number : undefined;

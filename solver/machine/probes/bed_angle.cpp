@@ -20,14 +20,14 @@ class BedAngleProbe final : public machine::Probe {
 public:
     explicit BedAngleProbe(const Options& options)
         : selection_(options), axis_(options.vector("axis")), through_(options.vector("through", {})) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         Vec3 moment{};
         double volume = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            moment += sight.volume(i) * (sight.state.position[i] - through_);
-            volume += sight.volume(i);
+        selection_.each(frame, [&](std::size_t i) {
+            moment += frame.volume(i) * (frame.state.position[i] - through_);
+            volume += frame.volume(i);
         });
-        const Vec3 down = sight.gravity - dot(sight.gravity, axis_) * axis_;
+        const Vec3 down = frame.gravity - dot(frame.gravity, axis_) * axis_;
         if (!(volume > 0 && norm(down) > 0)) return undefined;
         const Vec3 below = (1 / norm(down)) * down;
         return std::atan2(dot(moment, cross(axis_, below)), dot(moment, below)) * 180 / std::numbers::pi;

@@ -11,8 +11,8 @@ class BedFraction final : public machine::Probe {
 public:
     explicit BedFraction(const Options& options)
         : upright_(options), diameter_(options.number("diameter")), section_(options.number("section")) {}
-    double look(const Sight& sight) override {
-        return observables::settled_fraction(upright_.state_of(sight), 0, diameter_, section_);
+    double look(const Frame& frame) override {
+        return observables::settled_fraction(upright_.state_of(frame), 0, diameter_, section_);
     }
 
 private:

@@ -26,9 +26,9 @@ public:
         if (of == Surface::speed || of == Surface::depth) flow_.emplace(radius_, diameter_);
     }
 
-    double look(const Sight& sight) override {
-        if (once_(sight)) {
-            if (const auto section = look_(sight)) {
+    double look(const Frame& frame) override {
+        if (once_(frame)) {
+            if (const auto section = look_(frame)) {
                 solid_.add(*section);
                 if (flow_) flow_->add(*section);
             }

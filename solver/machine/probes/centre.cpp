@@ -12,11 +12,11 @@ class CentreProbe final : public machine::Probe {
 public:
     explicit CentreProbe(const Options& options)
         : selection_(options), along_(options.vector("along")), from_(options.vector("from", {})) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double moment = 0, volume = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            moment += sight.volume(i) * geometry::dot(sight.state.position[i] - from_, along_);
-            volume += sight.volume(i);
+        selection_.each(frame, [&](std::size_t i) {
+            moment += frame.volume(i) * geometry::dot(frame.state.position[i] - from_, along_);
+            volume += frame.volume(i);
         });
         return volume > 0 ? moment / volume : undefined;
     }

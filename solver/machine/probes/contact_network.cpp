@@ -20,16 +20,16 @@ class ContactSelection {
 public:
     explicit ContactSelection(const Options& options) : of_(options.numbers("of")), in_(options.region("in")) {}
     template <class Visit>
-    void each(const Sight& sight, Visit&& visit) const {
-        for (const auto& contact : sight.contacts)
-            if (contact.second >= 0 && of_these(sight, contact.first) && of_these(sight, contact.second) &&
-                (!in_ || in_->contains(contact_point(sight, contact))))
+    void each(const Frame& frame, Visit&& visit) const {
+        for (const auto& contact : frame.contacts)
+            if (contact.second >= 0 && of_these(frame, contact.first) && of_these(frame, contact.second) &&
+                (!in_ || in_->contains(contact_point(frame, contact))))
                 visit(contact);
     }
 
 private:
-    [[nodiscard]] bool of_these(const Sight& sight, std::int32_t id) const {
-        return of_.empty() || std::ranges::find(of_, sight.species[static_cast<std::size_t>(id)]) != of_.end();
+    [[nodiscard]] bool of_these(const Frame& frame, std::int32_t id) const {
+        return of_.empty() || std::ranges::find(of_, frame.species[static_cast<std::size_t>(id)]) != of_.end();
     }
     std::vector<std::size_t> of_;
     std::optional<Region> in_;
@@ -42,14 +42,14 @@ class ContactForces final : public machine::Probe {
 public:
     explicit ContactForces(const Options& options)
         : selection_(options), bins_{0, options.number("to", largest_ratio), bins_in(options)} {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         forces_.clear();
         mean_ = 0;
-        selection_.each(sight, [&](const dem::ContactForce& c) { forces_.push_back(std::abs(c.normal_force)); });
+        selection_.each(frame, [&](const dem::ContactForce& c) { forces_.push_back(std::abs(c.normal_force)); });
         for (const double f : forces_) mean_ += f / static_cast<double>(forces_.size());
         return forces_.empty() || density ? undefined : mean_;
     }
-    void profile(const Sight&, std::vector<Sample>& into) override {
+    void profile(const Frame&, std::vector<Sample>& into) override {
         std::vector<double> numbers(bins_.count, 0.0);
         for (const double f : forces_)
             if (const std::size_t bin = bins_.at(f / mean_); bin < bins_.count) numbers[bin] += 1;
@@ -69,10 +69,10 @@ class Fabric final : public machine::Probe {
 public:
     explicit Fabric(const Options& options)
         : selection_(options), component_(options.has("along")), along_(options.vector("along", {})) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double contacts = 0, parallel = 0;
         std::array<Vec3, 3> sum{};
-        selection_.each(sight, [&](const dem::ContactForce& c) {
+        selection_.each(frame, [&](const dem::ContactForce& c) {
             ++contacts;
             const double share = geometry::dot(c.normal, along_);
             parallel += share * share;

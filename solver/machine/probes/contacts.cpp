@@ -8,14 +8,14 @@ namespace {
 class Coordination final : public machine::Probe {
 public:
     explicit Coordination(const Options& options) : selection_(options) {}
-    double look(const Sight& sight) override {
-        std::vector<char> counts(sight.species.size(), 0);
+    double look(const Frame& frame) override {
+        std::vector<char> counts(frame.species.size(), 0);
         double particles = 0, partners = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            counts[sight.id(i)] = 1;
+        selection_.each(frame, [&](std::size_t i) {
+            counts[frame.id(i)] = 1;
             ++particles;
         });
-        for (const auto& contact : sight.contacts) {
+        for (const auto& contact : frame.contacts) {
             if (contact.second < 0) continue;
             partners +=
                 counts[static_cast<std::size_t>(contact.first)] + counts[static_cast<std::size_t>(contact.second)];
@@ -30,8 +30,8 @@ private:
 class Overlap final : public machine::Probe {
 public:
     explicit Overlap(const Options& options) : over_steps_(options.word("over", "frames") == "steps") {}
-    double look(const Sight& sight) override {
-        return over_steps_ ? sight.peak_overlap : sight.engine.largest_overlap();
+    double look(const Frame& frame) override {
+        return over_steps_ ? frame.peak_overlap : frame.engine.largest_overlap();
     }
 
 private:

@@ -29,9 +29,9 @@ public:
         : look_(options),
           cover_(options.number("radius"), options.number("cell")),
           cells_(cells_in_drum(cover_.grid(), options.number("radius"))) {}
-    double look(const Sight&) override { return undefined; }
-    void profile(const Sight& sight, std::vector<Sample>& into) override {
-        const auto section = look_(sight);
+    double look(const Frame&) override { return undefined; }
+    void profile(const Frame& frame, std::vector<Sample>& into) override {
+        const auto section = look_(frame);
         if (!section) return;
         const auto hidden = cover_.hidden_by(*section);
         into.reserve(cells_.size());
@@ -57,8 +57,8 @@ public:
           cover_(radius_, options.number("cell")),
           cells_(cells_in_drum(cover_.grid(), radius_)) {}
 
-    double look(const Sight& sight) override {
-        add(sight);
+    double look(const Frame& frame) override {
+        add(frame);
         if (of == OfCover::outline) return undefined;
         const auto share = cover_.share();
         if (of == OfCover::angle)
@@ -68,9 +68,9 @@ public:
         return static_cast<double>(hidden) * cover_.grid().cell * cover_.grid().cell;
     }
 
-    void profile(const Sight& sight, std::vector<Sample>& into) override {
+    void profile(const Frame& frame, std::vector<Sample>& into) override {
         if (of != OfCover::outline) return;
-        add(sight);
+        add(frame);
         const auto points = outline(cover_.share());
         auto point = points.begin();
         const auto& grid = cover_.grid();
@@ -94,9 +94,9 @@ public:
     }
 
 private:
-    void add(const Sight& sight) {
-        if (!once_(sight)) return;
-        if (const auto section = look_(sight)) cover_.add(*section);
+    void add(const Frame& frame) {
+        if (!once_(frame)) return;
+        if (const auto section = look_(frame)) cover_.add(*section);
     }
     [[nodiscard]] std::vector<std::array<double, 2>> outline(const std::vector<double>& share) const {
         return observables::falling_through(cover_.grid(), share, half_of_the_time, reach_ * radius_);

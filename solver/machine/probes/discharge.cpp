@@ -18,16 +18,16 @@ public:
     explicit DischargeProbe(const Options& options)
         : of_species_(options.numbers("of")), from_(options.region("from")) {}
 
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double outside = 0, all = 0;
         std::size_t i = 0;  // of the state, in which ids ascend
-        for (std::size_t id = 0; id < sight.radius.size(); ++id) {
-            const bool present = i < sight.size() && sight.id(i) == id;
-            const bool inside = present && (!from_ || from_->contains(sight.state.position[i]));
+        for (std::size_t id = 0; id < frame.radius.size(); ++id) {
+            const bool present = i < frame.size() && frame.id(i) == id;
+            const bool inside = present && (!from_ || from_->contains(frame.state.position[i]));
             if (present) ++i;
-            if (!of_species_.empty() && std::ranges::find(of_species_, sight.species[id]) == of_species_.end())
+            if (!of_species_.empty() && std::ranges::find(of_species_, frame.species[id]) == of_species_.end())
                 continue;
-            const double amount = amount_of(sight, id);
+            const double amount = amount_of(frame, id);
             all += amount;
             if (!inside) outside += amount;
         }
@@ -36,11 +36,11 @@ public:
     }
 
 private:
-    static double amount_of(const Sight& sight, std::size_t id) {
-        const double r = sight.radius[id];
+    static double amount_of(const Frame& frame, std::size_t id) {
+        const double r = frame.radius[id];
         if (of == Discharge::number) return 1;
         if (of == Discharge::diameters) return 2 * r;
-        return sight.density[id] * 4 / 3 * std::numbers::pi * r * r * r;
+        return frame.density[id] * 4 / 3 * std::numbers::pi * r * r * r;
     }
 
     std::vector<std::size_t> of_species_;

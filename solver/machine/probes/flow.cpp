@@ -16,11 +16,11 @@ public:
         : selection_(options), plane_{options.vector("point"), options.vector("normal")} {}
 
     [[nodiscard]] std::vector<dem::CountingPlane> planes() const override { return {plane_}; }
-    void passed(const Sight& sight, const Passage& passage) override {
-        if (!selection_.holds(sight, passage)) return;
-        passed_ += (passage.forward ? 1 : -1) * (by_mass ? sight.mass_of(passage.id) : 1);
+    void passed(const Frame& frame, const Passage& passage) override {
+        if (!selection_.holds(frame, passage)) return;
+        passed_ += (passage.forward ? 1 : -1) * (by_mass ? frame.mass_of(passage.id) : 1);
     }
-    double look(const Sight&) override { return passed_; }
+    double look(const Frame&) override { return passed_; }
     void save(ByteWriter& out) const override { out.put(passed_); }
     void restore(ByteReader& in) override { in.get(passed_); }
 

@@ -15,18 +15,18 @@ using geometry::operator*;
 class GranularTemperatureProbe final : public machine::Probe {
 public:
     explicit GranularTemperatureProbe(const Options& options) : selection_(options) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double mass = 0, squares = 0;
         Vec3 momentum{};
-        selection_.each(sight, [&](std::size_t i) {
-            mass += sight.mass(i);
-            momentum += sight.mass(i) * sight.state.velocity[i];
+        selection_.each(frame, [&](std::size_t i) {
+            mass += frame.mass(i);
+            momentum += frame.mass(i) * frame.state.velocity[i];
         });
         if (!(mass > 0)) return undefined;
         const Vec3 mean = (1 / mass) * momentum;
-        selection_.each(sight, [&](std::size_t i) {
-            const Vec3 v = sight.state.velocity[i] - mean;
-            squares += sight.mass(i) * dot(v, v);
+        selection_.each(frame, [&](std::size_t i) {
+            const Vec3 v = frame.state.velocity[i] - mean;
+            squares += frame.mass(i) * dot(v, v);
         });
         return squares / (3 * mass);
     }

@@ -13,16 +13,16 @@ class HeapProbe final : public machine::Probe {
 public:
     HeapProbe(const Options& options, double HeapShape::*value)
         : upright_(options), cell_(options.number("cell")), reach_(options.number("reach")), value_(value) {}
-    double look(const Sight& sight) override { return value_ == nullptr ? undefined : shape_in(sight).*value_; }
-    void profile(const Sight& sight, std::vector<Sample>& into) override {
-        const auto shape = shape_in(sight);
+    double look(const Frame& frame) override { return value_ == nullptr ? undefined : shape_in(frame).*value_; }
+    void profile(const Frame& frame, std::vector<Sample>& into) override {
+        const auto shape = shape_in(frame);
         for (std::size_t k = 0; k < shape.outline.size(); ++k)
             into.push_back({.bin = (static_cast<double>(k) + 0.5) * cell_, .value = shape.outline[k]});
     }
 
 private:
-    [[nodiscard]] HeapShape shape_in(const Sight& sight) const {
-        return observables::heap_shape(upright_.state_of(sight), cell_, reach_);
+    [[nodiscard]] HeapShape shape_in(const Frame& frame) const {
+        return observables::heap_shape(upright_.state_of(frame), cell_, reach_);
     }
 
     Upright upright_;

@@ -19,14 +19,14 @@ public:
           from_(options.vector("from", {})),
           along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt),
           surface_(options.word("of_sphere", "top") == "top") {}
-    double look(const Sight& sight) override {
-        const Vec3 up = up_of(sight, along_);
+    double look(const Frame& frame) override {
+        const Vec3 up = up_of(frame, along_);
         std::vector<std::pair<double, double>> heights;
         double volume = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            heights.emplace_back(dot(sight.state.position[i] - from_, up) + (surface_ ? sight.state.radius[i] : 0),
-                                 sight.volume(i));
-            volume += sight.volume(i);
+        selection_.each(frame, [&](std::size_t i) {
+            heights.emplace_back(dot(frame.state.position[i] - from_, up) + (surface_ ? frame.state.radius[i] : 0),
+                                 frame.volume(i));
+            volume += frame.volume(i);
         });
         std::ranges::sort(heights);
         double below = 0;
@@ -49,12 +49,12 @@ public:
         : selection_(options),
           from_(options.vector("from", {})),
           along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
-    double look(const Sight& sight) override {
-        const Vec3 up = up_of(sight, along_);
+    double look(const Frame& frame) override {
+        const Vec3 up = up_of(frame, along_);
         double moment = 0, volume = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            moment += sight.volume(i) * dot(sight.state.position[i] - from_, up);
-            volume += sight.volume(i);
+        selection_.each(frame, [&](std::size_t i) {
+            moment += frame.volume(i) * dot(frame.state.position[i] - from_, up);
+            volume += frame.volume(i);
         });
         return volume > 0 ? moment / volume : undefined;
     }

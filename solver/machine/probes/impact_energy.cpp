@@ -36,15 +36,15 @@ public:
         tangential_ = part == "normal" ? 0 : 1;
     }
 
-    void step(const Sight& sight) override {
+    void step(const Frame& frame) override {
         now_.clear();
         auto before = lasting_.cbegin();
-        for (const auto place : sight.by_partners) {
-            const auto& contact = sight.contacts[place];
-            if (!counts(sight, contact)) continue;
+        for (const auto place : frame.by_partners) {
+            const auto& contact = frame.contacts[place];
+            if (!counts(frame, contact)) continue;
             const Lasting one{
                 std::max(contact.first, contact.second), std::min(contact.first, contact.second),
-                sight.time_step * (normal_ * contact.normal_power + tangential_ * contact.tangential_power)};
+                frame.time_step * (normal_ * contact.normal_power + tangential_ * contact.tangential_power)};
             if (!now_.empty() && now_.back().key() == one.key()) {
                 now_.back().energy += one.energy;
                 continue;
@@ -57,13 +57,13 @@ public:
         lasting_.swap(now_);
     }
 
-    double look(const Sight&) override {
+    double look(const Frame&) override {
         if (by_number) return ended_;
         double sum = energy_;
         for (const Lasting& contact : lasting_) sum += contact.energy;
         return sum;
     }
-    void profile(const Sight&, std::vector<Sample>& into) override {
+    void profile(const Frame&, std::vector<Sample>& into) override {
         for (std::size_t b = 0; b < bins_.count; ++b)
             into.push_back({.bin = std::pow(10, bins_.centre(b)), .value = in_bins_[b]});
     }
@@ -83,15 +83,15 @@ private:
         [[nodiscard]] std::uint64_t key() const { return partner_key(first, second); }
     };
 
-    [[nodiscard]] bool of_these(const Sight& sight, std::int32_t id) const {
+    [[nodiscard]] bool of_these(const Frame& frame, std::int32_t id) const {
         return of_species_.empty() ||
-               std::ranges::find(of_species_, sight.species[static_cast<std::size_t>(id)]) != of_species_.end();
+               std::ranges::find(of_species_, frame.species[static_cast<std::size_t>(id)]) != of_species_.end();
     }
-    [[nodiscard]] bool counts(const Sight& sight, const dem::ContactForce& contact) const {
+    [[nodiscard]] bool counts(const Frame& frame, const dem::ContactForce& contact) const {
         if (contact.second >= 0)
-            return !at_walls_ && (of_these(sight, contact.first) || of_these(sight, contact.second));
+            return !at_walls_ && (of_these(frame, contact.first) || of_these(frame, contact.second));
         const auto wall = static_cast<std::size_t>(-1 - contact.second);
-        return of_these(sight, contact.first) && (!at_walls_ || std::ranges::find(walls_, wall) != walls_.end());
+        return of_these(frame, contact.first) && (!at_walls_ || std::ranges::find(walls_, wall) != walls_.end());
     }
     void end(const Lasting& contact) {
         energy_ += contact.energy;

@@ -8,10 +8,10 @@ namespace {
 class KineticEnergyProbe final : public machine::Probe {
 public:
     explicit KineticEnergyProbe(const Options& options) : selection_(options) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double energy = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            energy += sight.mass(i) / 2 * geometry::dot(sight.state.velocity[i], sight.state.velocity[i]);
+        selection_.each(frame, [&](std::size_t i) {
+            energy += frame.mass(i) / 2 * geometry::dot(frame.state.velocity[i], frame.state.velocity[i]);
         });
         return energy;
     }

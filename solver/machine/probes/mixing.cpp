@@ -30,20 +30,20 @@ public:
           origin_(options.vector("origin", {})),
           least_(options.number("least", 0.2)) {}
 
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         std::map<std::array<std::int64_t, 3>, LaceyCell> cells;
         std::array<double, 2> volume{}, squares{};
-        for (std::size_t i = 0; i < sight.size(); ++i) {
-            const std::size_t species = sight.species_of(i);
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            const std::size_t species = frame.species_of(i);
             if (species != of_[0] && species != of_[1]) continue;
-            if (in_ && !in_->contains(sight.state.position[i])) continue;
-            const double v = sight.volume(i);
+            if (in_ && !in_->contains(frame.state.position[i])) continue;
+            const double v = frame.volume(i);
             const std::size_t which = species == of_[0] ? 0 : 1;
             volume[which] += v;
             squares[which] += v * v;
             std::array<std::int64_t, 3> at{};
             for (std::size_t k = 0; k < 3; ++k)
-                at[k] = static_cast<std::int64_t>(std::floor((sight.state.position[i][k] - origin_[k]) / cell_));
+                at[k] = static_cast<std::int64_t>(std::floor((frame.state.position[i][k] - origin_[k]) / cell_));
             LaceyCell& cell = cells[at];
             cell.all += v;
             if (which == 0) cell.first += v;
@@ -81,12 +81,12 @@ private:
 class MassShare final : public machine::Probe {
 public:
     explicit MassShare(const Options& options) : of_(options), in_(options.region("in")) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double of_species = 0, all = 0;
-        for (std::size_t i = 0; i < sight.size(); ++i) {
-            if (in_ && !in_->contains(sight.state.position[i])) continue;
-            all += sight.mass(i);
-            if (of_.holds(sight, i)) of_species += sight.mass(i);
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            if (in_ && !in_->contains(frame.state.position[i])) continue;
+            all += frame.mass(i);
+            if (of_.holds(frame, i)) of_species += frame.mass(i);
         }
         return all > 0 ? of_species / all : undefined;
     }

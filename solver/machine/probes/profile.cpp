@@ -23,19 +23,19 @@ public:
         const auto word = options.word("quantity", "solid_volume");
         of_ = word == "velocity" ? ProfileOf::velocity : word == "share" ? ProfileOf::share : ProfileOf::solid_volume;
     }
-    double look(const Sight&) override { return undefined; }
-    void profile(const Sight& sight, std::vector<Sample>& into) override {
+    double look(const Frame&) override { return undefined; }
+    void profile(const Frame& frame, std::vector<Sample>& into) override {
         std::vector<double> sum(bins_.count, 0), weight(bins_.count, 0);
-        for (std::size_t i = 0; i < sight.size(); ++i) {
-            if (in_ && !in_->contains(sight.state.position[i])) continue;
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            if (in_ && !in_->contains(frame.state.position[i])) continue;
             const bool counts =
-                of_species_.empty() || std::ranges::find(of_species_, sight.species_of(i)) != of_species_.end();
+                of_species_.empty() || std::ranges::find(of_species_, frame.species_of(i)) != of_species_.end();
             if (of_ != ProfileOf::share && !counts) continue;
-            const std::size_t bin = bins_.at(dot(sight.state.position[i], along_));
+            const std::size_t bin = bins_.at(dot(frame.state.position[i], along_));
             if (bin == bins_.count) continue;
-            const double volume = sight.volume(i);
+            const double volume = frame.volume(i);
             weight[bin] += volume;
-            if (of_ == ProfileOf::velocity) sum[bin] += volume * dot(sight.state.velocity[i], velocity_along_);
+            if (of_ == ProfileOf::velocity) sum[bin] += volume * dot(frame.state.velocity[i], velocity_along_);
             if (of_ == ProfileOf::share && counts) sum[bin] += volume;
         }
         for (std::size_t bin = 0; bin < bins_.count; ++bin) {

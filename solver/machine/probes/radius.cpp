@@ -18,24 +18,24 @@ public:
           axis_(options.vector("axis")),
           through_(options.vector("through", {})),
           about_bed_(options.word("about", "axis") == "bed") {}
-    double look(const Sight& sight) override {
-        const Vec3 origin = about_bed_ ? centre_of_bed(sight) : through_;
+    double look(const Frame& frame) override {
+        const Vec3 origin = about_bed_ ? centre_of_bed(frame) : through_;
         double moment = 0, volume = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            const Vec3 x = sight.state.position[i] - origin;
-            moment += sight.volume(i) * norm(x - dot(x, axis_) * axis_);
-            volume += sight.volume(i);
+        selection_.each(frame, [&](std::size_t i) {
+            const Vec3 x = frame.state.position[i] - origin;
+            moment += frame.volume(i) * norm(x - dot(x, axis_) * axis_);
+            volume += frame.volume(i);
         });
         return volume > 0 ? moment / volume : undefined;
     }
 
 private:
-    static Vec3 centre_of_bed(const Sight& sight) {
+    static Vec3 centre_of_bed(const Frame& frame) {
         Vec3 moment{};
         double volume = 0;
-        for (std::size_t i = 0; i < sight.size(); ++i) {
-            moment += sight.volume(i) * sight.state.position[i];
-            volume += sight.volume(i);
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            moment += frame.volume(i) * frame.state.position[i];
+            volume += frame.volume(i);
         }
         return volume > 0 ? (1 / volume) * moment : moment;
     }

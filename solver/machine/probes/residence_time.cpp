@@ -29,8 +29,8 @@ public:
     [[nodiscard]] std::vector<dem::CountingPlane> planes() const override {
         return {{first_ * along_, along_}, {second_ * along_, along_}};
     }
-    void passed(const Sight& sight, const Passage& passage) override {
-        if (!passage.forward || !selection_.holds(sight, passage)) return;
+    void passed(const Frame& frame, const Passage& passage) override {
+        if (!passage.forward || !selection_.holds(frame, passage)) return;
         if (passage.id >= seen_.size()) seen_.resize(passage.id + 1);
         Seen& seen = seen_[passage.id];
         if (passage.plane == 0) {
@@ -40,8 +40,8 @@ public:
             times_.push_back(passage.time - seen.entered);
         }
     }
-    double look(const Sight&) override { return value(); }
-    void profile(const Sight&, std::vector<Sample>& into) override {
+    double look(const Frame&) override { return value(); }
+    void profile(const Frame&, std::vector<Sample>& into) override {
         std::vector<double> numbers(bins_.count, 0.0);
         for (const double t : times_)
             if (const std::size_t bin = bins_.at(t); bin < bins_.count) numbers[bin] += 1;

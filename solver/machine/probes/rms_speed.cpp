@@ -9,7 +9,7 @@ namespace {
 class RmsSpeed final : public machine::Probe {
 public:
     explicit RmsSpeed(const Options& options) : particles_(options) {}
-    double look(const Sight& sight) override { return observables::rms_speed(particles_.state_of(sight)); }
+    double look(const Frame& frame) override { return observables::rms_speed(particles_.state_of(frame)); }
 
 private:
     Upright particles_;

@@ -25,17 +25,17 @@ public:
         : selection_(options), axis_(options.vector("axis")), through_(options.vector("through", {})) {}
 
     /// Returns nothing if gravity has no component across the axis: there is no surface.
-    [[nodiscard]] std::optional<observables::Section> operator()(const Sight& sight) const {
+    [[nodiscard]] std::optional<observables::Section> operator()(const Frame& frame) const {
         using geometry::operator-;
         using geometry::operator*;
-        const Vec3 down = sight.gravity - geometry::dot(sight.gravity, axis_) * axis_;
+        const Vec3 down = frame.gravity - geometry::dot(frame.gravity, axis_) * axis_;
         const double size = geometry::norm(down);
         if (!(size > 0)) return std::nullopt;
         const Vec3 up = (-1 / size) * down;
         const observables::SectionView view{through_, geometry::cross(axis_, up), up};
         observables::Section section;
-        section.reserve(sight.size());
-        selection_.each(sight, [&](std::size_t i) { section.push_back(view.sphere(sight.state, i)); });
+        section.reserve(frame.size());
+        selection_.each(frame, [&](std::size_t i) { section.push_back(view.sphere(frame.state, i)); });
         return section;
     }
 
@@ -48,9 +48,9 @@ private:
 class FramesOnce {
 public:
     /// Returns true at the first call for this moment.
-    [[nodiscard]] bool operator()(const Sight& sight) {
-        const bool again = sight.time == last_;
-        last_ = sight.time;
+    [[nodiscard]] bool operator()(const Frame& frame) {
+        const bool again = frame.time == last_;
+        last_ = frame.time;
         return !again;
     }
     void save(ByteWriter& out) const { out.put(last_); }

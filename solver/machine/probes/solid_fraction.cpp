@@ -9,9 +9,9 @@ class SolidFractionProbe final : public machine::Probe {
 public:
     explicit SolidFractionProbe(const Options& options)
         : selection_(options), volume_(options.region("in")->volume().value()) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double solid = 0;
-        selection_.each(sight, [&](std::size_t i) { solid += sight.volume(i); });
+        selection_.each(frame, [&](std::size_t i) { solid += frame.volume(i); });
         return solid / volume_;
     }
 

@@ -70,34 +70,34 @@ public:
         volume_ = bins_.count > 0 ? options.number("section") * bins_.width() : *in_->volume();
     }
 
-    double look(const Sight& sight) override {
-        fill(sight);
+    double look(const Frame& frame) override {
+        fill(frame);
         return bins_.count > 0 ? undefined : value(held_.front(), volume_);
     }
-    void profile(const Sight&, std::vector<Sample>& into) override {
+    void profile(const Frame&, std::vector<Sample>& into) override {
         for (std::size_t b = 0; b < bins_.count; ++b)
             into.push_back({.bin = bins_.centre(b), .value = value(held_[b], volume_)});
     }
 
 private:
-    void fill(const Sight& sight) {
+    void fill(const Frame& frame) {
         held_.assign(std::max<std::size_t>(bins_.count, 1), {});
-        for (std::size_t i = 0; of_motion_ && i < sight.size(); ++i) {
-            Held* const held = sight.state.mobile[i] != 0 ? holding(sight.state.position[i]) : nullptr;
+        for (std::size_t i = 0; of_motion_ && i < frame.size(); ++i) {
+            Held* const held = frame.state.mobile[i] != 0 ? holding(frame.state.position[i]) : nullptr;
             if (held == nullptr) continue;
-            held->mass += sight.mass(i);
-            held->momentum += sight.mass(i) * sight.state.velocity[i];
-            held->flux.add(sight.mass(i) * sight.state.velocity[i], sight.state.velocity[i]);
+            held->mass += frame.mass(i);
+            held->momentum += frame.mass(i) * frame.state.velocity[i];
+            held->flux.add(frame.mass(i) * frame.state.velocity[i], frame.state.velocity[i]);
         }
-        for (std::size_t k = 0; of_contacts_ && k < sight.contacts.size(); ++k) add(sight, sight.contacts[k]);
+        for (std::size_t k = 0; of_contacts_ && k < frame.contacts.size(); ++k) add(frame, frame.contacts[k]);
     }
-    void add(const Sight& sight, const dem::ContactForce& contact) {
-        const dem::State& state = sight.state;
-        const std::size_t i = place_of(sight, contact.first);
+    void add(const Frame& frame, const dem::ContactForce& contact) {
+        const dem::State& state = frame.state;
+        const std::size_t i = place_of(frame, contact.first);
         // From the centre of the first partner towards the other one: where the contact begins and ends.
         double begin = 0, end = state.radius[i] - contact.overlap;
         if (contact.second >= 0) {
-            const std::size_t j = place_of(sight, contact.second);
+            const std::size_t j = place_of(frame, contact.second);
             if (state.mobile[i] == 0) begin = state.radius[i] - contact.overlap / 2;
             end += state.mobile[j] == 0 ? contact.overlap / 2 : state.radius[j];
         }
@@ -105,7 +105,7 @@ private:
         const Vec3 piece = ((end - begin) / pieces) * contact.normal;
         for (int p = 0; p < pieces; ++p) {
             const Vec3 x = state.position[i] - begin * contact.normal - (p + 0.5) * piece;
-            if (Held* const held = holding(x + sight.domain.wrapping(x))) held->contacts.add(force, piece);
+            if (Held* const held = holding(x + frame.domain.wrapping(x))) held->contacts.add(force, piece);
         }
     }
     [[nodiscard]] Held* holding(const Vec3& x) {

@@ -13,12 +13,12 @@ template <VelocityOf what>
 class VelocityProbe final : public machine::Probe {
 public:
     explicit VelocityProbe(const Options& options) : selection_(options), along_(options.vector("along")) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double momentum = 0, mass = 0;
-        selection_.each(sight, [&](std::size_t i) {
-            const auto& of = what == VelocityOf::spin ? sight.state.angular_velocity : sight.state.velocity;
-            momentum += sight.mass(i) * geometry::dot(of[i], along_);
-            mass += sight.mass(i);
+        selection_.each(frame, [&](std::size_t i) {
+            const auto& of = what == VelocityOf::spin ? frame.state.angular_velocity : frame.state.velocity;
+            momentum += frame.mass(i) * geometry::dot(of[i], along_);
+            mass += frame.mass(i);
         });
         if (what == VelocityOf::sum) return momentum;
         return mass > 0 ? momentum / mass : undefined;

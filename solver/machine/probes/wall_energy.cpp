@@ -46,9 +46,9 @@ public:
         : walls_(options.numbers("wall")),
           part_(static_cast<EnergyPart>(std::ranges::find(energy_parts, options.word("part", "kinetic")) -
                                         energy_parts.begin())) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double total = walls_.empty() ? undefined : 0;  // walls that this case is without
-        for (const std::size_t w : walls_) total += part_of(part_, sight.engine.wall_energy(w), sight.engine.wall(w));
+        for (const std::size_t w : walls_) total += part_of(part_, frame.engine.wall_energy(w), frame.engine.wall(w));
         return total;
     }
 
@@ -61,9 +61,9 @@ private:
 class ContactEnergy final : public machine::Probe {
 public:
     explicit ContactEnergy(const Options& options) : walls_(options.numbers("wall")), at_walls_(options.has("wall")) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double total = 0;
-        for (const auto& contact : sight.contacts)
+        for (const auto& contact : frame.contacts)
             if (counts(contact)) total += contact.stored;
         return total;
     }

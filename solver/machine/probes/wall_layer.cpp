@@ -11,8 +11,8 @@ class WallLayer final : public machine::Probe {
 public:
     explicit WallLayer(const Options& options)
         : look_(options), radius_(options.number("radius")), diameter_(options.number("diameter")) {}
-    double look(const Sight& sight) override {
-        const auto section = look_(sight);
+    double look(const Frame& frame) override {
+        const auto section = look_(frame);
         if (!section) return undefined;
         return observables::wall_layer_speed(*section, radius_, diameter_).value_or(undefined);
     }

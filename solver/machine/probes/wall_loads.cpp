@@ -17,9 +17,9 @@ struct Walls {
     explicit Walls(const Options& options) : numbers(options.numbers("wall")) {}
     /// Returns the sum of a number of their loads; undefined for walls that this case is without.
     template <class Of>
-    [[nodiscard]] double sum(const Sight& sight, const Vec3& about, Of&& of) const {
+    [[nodiscard]] double sum(const Frame& frame, const Vec3& about, Of&& of) const {
         double total = numbers.empty() ? undefined : 0;
-        for (const std::size_t w : numbers) total += of(sight.engine.wall_load(w, about));
+        for (const std::size_t w : numbers) total += of(frame.engine.wall_load(w, about));
         return total;
     }
 };
@@ -28,11 +28,11 @@ class Force final : public machine::Probe {
 public:
     explicit Force(const Options& options)
         : walls_(options), along_(options.vector("along")), area_(options.number("area", 1)) {}
-    double look(const Sight& sight) override {
-        return walls_.sum(sight, {}, [this](const dem::WallLoad& load) { return dot(load.force, along_); }) / area_;
+    double look(const Frame& frame) override {
+        return walls_.sum(frame, {}, [this](const dem::WallLoad& load) { return dot(load.force, along_); }) / area_;
     }
-    double integral(const Sight& sight) override {
-        return walls_.sum(sight, {}, [this](const dem::WallLoad& load) { return dot(load.impulse, along_); }) / area_;
+    double integral(const Frame& frame) override {
+        return walls_.sum(frame, {}, [this](const dem::WallLoad& load) { return dot(load.impulse, along_); }) / area_;
     }
 
 private:
@@ -45,11 +45,11 @@ class Torque final : public machine::Probe {
 public:
     explicit Torque(const Options& options)
         : walls_(options), axis_(options.vector("axis")), about_(options.vector("about", {})) {}
-    double look(const Sight& sight) override {
-        return walls_.sum(sight, about_, [this](const dem::WallLoad& load) { return dot(load.torque, axis_); });
+    double look(const Frame& frame) override {
+        return walls_.sum(frame, about_, [this](const dem::WallLoad& load) { return dot(load.torque, axis_); });
     }
-    double integral(const Sight& sight) override {
-        return walls_.sum(sight, about_,
+    double integral(const Frame& frame) override {
+        return walls_.sum(frame, about_,
                           [this](const dem::WallLoad& load) { return dot(load.angular_impulse, axis_); });
     }
 
@@ -61,8 +61,8 @@ private:
 class Work final : public machine::Probe {
 public:
     explicit Work(const Options& options) : walls_(options) {}
-    double look(const Sight& sight) override {
-        return walls_.sum(sight, {}, [](const dem::WallLoad& load) { return load.work; });
+    double look(const Frame& frame) override {
+        return walls_.sum(frame, {}, [](const dem::WallLoad& load) { return load.work; });
     }
 
 private:
@@ -72,9 +72,9 @@ private:
 class RollingTorque final : public machine::Probe {
 public:
     explicit RollingTorque(const Options& options) : walls_(options), axis_(options.vector("axis")) {}
-    double look(const Sight& sight) override {
+    double look(const Frame& frame) override {
         double sum = walls_.numbers.empty() ? undefined : 0;
-        for (const auto& contact : sight.contacts) {
+        for (const auto& contact : frame.contacts) {
             if (contact.second >= 0) continue;
             const auto wall = static_cast<std::size_t>(-1 - contact.second);
             if (std::ranges::find(walls_.numbers, wall) != walls_.numbers.end())

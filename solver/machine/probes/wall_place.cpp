@@ -14,18 +14,18 @@ using geometry::dot;
 using geometry::operator-;
 
 /// Returns the first of the walls; nullptr: this case has none of them.
-const dem::Wall* wall_of(const std::vector<std::size_t>& numbers, const Sight& sight) {
-    return numbers.empty() ? nullptr : &sight.engine.wall(numbers.front());
+const dem::Wall* wall_of(const std::vector<std::size_t>& numbers, const Frame& frame) {
+    return numbers.empty() ? nullptr : &frame.engine.wall(numbers.front());
 }
 
 class PositionOfWall final : public machine::Probe {
 public:
     explicit PositionOfWall(const Options& options)
         : walls_(options.numbers("wall")), along_(options.vector("along")), of_(options.vector("of", {})) {}
-    double look(const Sight& sight) override {
-        const dem::Wall* wall = wall_of(walls_, sight);
+    double look(const Frame& frame) override {
+        const dem::Wall* wall = wall_of(walls_, frame);
         if (wall == nullptr) return undefined;
-        const auto pose = geometry::pose_at(wall->motions, sight.engine.wall_time());
+        const auto pose = geometry::pose_at(wall->motions, frame.engine.wall_time());
         return dot(pose.from_body(of_) - of_, along_);
     }
 
@@ -37,10 +37,10 @@ private:
 class AngleOfWall final : public machine::Probe {
 public:
     explicit AngleOfWall(const Options& options) : walls_(options.numbers("wall")), axis_(options.vector("axis")) {}
-    double look(const Sight& sight) override {
-        const dem::Wall* wall = wall_of(walls_, sight);
+    double look(const Frame& frame) override {
+        const dem::Wall* wall = wall_of(walls_, frame);
         if (wall == nullptr) return undefined;
-        const double time = sight.engine.wall_time();
+        const double time = frame.engine.wall_time();
         double angle = 0;
         for (const geometry::Motion& motion : wall->motions) {
             if (const auto* drive = std::get_if<geometry::Drive>(&motion))

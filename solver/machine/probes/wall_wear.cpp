@@ -24,23 +24,23 @@ public:
           bins_(bins_along(options)),
           in_bins_(bins_.count, 0.0) {}
 
-    void step(const Sight& sight) override {
-        for (const auto& contact : sight.contacts) {
-            if (!contact.slides || !(contact.normal_force > 0) || !counts(sight, contact)) continue;
-            const double wear = contact.normal_force * geometry::norm(contact.slip) * sight.time_step;
+    void step(const Frame& frame) override {
+        for (const auto& contact : frame.contacts) {
+            if (!contact.slides || !(contact.normal_force > 0) || !counts(frame, contact)) continue;
+            const double wear = contact.normal_force * geometry::norm(contact.slip) * frame.time_step;
             if (!in_ && bins_.count == 0) {
                 wear_ += wear;
                 continue;
             }
-            const Vec3 x = contact_point(sight, contact);
+            const Vec3 x = contact_point(frame, contact);
             if (in_ && !in_->contains(x)) continue;
             wear_ += wear;
             if (bins_.count == 0) continue;
             if (const std::size_t bin = bins_.at(geometry::dot(x, along_)); bin < bins_.count) in_bins_[bin] += wear;
         }
     }
-    double look(const Sight&) override { return walls_.empty() ? undefined : wear_; }
-    void profile(const Sight&, std::vector<Sample>& into) override {
+    double look(const Frame&) override { return walls_.empty() ? undefined : wear_; }
+    void profile(const Frame&, std::vector<Sample>& into) override {
         for (std::size_t b = 0; b < bins_.count; ++b) into.push_back({.bin = bins_.centre(b), .value = in_bins_[b]});
     }
     void save(ByteWriter& out) const override { out.put(wear_), out.put(in_bins_); }
@@ -50,10 +50,10 @@ public:
     }
 
 private:
-    [[nodiscard]] bool counts(const Sight& sight, const dem::ContactForce& contact) const {
+    [[nodiscard]] bool counts(const Frame& frame, const dem::ContactForce& contact) const {
         if (contact.second >= 0) return false;
         const auto wall = static_cast<std::size_t>(-1 - contact.second);
-        const auto species = sight.species[static_cast<std::size_t>(contact.first)];
+        const auto species = frame.species[static_cast<std::size_t>(contact.first)];
         return std::ranges::find(walls_, wall) != walls_.end() &&
                (of_species_.empty() || std::ranges::find(of_species_, species) != of_species_.end());
     }

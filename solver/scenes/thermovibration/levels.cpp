@@ -1,8 +1,8 @@
 #include "solver/scenes/thermovibration/levels.hpp"
 
 #include "solver/coupling/dense_suspension.hpp"
-#include "solver/coupling/own_wake.hpp"
 #include "solver/coupling/projected_contacts.hpp"
+#include "solver/coupling/self_disturbance.hpp"
 #include "solver/coupling/solids_pressure.hpp"
 #include "solver/coupling/spring_contacts.hpp"
 #include "solver/coupling/suspension.hpp"

@@ -72,12 +72,12 @@ struct Place {
     std::shared_ptr<const campaign::Computer> computer;  ///< program and machine that will compute it
 };
 
-class Crew {
+class WorkerPool {
 public:
-    Crew() = default;
-    Crew(const Crew&) = delete;
-    Crew& operator=(const Crew&) = delete;
-    virtual ~Crew() = default;
+    WorkerPool() = default;
+    WorkerPool(const WorkerPool&) = delete;
+    WorkerPool& operator=(const WorkerPool&) = delete;
+    virtual ~WorkerPool() = default;
 
     /// Starts workers for the waiting cases, up to the largest number of workers. A worker takes cases once it is
     /// ready.

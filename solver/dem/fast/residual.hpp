@@ -9,7 +9,7 @@
 
 namespace grainsweep::dem::fast {
 
-inline Residual left_over(const Field& f, std::int32_t i) {
+inline Residual residual_of(const Field& f, std::int32_t i) {
     if (f.residuals != nullptr) return f.residuals[i];
     const float* rest = f.records[i].rest;
     const Force& force = f.forces[i];

@@ -5,7 +5,7 @@
 
 namespace grainsweep {
 
-class BrokenWorld : public std::runtime_error {
+class SystemError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };

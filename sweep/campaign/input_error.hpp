@@ -11,22 +11,22 @@
 
 namespace grainsweep::campaign {
 
-class WrongQuestion : public std::runtime_error {
+class InputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
 /// Returns the error "path: got value; rule. Did you mean 'x'?".
-[[nodiscard]] WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
-                                           std::string_view suggestion = {});
+[[nodiscard]] InputError input_error(std::string_view where, std::string_view value, std::string_view rule,
+                                     std::string_view suggestion = {});
 
-/// Returns the result of `ask`; adds the file to its WrongQuestion, before the path.
+/// Returns the result of `ask`; adds the file to its InputError, before the path.
 template <class Ask>
 auto asked_in(const std::filesystem::path& file, const Ask& ask) {
     try {
         return ask();
-    } catch (const WrongQuestion& wrong) {
-        throw WrongQuestion(file.string() + ": " + wrong.what());
+    } catch (const InputError& wrong) {
+        throw InputError(file.string() + ": " + wrong.what());
     }
 }
 

@@ -1,4 +1,4 @@
-#include "stats/stretches.hpp"
+#include "stats/batches.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -6,23 +6,23 @@
 
 namespace grainsweep::stats {
 
-std::array<Summary, StretchedSample::stretches> StretchedSample::leave_one_out() {
-    assert(values_.size() >= 2 * stretches);
-    std::array<Moments, stretches> parts;
-    for (std::size_t g = 0; g < stretches; ++g)
+std::array<Summary, StretchedSample::batches> StretchedSample::leave_one_out() {
+    assert(values_.size() >= 2 * batches);
+    std::array<Moments, batches> parts;
+    for (std::size_t g = 0; g < batches; ++g)
         parts[g].add(std::span(values_).subspan(first_of(g), first_of(g + 1) - first_of(g)));
     const auto middle = middles();
-    std::array<Summary, stretches> summaries;
-    for (std::size_t left_out = 0; left_out < stretches; ++left_out) {
+    std::array<Summary, batches> summaries;
+    for (std::size_t left_out = 0; left_out < batches; ++left_out) {
         Moments moments;
-        for (std::size_t g = 0; g < stretches; ++g)
+        for (std::size_t g = 0; g < batches; ++g)
             if (g != left_out) moments.merge(parts[g]);
         summaries[left_out] = moments.summary(middle[left_out]);
     }
     return summaries;
 }
 
-std::array<Middle, StretchedSample::stretches> StretchedSample::middles() {
+std::array<Middle, StretchedSample::batches> StretchedSample::middles() {
     const auto old = static_cast<std::ptrdiff_t>(ranked_.size());
     for (std::size_t i = ranked_.size(); i < values_.size(); ++i) ranked_.push_back({values_[i], i});
     std::ranges::sort(ranked_.begin() + old, ranked_.end(), {}, &Ranked::value);
@@ -30,13 +30,13 @@ std::array<Middle, StretchedSample::stretches> StretchedSample::middles() {
 
     // Walking up the sorted values, `passed` counts those of each stretch: i + 1 - passed[g] values of the
     // others lie at or below place i.
-    std::array<Middle, stretches> middles;
-    std::array<std::size_t, stretches> passed{};
-    for (std::size_t i = 0, open = stretches; open > 0; ++i) {
-        const std::size_t own = std::min(ranked_[i].position * stretches / values_.size(), stretches - 1);
+    std::array<Middle, batches> middles;
+    std::array<std::size_t, batches> passed{};
+    for (std::size_t i = 0, open = batches; open > 0; ++i) {
+        const std::size_t own = std::min(ranked_[i].position * batches / values_.size(), batches - 1);
         const std::size_t stretch = ranked_[i].position >= first_of(own + 1) ? own + 1 : own;
         ++passed[stretch];
-        for (std::size_t g = 0; g < stretches; ++g) {
+        for (std::size_t g = 0; g < batches; ++g) {
             if (g == stretch) continue;
             const std::size_t others = values_.size() - (first_of(g + 1) - first_of(g));
             const std::size_t reached = i + 1 - passed[g];

@@ -1,4 +1,4 @@
-#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include "sweep/campaign/synonyms.hpp"
 
@@ -79,8 +79,8 @@ std::string single_line(std::string_view text) {
 
 }  // namespace
 
-WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
-                             std::string_view suggestion) {
+InputError input_error(std::string_view where, std::string_view value, std::string_view rule,
+                       std::string_view suggestion) {
     std::string sentence(where);
     if (!sentence.empty()) sentence += ": ";
     const auto start = beginning(value);
@@ -88,7 +88,7 @@ WrongQuestion wrong_question(std::string_view where, std::string_view value, std
     sentence += rule;
     if (!sentence.ends_with('.')) sentence += '.';
     if (!suggestion.empty()) sentence += fmt::format(" Did you mean '{}'?", suggestion);
-    return WrongQuestion(single_line(sentence));
+    return InputError(single_line(sentence));
 }
 
 std::string listed(const WordList& names) {
