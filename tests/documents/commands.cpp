@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 class Clone {
 public:
     Clone() {
-        for (const char* name : {"configs", "bootstrap.sh", "python"}) fs::create_symlink(source(name), folder_ / name);
+        for (const char* name : {"configs", "bootstrap.sh", "packaging"}) fs::create_symlink(source(name), folder_ / name);
         fs::create_directory(folder_ / "build");
         fs::create_symlink(executable(), folder_ / "build/grainsweep");
         fs::create_directory(folder_ / "absent");
@@ -36,7 +36,7 @@ public:
         }
     }
     [[nodiscard]] Ended bash(const std::string& script) const {
-        const std::string whole = "export PATH=\"$PWD/build:$PATH:$PWD/absent\" PYTHONPATH=\"$PWD/python\"\n" + script;
+        const std::string whole = "export PATH=\"$PWD/build:$PATH:$PWD/absent\" PYTHONPATH=\"$PWD/packaging/python\"\n" + script;
         return Process({"/bin/bash", "-e", "-u", "-o", "pipefail", "-c", whole}, folder_.path()).wait();
     }
     [[nodiscard]] Ended grainsweep(const std::vector<std::string>& arguments) const {

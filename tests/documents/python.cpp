@@ -19,7 +19,7 @@ struct Python : testing::Test {
 
     [[nodiscard]] Ended python(const std::string& script) const {
         folder.write("script.py", script);
-        const auto command = "GRAINSWEEP='" + executable().string() + "' PYTHONPATH='" + source("python").string() +
+        const auto command = "GRAINSWEEP='" + executable().string() + "' PYTHONPATH='" + source("packaging/python").string() +
                              "' PYTHONDONTWRITEBYTECODE=1 python3 script.py";
         return Process({"/bin/sh", "-c", command}, folder.path()).wait();
     }

@@ -59,7 +59,7 @@ def _program():
         return named
     here = pathlib.Path(__file__).resolve().parent
     # <prefix>/share/grainsweep/python, and a clone with its build.
-    for beside in (here.parents[2] / "bin" / "grainsweep" if len(here.parents) > 2 else here, here.parent / "build" / "grainsweep"):
+    for beside in (here.parents[2] / "bin" / "grainsweep" if len(here.parents) > 2 else here, here.parents[1] / "build" / "grainsweep"):
         if beside.is_file() and os.access(beside, os.X_OK):
             return str(beside)
     found = shutil.which("grainsweep")
