@@ -334,7 +334,7 @@ SceneInfo tpms_discharge_scene() {
     SceneInfo info;
     info.name = "tpms_discharge";
     info.summary = "powder leaving a cell walled by a triply periodic minimal surface under gravity";
-    info.revision = 5;
+    info.revision = 6;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_record::observables();
     info.main = {{"retention", "share that stays in the cell"},

@@ -220,7 +220,6 @@ struct Field {
     std::int32_t outer_capacity;
 
     // Walls.
-    std::int32_t refined;      ///< 1: walls see positions with their rounding errors, else in whole units
     std::int32_t wall_filler;  ///< index of a record that pads vectors of wall contacts
     const PlacedWall* walls;
     WallSums* wall_sums;

@@ -18,14 +18,6 @@ constexpr std::size_t many_particles = 40000;
 /// Beyond these a step's histories have left the last cache before the next step reads them.
 constexpr std::size_t very_many_particles = 120000;
 
-/// Returns whether walls see the parts of positions below a unit. A contact is then the same in both precisions to 1e-7
-/// of the speed; else by 1e-6 to 1e-3, the more the wider the domain, the stiffer and slower the sphere. Among many
-/// particles every rounding grows, and their cases keep their bits.
-bool refines_walls(const Setup& setup) {
-    constexpr std::size_t few = 64;
-    return setup.spheres.size() <= few && setup.to_come.empty();
-}
-
 std::array<SoundOverlaps, most_halvings + 1> resolved_in_parts(Setup setup) {
     std::array<SoundOverlaps, most_halvings + 1> all;
     for (SoundOverlaps& resolved : all) {
@@ -110,7 +102,6 @@ double MixedEngine::relative_density(const Sphere& sphere) const {
 void MixedEngine::load(const Setup& setup) {
     columns_.residuals_apart = needs_.unequal;
     field_.skips = needs_.skips ? 1 : 0;
-    field_.refined = refines_walls(setup) ? 1 : 0;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
     box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting || crossings_.wanted();
     for_each_extreme_sphere(setup, [this](const Sphere& sphere) {

@@ -79,7 +79,6 @@ Vec3 position_of(const Record& record, const Scale& scale) {
 
 Vec3 position_at_walls(const Field& f, std::int32_t particle, const Scale& scale) {
     Vec3 x = position_of(f.records[particle], scale);
-    if (f.refined == 0) return x;
     const Residual left = residual_of(f, particle);
     for (std::size_t a = 0; a < 3; ++a) x[a] += static_cast<double>(left.position[a]) * scale.unit[a];
     return x;
