@@ -39,7 +39,7 @@ double Hypervolume::value() const {
 double Hypervolume::between_points() const {
     double sum = 0;
     for (std::size_t i = 1; i < front_.size(); ++i)
-        sum += 0.5 * (front_[i][0] - front_[i - 1][0]) * (front_[i - 1][1] - front_[i][1]);
+        sum += (front_[i][0] - front_[i - 1][0]) * (front_[i - 1][1] - front_[i][1]);
     return sum;
 }
 

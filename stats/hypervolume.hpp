@@ -30,7 +30,7 @@ public:
     /// Adds a point. It counts if it is better than the reference in both objectives.
     void add(std::array<double, 2> point);
     [[nodiscard]] double value() const;
-    /// Returns how much more a front dominates that is straight between its points.
+    /// Returns how much more a front may dominate that has further points between these, at most.
     [[nodiscard]] double between_points() const;
     /// Returns EHVI of a case with these predictions of its means.
     [[nodiscard]] double expected_gain(const Prediction& first, const Prediction& second) const;

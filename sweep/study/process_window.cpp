@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t candidates_of_next = 192, points_of_front = 12;
 constexpr std::size_t points_about_best = 64, rounds_about_best = 8;
 constexpr double first_reach = 0.15;
-constexpr std::array reaches_about_front = {0.1, 0.04, 0.016};  // of the range of a factor
-constexpr std::size_t centres_of_gain = 8, points_about_front = 32;
+constexpr std::array reaches_about_front = {0.06, 0.02, 0.007};  // of the range of a factor
+constexpr std::size_t centres_of_gain = 8, centres_of_front = 24, points_about_front = 24;
 constexpr std::size_t share_of_doubted = 4;                // of the settings searched, one in so many
 constexpr double widest_apart = 0.1, least_apart = 0.025;  // of the range of a factor
 constexpr double enough_gain = 0.5;                        // of the best gain
@@ -53,9 +53,9 @@ std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& ques
     return {std::move(best), std::move(seen)};
 }
 
-/// Returns at most points_of_front of the indices, the first and the last among them.
-std::vector<std::size_t> thinned_front(std::span<const std::size_t> front) {
-    const auto shown = std::min(front.size(), points_of_front);
+/// Returns at most `count` of the indices, the first and the last among them.
+std::vector<std::size_t> thinned_front(std::span<const std::size_t> front, std::size_t count = points_of_front) {
+    const auto shown = std::min(front.size(), count);
     std::vector<std::size_t> chosen;
     for (std::size_t k = 0; k < shown; ++k)
         chosen.push_back(front[shown == 1 ? 0 : (k * (front.size() - 1) + (shown - 1) / 2) / (shown - 1)]);
@@ -231,7 +231,7 @@ void search_about_front(const WindowQuestion& question, const ModelCases& cases,
             second.push_back(one.objectives[1].mean);
         }
         const auto predicted = stats::trade_off_front(first, goals[0].sign > 0, second, goals[1].sign > 0);
-        std::ranges::move(thinned_front(predicted), std::back_inserter(centres));
+        std::ranges::move(thinned_front(predicted, centres_of_front), std::back_inserter(centres));
         for (const auto i : centres) {
             auto near = question.space().about(points[i], reach, points_about_front);
             std::vector<Setting> settings;

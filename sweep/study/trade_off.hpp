@@ -6,8 +6,8 @@
 //
 // 95 % half-width of the hypervolume: of how far it moves if the mean of one objective lies everywhere at the same end
 // of its interval, in quadrature over the objectives. The front of the box has the computed settings and all settings
-// that were searched, and is straight between them. Its upper end has a third part: settings that meet the condition if
-// the mean of one model, or the probability of an answer, lies at the end of its interval.
+// that were searched, and may have points between them. Its upper end has a third part: settings that meet the
+// condition if the mean of one model, or the probability of an answer, lies at the end of its interval.
 #pragma once
 
 #include "stats/hypervolume.hpp"
