@@ -126,7 +126,7 @@ std::optional<double> level_error(std::span<const double> rows, const char* rule
     std::ranges::sort(sorted);
     stats::GroupedSample sample{.sorted = sorted, .groups = {}, .independent = by_sequence.size() > 1};
     for (const auto& [number, of_sequence] : by_sequence) sample.groups.emplace_back(of_sequence);
-    if (!sample.independent) sample.groups = stats::stretches_of(values);
+    if (!sample.independent) sample.groups = stats::batches_of(values);
     if (sample.groups.size() < stats::fewest_sequences) return std::nullopt;
     const double error = stats::level_of(level, sample).error;
     return std::isfinite(error) ? std::optional(error) : std::nullopt;

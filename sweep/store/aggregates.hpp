@@ -12,7 +12,7 @@
 //   quantile(x, p)       p from 0 to 1, linear between the sorted values at (N - 1) p (R's type 7)
 //   percentile(x, P)     quantile(x, P / 100)
 //   quantile_error(x, p, sequence)   its 95 % half-width (stats/levels.hpp) over the values of `sequence`, 4 at least;
-//                        where all are one sequence, over 8 stretches of rows. NULL: too few values
+//                        where all are one sequence, over 8 batches of rows. NULL: too few values
 //   above(x, t), below(x, t)            share of values beyond t
 //   above_error(x, t, sequence), below_error(x, t, sequence)   their 95 % half-widths
 //   corr(x, y)           Pearson's correlation; NULL where x or y does not vary

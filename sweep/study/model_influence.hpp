@@ -4,7 +4,7 @@
 //
 // Refused if the model is refused (stats/response_model.hpp). Refused also if the campaign's `where` excludes a part of
 // the box: the indices refer to the whole box, and that part has no cases. Errors come from leaving out independent
-// sequences, or eight stretches of the cases.
+// sequences, or eight batches of the cases.
 #pragma once
 
 #include "stats/model_indices.hpp"

@@ -10,7 +10,7 @@
 namespace grainsweep::study {
 namespace {
 
-constexpr std::size_t stretches = 8;
+constexpr std::size_t batches = 8;
 
 /// Consecutive points that belong together.
 std::int64_t block_of(const Responses& responses) {
@@ -30,7 +30,7 @@ SampleParts sample_parts(const Responses& responses) {
     if (sequences >= 4) {
         parts.what = fmt::format("the {} independent sequences", sequences);
     } else if (design.beginning == designs::Beginning::sample) {
-        parts.what = fmt::format("{} stretches of the design{}", stretches,
+        parts.what = fmt::format("{} batches of the design{}", batches,
                                  parts.independent ? "" : ", which makes them rough, rather too large");
     }
     parts.labels.resize(responses.settled);
@@ -40,9 +40,9 @@ SampleParts sample_parts(const Responses& responses) {
             parts.labels[row] = static_cast<std::size_t>(point) % sequences;
         } else if (design.beginning == designs::Beginning::listed) {
             parts.labels[row] =
-                static_cast<std::size_t>(stats::bits_at(1, 0, static_cast<std::uint64_t>(point)) % stretches);
+                static_cast<std::size_t>(stats::bits_at(1, 0, static_cast<std::uint64_t>(point)) % batches);
         } else {
-            parts.labels[row] = static_cast<std::size_t>(point / block) * stretches / static_cast<std::size_t>(blocks);
+            parts.labels[row] = static_cast<std::size_t>(point / block) * batches / static_cast<std::size_t>(blocks);
         }
     }
     return parts;

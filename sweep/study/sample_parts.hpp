@@ -16,7 +16,7 @@ struct SampleParts {
                        ///< list)
 };
 
-/// Returns the independent sequences if there are at least four, else eight stretches of points or whole blocks
+/// Returns the independent sequences if there are at least four, else eight batches of points or whole blocks
 /// (saltelli, morris). A list, which has no order, is divided at random.
 [[nodiscard]] SampleParts sample_parts(const Responses& responses);
 
