@@ -42,6 +42,11 @@ bool has_whole_steps(const Json& factor) {
     return step.is_number() && step.get<double>() == std::floor(step.get<double>());
 }
 
+/// Whether a text begins as a number.
+bool resembles_number(std::string_view text) {
+    return !text.empty() && text.find_first_of("0123456789.") == text.find_first_not_of(" +-");
+}
+
 /// What the section "parameters" makes of a parameter; errors of the section are reported later.
 struct Told {
     explicit Told(const Json& notes) {
@@ -50,11 +55,11 @@ struct Told {
             unit = place->get<std::string>();
         const auto bounds = notes.value("bounds", Json());
         const auto is_text = [](const Json& end) { return end.is_string(); };
-        const auto is_quantity = [&](const Json& end) {
-            return !end.is_string() || std::holds_alternative<double>(in_si(end.get<std::string>(), unit));
+        const auto begins_with_number = [](const Json& end) {
+            return end.is_string() && resembles_number(end.get_ref<const std::string&>());
         };
         words = bounds.is_array() && std::ranges::any_of(bounds, is_text) &&
-                (unit.empty() || !std::ranges::all_of(bounds, is_quantity));
+                (unit.empty() || std::ranges::none_of(bounds, begins_with_number));
         number =
             !words && (!unit.empty() || (bounds.is_array() && !bounds.empty()) || notes.value("whole", Json()) == true);
     }
@@ -162,8 +167,7 @@ private:
             if (!place.json().is_string()) continue;
             const auto& word = place.json().get_ref<const std::string&>();
             if (values.range || number != values.places.end()) {
-                if (word.find_first_of("0123456789.") == word.find_first_not_of(" +-"))
-                    continue;  // refused as a number
+                if (resembles_number(word)) continue;  // refused as a number
                 place.refuse(one_kind);
             }
             check_word(place);

@@ -311,23 +311,27 @@ TEST(Programs, ARunWhoseCasesAllFailForOneReasonStops) {
     const std::string fails = "echo run >> ../runs; echo started at $1 >&2; [ -e ../repaired ] || exit 9\n";
     const auto ended = run_script(folder, fails + sound_script, campaign, {"-j", "1"});
     EXPECT_EQ(ended.code, 1);
-    expect_has(
-        ended.err,
-        "stopped, because the first 8 cases all failed for one reason (crashed: the program ended with exit code 9; "
-        "it wrote: started at 0.5), with 22 cases left; run again to try all of them, --keep-going computes the "
-        "others, too");
-    EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM attempt")[0]["n"], 16) << "two attempts each";
+    expect_has(ended.out + ended.err,
+               "stopped, because the first 8 cases all failed for one reason (crashed: the program ended with exit "
+               "code 9; it wrote: started at 0.");
+    expect_has(ended.out + ended.err,
+               "with 22 cases left; run again to try all of them, --keep-going computes the others, too");
+    // Two attempts each, and those that the worker had already.
+    const auto attempts = [&] { return rows_of(folder, "SELECT count(*) AS n FROM attempt")[0]["n"].get<int>(); };
+    const int first = attempts();
+    EXPECT_GE(first, 16);
+    EXPECT_LE(first, 20);
 
-    // The same run again tries the same cases.
+    // The same run again tries them again.
     EXPECT_EQ(run_program({"run", "c.json", "-j", "1"}, folder.path()).code, 1);
-    EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM attempt")[0]["n"], 32);
-    EXPECT_EQ(rows_of(folder, "SELECT count(DISTINCT case_key) AS n FROM attempt")[0]["n"], 8);
+    EXPECT_GE(attempts(), first + 16);
+    EXPECT_LE(rows_of(folder, "SELECT count(DISTINCT case_key) AS n FROM attempt")[0]["n"], 12);
 
     // What was missing is there: all are computed.
     folder.write("p.cases/repaired", "");
     const auto resumed = run_program({"run", "c.json", "-j", "2"}, folder.path());
     EXPECT_EQ(resumed.code, 0) << resumed.err;
-    expect_has(resumed.err, "note: 8 failed cases of 'p' are tried again, because none has an answer yet");
+    expect_has(resumed.err, " failed cases of 'p' are tried again, because none has an answer yet");
     EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM p WHERE y = x")[0]["n"], 30);
     EXPECT_EQ(run_program({"verify", "p.db"}, folder.path()).code, 0);
 }
@@ -340,9 +344,9 @@ TEST(Programs, FailuresThatDifferOrThatAreWantedDoNotStopARun) {
         (void)run_script(folder, script, campaign, std::move(options));
         return rows_of(folder, "SELECT count(*) AS n FROM attempt")[0]["n"].get<int>();
     };
-    EXPECT_EQ(attempts_after("exit 3\n", {"-j", "1"}), 8);
+    EXPECT_LE(attempts_after("exit 3\n", {"-j", "1"}), 12) << "8, and those that the worker had already";
     EXPECT_EQ(attempts_after("exit 3\n", {"-j", "1", "--keep-going"}), 20);
-    EXPECT_EQ(attempts_after("true\n", {"-j", "1"}), 8) << "rejected: out.json was not written";
+    EXPECT_LE(attempts_after("true\n", {"-j", "1"}), 12) << "rejected: out.json was not written";
     EXPECT_EQ(attempts_after("case $1 in 0.5) exit 3;; *) exit 4;; esac\n", {"-j", "1"}), 20) << "two reasons";
     EXPECT_EQ(attempts_after("[ $1 = 0.75 ] || exit 3\n" + std::string(sound_script), {"-j", "1"}), 20)
         << "one has an answer";

@@ -216,7 +216,7 @@ struct ProgramQuantities : Quantities {
 TEST_F(ProgramQuantities, AreNumbersInTheUnitOfTheParameter) {
     out({"run", "pipe.json", "--quiet"});
     EXPECT_EQ(inputs("pipe.db", "SELECT gap, volume FROM pipe ORDER BY gap"),
-              "gap,volume\n0.001,2.5132741e-08\n0.003,7.53982236e-08\n");
+              "gap,volume\n0.001,2.51327412e-08\n0.003,7.53982236e-08\n");
     EXPECT_EQ(inputs("pipe.db", "SELECT DISTINCT value FROM inputs WHERE name = 'radius'"), "value\n0.002\n");
     EXPECT_EQ(inputs("pipe.db",
                      "SELECT count(*) AS n FROM inputs AS l JOIN inputs AS g USING (case_id) WHERE l.name = "
@@ -238,7 +238,7 @@ TEST_F(ProgramQuantities, AreShownByPlanAndFollowSolve) {
 TEST_F(ProgramQuantities, PlanStatesWhatIsSentWhereAConditionIsFalse) {
     pipe["factors"].push_back({{"name", "n"}, {"levels", {3, 5}}, {"when", "gap > 0.002"}});
     pipe["fixed"].erase("n");
-    pipe["design"]["levels"] = {2, 1};
+    pipe["design"]["levels"] = {2, 2};
     folder.write("pipe.json", pipe.dump());
     const auto rules = [&] {
         return json::parse(out({"plan", "pipe.json", "--format", "json"}))["factors"][1]["rules"];
@@ -270,7 +270,7 @@ TEST_F(ProgramQuantities, AreRefusedBeforeAnythingIsWritten) {
         HasSubstr("pipe.json: $.fixed.radius: got \"2 mm\"; is a number with a unit, and 'radius' has no unit"));
     EXPECT_THAT(refused({{"program", {{"parameters", {{"gap", {{"unit", "mm"}}}}}}}}),
                 HasSubstr("gap is in mm, length is in m"));
-    EXPECT_THAT(refused({{"fixed", {{"n", "3000*gap"}}}}), HasSubstr("$.fixed.n"));
+    EXPECT_THAT(refused({{"fixed", {{"n", "1000*gap + 0.5"}}}}), HasSubstr("$.fixed.n"));
     EXPECT_THAT(refused({{"fixed", {{"n", "1000*length/3"}}}}), HasSubstr("'n' must be a whole number, and it is"));
 }
 
