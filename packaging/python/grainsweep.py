@@ -218,9 +218,9 @@ class Study:
         if pandas is not None and isinstance(points, pandas.DataFrame):
             points = points.to_dict("records")
         rows = [[point[name] for name in self.factors] for point in points]
-        if not rows:
-            raise ValueError("at least one point is needed")
         first = len(self._rows)
+        if not rows:
+            return self._since(first) if first else _table([])
         self._campaign["design"] = {"kind": "list", "rows": self._rows + rows}
         # Files that the campaign names lie beside it.
         descriptor, file = tempfile.mkstemp(prefix=f".{self.name}-", suffix=".json", dir=self.folder)
@@ -234,7 +234,7 @@ class Study:
         return self._since(first)
 
     def ask(self, count, where, **options):
-        """The points that `window` proposes to run next, as dicts by factor."""
+        """The points that `window` proposes to run next, as dicts by factor; none where no further case would help."""
         told = window(self.db, where, campaign=self.name, next=count, **options)
         return [one["inputs"] for one in told["next"]]
 

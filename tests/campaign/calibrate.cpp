@@ -353,7 +353,7 @@ TEST(CalibrateCampaign, WithoutAnAnswerNothingConvergesAndEveryCommandSaysSo) {
     asked["fixed"]["behaviour"] = "unstable";
     asked["calibration"]["waves"] = 1;
     folder.write("c.json", asked.dump());
-    EXPECT_EQ(calibrate(folder, "a.db", {"-j", "2", "--quiet"}).code, 1);
+    EXPECT_EQ(calibrate(folder, "a.db", {"-j", "2", "--quiet", "--keep-going"}).code, 1);
     const auto said = run_program({"converge", "a.db", "--check"}, folder.path());
     EXPECT_EQ(said.code, 1);
     EXPECT_THAT(said.out, HasSubstr("no case has an answer to it"));

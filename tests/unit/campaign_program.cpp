@@ -370,7 +370,7 @@ TEST(ProgramQuantities, ExpressionsLinkParameters) {
                         "length is in m"),
               std::string::npos)
         << of.said(of.file(mixed, {{"length", "2*gap"}}));
-    EXPECT_NE(of.said(of.file(si, {{"area", "2*gop"}, {"n", 2}})).find("Did you mean 'gap'?"), std::string::npos)
+    EXPECT_NE(of.said(of.file(si, {{"area", "2*gop"}, {"n", 2}})).find("the nearest is 'gap'"), std::string::npos)
         << of.said(of.file(si, {{"area", "2*gop"}, {"n", 2}}));
     const auto half = of.read(of.file({{"gap", {{"unit", "1"}}}, {"n", {{"whole", true}}}}, {{"n", "gap/2 + 0.25"}}));
     try {
