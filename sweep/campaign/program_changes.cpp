@@ -1,6 +1,8 @@
 #include "sweep/campaign/program_changes.hpp"
 
+#include "sweep/campaign/case.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/json_text.hpp"
 
 #include <fmt/format.h>
 
@@ -92,7 +94,7 @@ void compare_texts(const std::map<std::string, std::string>& before, const std::
     }
 }
 
-std::string kind_of(const ProgramParameter& parameter) {
+std::string type_and_default(const ProgramParameter& parameter) {
     std::string text = parameter.is_word() ? "a word" : "a number";
     if (parameter.standard) text += ", default " + to_text(*parameter.standard);
     return text;
@@ -100,8 +102,8 @@ std::string kind_of(const ProgramParameter& parameter) {
 
 void compare_parameters(const Program& before, const Program& now, std::vector<Change>& changes) {
     std::map<std::string, std::string> old, fresh;
-    for (const auto& parameter : before.parameters) old[parameter.name] = kind_of(parameter);
-    for (const auto& parameter : now.parameters) fresh[parameter.name] = kind_of(parameter);
+    for (const auto& parameter : before.parameters) old[parameter.name] = type_and_default(parameter);
+    for (const auto& parameter : now.parameters) fresh[parameter.name] = type_and_default(parameter);
     compare_texts(old, fresh, "$.program.parameters", changes);
 }
 
