@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{ADD("/factors/3/step", "0.5"), "a factor with \"levels\" are taken as they are"},
                     Wrong{ADD("/factors/3/whole", "true"), "a factor with \"levels\" are taken as they are"},
                     Wrong{ADD("/factors/0", R"({"name": "x1", "normal": {"mean": 0.5, "sd": 0.1}, "step": 2})"),
-                          "only one multiple of it, counted from 0, lies between"},
+                          "no multiple of it, counted from 0, lies between 0.19"},
                     Wrong{ADD("/factors/0", R"({"name": "x1", "normal": {"mean": 0.5, "sd": 0.1}, "step": 1e-12})"),
                           "the values end more than 1000000000 steps from 0"},
                     Wrong{ADD("/factors/0/whole", "false"), "only true has a meaning"},
