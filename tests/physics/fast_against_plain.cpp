@@ -106,8 +106,7 @@ TEST(FastAgainstPlain, RollingResistance) {
             }
 }
 
-// The torque reverses at once. In a third of twelve arrangements rounding moves a reversal by a step, with either engine
-// of the last two versions; in this arrangement it does not.
+// The torque reverses at once: in some arrangements rounding moves a reversal by a step, in this one not.
 TEST(FastAgainstPlain, AConstantTorqueAgainstRolling) {
     for (const double spread : {0.0, 0.25})
         for (const double cohesion : {0.0, 2e5}) {

@@ -15,32 +15,26 @@ using dem::Method;
 
 namespace {
 
-/// What changes of the start by `size` diameters grow to, at most.
+/// What a change of the start by `size` diameters grows to.
 struct Growth {
     double position, velocity, spin;
 };
 
-void follow(const Question& q, const PlainDem& plain, double diameter, double size, std::uint64_t change, Growth& g) {
+Growth growth(const Question& q, const PlainDem& plain, double diameter, double size) {
     dem::Setup moved = q.setup;
-    const stats::Stream stream(11, change);
+    const stats::Stream stream(11, 0);
     std::uint64_t draw = 0;
     for (auto& s : moved.spheres)
         for (double& x : s.position) x += size * diameter * (2 * stream.uniform(draw++) - 1);
     PlainDem other(moved);
     other.run(q.steps);
+    Growth g{};
     for (std::size_t i = 0; i < moved.spheres.size(); ++i)
         for (std::size_t a = 0; a < 3; ++a) {
             g.position = std::max(g.position, std::abs(other.position()[i][a] - plain.position()[i][a]) / diameter);
             g.velocity = std::max(g.velocity, std::abs(other.velocity()[i][a] - plain.velocity()[i][a]));
             g.spin = std::max(g.spin, std::abs(other.angular_velocity()[i][a] - plain.angular_velocity()[i][a]));
         }
-}
-
-/// Returns the largest of several: where a law jumps (a torque that reverses), one change may miss every jump.
-Growth growth(const Question& q, const PlainDem& plain, double diameter, double size) {
-    constexpr std::uint64_t changes = 4;
-    Growth g{};
-    for (std::uint64_t change = 0; change < changes; ++change) follow(q, plain, diameter, size, change, g);
     return g;
 }
 
