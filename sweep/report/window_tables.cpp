@@ -204,7 +204,8 @@ std::span<const Judgement> list_of(const std::optional<Judgement>& one) {
 std::string volume_text(const FrontVolume& volume) {
     const auto part = volume.value > 0 ? fmt::format(" ({:.2g} %)", 100 * volume.further / volume.value) : "";
     return fmt::format(
-        "hypervolume of the computed front {:.6g} +- {:.3g} (95 %), of the best front at most {:.3g}{} more",
+        "hypervolume of the computed front {:.6g} +- {:.3g} (95 %), of the best front by the models at most {:.3g}{} "
+        "more",
         volume.value, volume.error, volume.further, part);
 }
 

@@ -41,8 +41,9 @@ struct ComputedSetting {
 /// Hypervolume of the front of computed settings.
 struct FrontVolume {
     double value = 0;
-    double error = 0;    ///< 95 % half-width
-    double further = 0;  ///< by how much more the front of the box may dominate, at most (95 %)
+    double error = 0;  ///< 95 % half-width
+    double further =
+        0;  ///< by how much more the front of the box may dominate, at most by the models; too small where they err
 };
 
 /// Returns what the settings dominate. They need both objectives.
