@@ -112,7 +112,12 @@ void Run::observe(Observations& into) const {
         const bool known =
             std::ranges::all_of(derived.needs, [&](const auto& name) { return into.scalars.contains(name); });
         if (!known) continue;
-        if (const double value = derived.value(into.scalars); std::isfinite(value)) into.scalars[derived.name] = value;
+        if (const double value = derived.value(into.scalars); std::isfinite(value)) {
+            into.scalars[derived.name] = value;
+        } else {  // nothing, or a measurement that is withdrawn
+            into.scalars.erase(derived.name);
+            into.scalars.erase(derived.name + "_error");
+        }
     }
 }
 

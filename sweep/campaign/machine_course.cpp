@@ -118,20 +118,66 @@ std::pair<double, bool> threshold_of(const Section& section, const MachineReadin
     return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
 }
 
-/// Sorts expressions so that each follows the expressions that it needs. Refuses circles.
+/// Sorts expressions so that each follows the expressions that it needs. Refuses circles. Only a measurement that may
+/// be withdrawn needs itself.
 void put_in_order(const Cursor& all, std::vector<machine::Derived>& derived) {
+    constexpr std::string_view error = "_error";
     std::vector<machine::Derived> sorted;
-    const auto waits = [&](const std::string& name) {
-        return std::ranges::find(derived, name, &machine::Derived::name) != derived.end();
+    const auto waits_for = [&](const machine::Derived& one, std::string_view need) {
+        if (need == one.name) return false;
+        const std::string_view value = need.ends_with(error) ? need.substr(0, need.size() - error.size()) : need;
+        return std::ranges::any_of(
+            derived, [&](const auto& other) { return &other != &one && (other.name == need || other.name == value); });
     };
     while (!derived.empty()) {
-        const auto ready =
-            std::ranges::find_if(derived, [&](const auto& one) { return std::ranges::none_of(one.needs, waits); });
+        const auto ready = std::ranges::find_if(derived, [&](const auto& one) {
+            return std::ranges::none_of(one.needs, [&](const auto& need) { return waits_for(one, need); });
+        });
         if (ready == derived.end()) all[derived.front().name].refuse("it depends on itself");
         sorted.push_back(std::move(*ready));
         derived.erase(ready);
     }
     derived = std::move(sorted);
+}
+
+/// Expression of measurements and of names that are numbers in this case.
+machine::Derived derived_of(const std::string& name, const Cursor& text, const std::vector<std::string>& known,
+                            const MachineScope& scope) {
+    auto names = known;
+    const auto constants = scope.names();
+    names.insert(names.end(), constants.begin(), constants.end());
+    const auto parsed = Formula::parse(text.text(), names);
+    if (const auto* why = std::get_if<std::string>(&parsed)) text.refuse(*why);
+    const auto& formula = std::get<Formula>(parsed);
+    machine::Derived derived{name, {}, {}};
+    std::map<std::string, double, std::less<>> given;
+    for (const auto& used : formula.names()) {
+        const bool measured = std::ranges::find(known, used) != known.end();
+        if (measured && scope.knows(used))
+            text.refuse(fmt::format("'{}' is a parameter or in \"let\", and a measurement; rename one", used));
+        if (measured)
+            derived.needs.push_back(used);
+        else
+            given.emplace(used, scope.value(used));
+    }
+    derived.value = [formula, given](const std::map<std::string, double, std::less<>>& measured) {
+        return formula([&](std::string_view used) {
+            const auto here = given.find(used);
+            return here != given.end() ? here->second : measured.find(used)->second;
+        });
+    };
+    return derived;
+}
+
+/// A measurement that is undefined where the condition holds.
+machine::Derived withdrawn(machine::Derived condition) {
+    auto value = [name = condition.name,
+                  holds = std::move(condition.value)](const std::map<std::string, double, std::less<>>& measured) {
+        return holds(measured) != 0 ? std::numeric_limits<double>::quiet_NaN() : measured.find(name)->second;
+    };
+    condition.value = std::move(value);
+    condition.needs.push_back(condition.name);
+    return condition;
 }
 
 machine::Until read_until(const Cursor& place, const MachineReading& reading) {
@@ -241,37 +287,30 @@ void read_measures(const Section& top, MachineReading& reading) {
     std::vector<std::string> known;
     for (const auto& observable : machine_observables(top))
         if (observable.shape == Shape::scalar) known.push_back(observable.name);
-    const auto constants = reading.scope.names();
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
-        if (entry_kind(place) != EntryKind::expression) continue;
-        auto names = known;
-        names.insert(names.end(), constants.begin(), constants.end());
-        const Cursor text = expression_of(place);
-        const auto parsed = Formula::parse(text.text(), names);
-        if (const auto* why = std::get_if<std::string>(&parsed)) text.refuse(*why);
-        const auto& formula = std::get<Formula>(parsed);
-        machine::Derived derived{name, {}, {}};
-        std::map<std::string, double, std::less<>> given;
-        for (const auto& used : formula.names()) {
-            const bool measured = std::ranges::find(known, used) != known.end();
-            if (measured && reading.scope.knows(used))
-                text.refuse(fmt::format("'{}' is a parameter or in \"let\", and a measurement; rename one", used));
-            if (measured)
-                derived.needs.push_back(used);
-            else
-                given.emplace(used, reading.scope.value(used));
+        const EntryKind kind = entry_kind(place);
+        if (kind == EntryKind::expression) {
+            spec.derived.push_back(derived_of(name, expression_of(place), known, reading.scope));
+            if (std::ranges::find(spec.derived.back().needs, name) != spec.derived.back().needs.end())
+                place.refuse("it depends on itself");
         }
-        derived.value = [formula, given](const std::map<std::string, double, std::less<>>& measured) {
-            return formula([&](std::string_view used) {
-                const auto here = given.find(used);
-                return here != given.end() ? here->second : measured.find(used)->second;
-            });
-        };
-        spec.derived.push_back(std::move(derived));
+        if (kind == EntryKind::probe && place.json().contains("unless"))
+            spec.derived.push_back(withdrawn(derived_of(name, place["unless"], known, reading.scope)));
     }
     put_in_order(all, spec.derived);
 }
+
+namespace {
+
+/// Why a measurement of one value has none.
+std::string why_nothing(const Cursor& place) {
+    std::string why = "there was nothing to measure";
+    if (place.json().contains("unless")) why += ", or " + place["unless"].text();
+    return why;
+}
+
+}  // namespace
 
 std::vector<ObservableSpec> machine_observables(const Section& top) {
     std::vector<ObservableSpec> all;
@@ -307,8 +346,8 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                                  : reduction.shape == Shape::profile ? std::string(probe.over)
                                                                      : std::string();
         const std::string unit = std::string(probe.unit) + std::string(reduction.unit);
-        all.push_back({name, unit, meaning, reduction.shape, over,
-                       reduction.shape == Shape::scalar ? "there was nothing to measure" : ""});
+        all.push_back(
+            {name, unit, meaning, reduction.shape, over, reduction.shape == Shape::scalar ? why_nothing(place) : ""});
         if (reduction.error != nullptr)
             all.push_back({name + "_error",
                            unit,

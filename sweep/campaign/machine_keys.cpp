@@ -173,6 +173,9 @@ constexpr auto measure_keys = std::to_array<Field>({
     {"shares", MachineKey::array, "only values from the first to the second of these shares of the first value count"},
     {"while", MachineKey::object,
      "by the name of another measurement [low, high], null: open: only values at frames at which it lies there count"},
+    {"unless", MachineKey::text,
+     "an expression of measurements: where it is not 0, this value and its error are undefined, such as a rate that a "
+     "jam cut short"},
     {"since", MachineKey::text, "of a series: the phase from whose beginning its times count; default: the start"},
     {"meaning", MachineKey::text, "in words"},
 });

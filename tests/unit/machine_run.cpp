@@ -1,6 +1,7 @@
 // A machine as it runs: slices, checkpoints and threads change no bit; phases end by their conditions; walls come, go
 // and move with phases.
 #include "stats/random.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/machines.hpp"
 
 #include <gtest/gtest.h>
@@ -198,6 +199,34 @@ TEST(MachineRun, ValuesCountWhileAnotherMeasurementLiesWithinBounds) {
     const auto answer = of(document);
     EXPECT_NEAR(answer.scalars.at("fallen"), 9.81 / 2 * (0.028 * 0.028 - 0.021 * 0.021), 3e-5);
     EXPECT_NEAR(answer.series.at("late").front().time, 0.019, 1e-4) << "29 ms, of which 10 in the first phase";
+}
+
+TEST(MachineRun, AMeasurementIsUndefinedWhereItsConditionHolds) {
+    json document = small_machine();
+    document["phases"][1]["frames"] = 200;
+    document["measure"]["twice"] = "2*force";
+    document["measure"]["noise"] = "2*force_error";
+    const auto names = {"force", "force_error", "twice", "noise"};
+    const auto always = of(document);
+    json& force = document["measure"]["force"];
+    for (const char* condition : {"low < 0", "force > 1e9", "low < 0 && friction > 0"}) {
+        force["unless"] = condition;
+        const auto answer = of(document);
+        for (const char* name : names)
+            EXPECT_EQ(answer.scalars.at(name), always.scalars.at(name)) << condition << ": " << name;
+    }
+    for (const char* condition : {"low > 0", "force < 1e9"}) {
+        force["unless"] = condition;
+        const auto answer = of(document);
+        for (const char* name : names) EXPECT_FALSE(answer.scalars.contains(name)) << condition << ": " << name;
+    }
+    for (const char* wrong : {"twice > 0", "noise > 0", "highest > 0"}) {
+        force["unless"] = wrong;
+        EXPECT_THROW(static_cast<void>(of(document)), campaign::InputError) << wrong;
+    }
+    force["unless"] = "low > 0";
+    document["measure"]["low"] = "low";
+    EXPECT_THROW(static_cast<void>(of(document)), campaign::InputError) << "an expression of itself";
 }
 
 // The floor goes after 60 ms: the sphere falls out of the domain, 0.1 m below, and is lost.
