@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -78,6 +79,7 @@ std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t c
 struct Subject {
     std::string database, campaign, observable;
     std::vector<std::string> levels;  ///< of `converge`
+    std::string without;              ///< of `converge`: above, below, or empty
     bool check = false;               ///< of `converge`: the exit code says whether everything shown has converged
 };
 
@@ -112,13 +114,22 @@ std::vector<stats::Level> levels_of(std::span<const std::string> words) {
     return levels;
 }
 
+study::WithoutValue without_value(const std::string& word) {
+    if (word.empty()) return study::WithoutValue::left_out;
+    if (word == "above") return study::WithoutValue::above;
+    if (word == "below") return study::WithoutValue::below;
+    throw campaign::input_error("--without-value", word, "must be above or below",
+                                campaign::nearest_word(word, std::array{"above", "below"}));
+}
+
 int converge(const Subject& subject, Format format) {
     const auto levels = levels_of(subject.levels);
+    const auto without = without_value(subject.without);
     const Store store(subject.database, Store::Mode::read);
     const auto found_by = [&](const Responses& responses) { return report::findings_document(store, responses); };
     const auto documents =
         study_each(store, subject, found_by, [&](const Responses& responses, const study::ResponseColumn& response) {
-            return report::convergence_document(store, responses, response, format, levels);
+            return report::convergence_document(store, responses, response, format, levels, without);
         });
     report::write(std::cout, documents, format);
     return subject.check && !std::ranges::all_of(documents, &Document::converged) ? 1 : 0;
@@ -192,6 +203,9 @@ void declare_converge(Parser& parser, Subject& subject) {
     parser.add_option("--statistic WORD", subject.levels,
                       "quantile:P, or above:T or below:T: the probability to lie beyond T, in the unit of the "
                       "observable; default: the quantiles 0.05, 0.25, 0.5, 0.75, 0.95");
+    parser.add_option("--without-value WORD", subject.without,
+                      "above or below: in quantiles and probabilities a completed case without a value, such as the "
+                      "flow time of a jam, counts as above or below every value; default: it is left out");
     parser.add_flag("--check", subject.check,
                     "exit with 1 unless everything shown has converged by its campaign's rule; without a rule a "
                     "campaign has not");

@@ -126,8 +126,9 @@ std::string name_of_level(const stats::Level& level, std::string_view name) {
 /// one, or the level is a quantile.
 std::optional<std::pair<double, double>> counting_failures(const History& history, const stats::Level& level,
                                                            double value) {
-    if (history.all.excluded == 0 || std::holds_alternative<stats::Quantile>(level)) return std::nullopt;
-    const auto values = static_cast<double>(history.all.count), failed = static_cast<double>(history.all.excluded);
+    if (history.all.excluded == history.beyond || std::holds_alternative<stats::Quantile>(level)) return std::nullopt;
+    const auto values = static_cast<double>(history.all.count + history.beyond);
+    const auto failed = static_cast<double>(history.all.excluded - history.beyond);
     return std::pair{value * values / (values + failed), (value * values + failed) / (values + failed)};
 }
 
@@ -402,10 +403,11 @@ Json estimators_json(const History& history, const Estimators& estimators) {
 }
 
 Document convergence_document(const store::Store& store, const Responses& responses, const ResponseColumn& response,
-                              Format format, std::span<const stats::Level> wanted) {
+                              Format format, std::span<const stats::Level> wanted, study::WithoutValue without) {
     const std::span<const stats::Level> levels =
         wanted.empty() ? std::span<const stats::Level>(study::shown_levels) : wanted;
-    const auto history = history_of(responses, response, levels);
+    const auto history = history_of(responses, response, levels, without);
+    const bool left_out = without == study::WithoutValue::left_out;
     const auto lattices = lattice_family(store, responses, response);
     Document shown{.rows = checks_rows(responses, response, history), .converged = history.converged.value_or(false)};
     for (auto& row : provisional_rows(responses, response, history).rows) shown.rows.rows.push_back(std::move(row));
@@ -416,7 +418,7 @@ Document convergence_document(const store::Store& store, const Responses& respon
     if (format == Format::json) {
         const auto estimators = estimators_of(store, responses, response, estimated);
         shown.value = to_json(responses, response, history, lattices)
-                          .add("distribution", levels_json(history, &estimators))
+                          .add("distribution", levels_json(history, left_out ? &estimators : nullptr))
                           .add("estimators", estimators_json(history, estimators));
         if (corrected) shown.value.add("corrected", corrected_json(*corrected));
     }
@@ -425,7 +427,7 @@ Document convergence_document(const store::Store& store, const Responses& respon
         say_history(shown, responses, history, lattices);
         const auto estimators =
             repeats(responses) ? std::optional(estimators_of(store, responses, response, estimated)) : std::nullopt;
-        say_levels(shown, response, history, estimators ? &*estimators : nullptr);
+        say_levels(shown, response, history, estimators && left_out ? &*estimators : nullptr);
         if (estimators) say_estimators(shown, history, *estimators);
         if (corrected) shown.say().show(corrected_table(*corrected)).say(corrected->verdict());
     }

@@ -32,9 +32,11 @@ namespace grainsweep::report {
 [[nodiscard]] Json estimators_json(const study::History& history, const study::Estimators& estimators);
 
 /// Returns the output of `converge` for a campaign; computes only the parts that `format` needs. `levels`: beside those
-/// among the gates; empty: study::shown_levels.
+/// among the gates; empty: study::shown_levels. `without`: what completed cases without a value count as in them; where
+/// they count, no model estimates levels.
 [[nodiscard]] Document convergence_document(const store::Store& store, const study::Responses& responses,
                                             const study::ResponseColumn& response, Format format,
-                                            std::span<const stats::Level> levels = {});
+                                            std::span<const stats::Level> levels = {},
+                                            study::WithoutValue without = study::WithoutValue::left_out);
 
 }  // namespace grainsweep::report

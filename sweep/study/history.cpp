@@ -126,6 +126,42 @@ stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn&
     return all;
 }
 
+/// Levels among the values and the completed cases without one, which lie beyond all others. Withdraws what would lie
+/// among the latter.
+void count_without_value(History& history, const Responses& responses, const ResponseColumn& response,
+                         std::span<const stats::Level> levels, WithoutValue without) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double value : response.values)
+        if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+    if (!(low <= high)) return;
+    const double least = low, most = high;
+    for (const auto& level : levels)
+        if (const auto* beyond = std::get_if<stats::Exceedance>(&level))
+            low = std::min(low, beyond->threshold), high = std::max(high, beyond->threshold);
+    const bool above = without == WithoutValue::above;
+    const double farther = std::max({high - low, std::abs(high), std::abs(low), 1e-300});
+    ResponseColumn censored = response;
+    for (std::size_t row = 0; row < responses.settled; ++row)
+        if (std::isnan(censored.values[row]) && responses.outcomes[row] == campaign::Outcome::completed) {
+            censored.values[row] = above ? high + farther : low - farther;
+            ++history.beyond;
+        }
+    if (history.beyond == 0) return;
+    history.all.levels = check_of_all(responses, censored, history.settings, levels).levels;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (auto& [level, estimate] : history.all.levels) {
+        if (!std::holds_alternative<stats::Quantile>(level)) continue;
+        const auto seen = [&](double value) { return least <= value && value <= most; };
+        if (!seen(estimate.value)) estimate.value = unknown;
+        if (!seen(above ? estimate.value + estimate.error : estimate.value - estimate.error))
+            estimate.error = estimate.measure = unknown;
+    }
+    history.warnings.push_back(
+        fmt::format("quantiles and probabilities: {} completed cases without a value count as {} every value; moments "
+                    "leave them out",
+                    history.beyond, above ? "above" : "below"));
+}
+
 /// Moments of all finished values, where the settled beginning has not all of them.
 std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, const ResponseColumn& response,
                                                    stats::ConvergenceSettings settings) {
@@ -286,18 +322,21 @@ std::string points_line(const Responses& responses) {
     return fmt::format("{}, {} places repeat one of them", line, responses.repeated.size());
 }
 
-History figures_of(const Responses& responses, const ResponseColumn& response, std::span<const stats::Level> levels) {
+History figures_of(const Responses& responses, const ResponseColumn& response, std::span<const stats::Level> levels,
+                   WithoutValue without) {
     History history;
     history.settings = settings_for(responses, response);
     history.has_rule = responses.campaign.convergence.has_value();
     history.all = check_of_all(responses, response, history.settings, levels);
     history.provisional = check_of_finished(responses, response, history.settings);
     warn(history, responses, response);
+    if (without != WithoutValue::left_out) count_without_value(history, responses, response, levels, without);
     return history;
 }
 
-History history_of(const Responses& responses, const ResponseColumn& response, std::span<const stats::Level> levels) {
-    History history = figures_of(responses, response, levels);
+History history_of(const Responses& responses, const ResponseColumn& response, std::span<const stats::Level> levels,
+                   WithoutValue without) {
+    History history = figures_of(responses, response, levels, without);
     if (history.settings.traits().of_model) {
         history.checks = judged_in_the_run(responses, history.settings);
     } else if (responses.ordered_sample()) {

@@ -23,6 +23,7 @@ struct History {
     /// All finished cases, also behind an unfinished one. Not judged and not to be quoted. `points` counts the points
     /// with a finished case. Empty if `all` already has all of them.
     std::optional<stats::Checkpoint> provisional;
+    std::int64_t beyond = 0;            ///< completed cases without a value that count in `all.levels`
     std::string verdict;                ///< one line
     std::optional<bool> converged;      ///< by the campaign's rule; empty: the campaign has no rule
     std::vector<std::string> warnings;  ///< to be read before the numbers are quoted
@@ -38,12 +39,18 @@ struct History {
 /// finished.
 [[nodiscard]] std::string points_line(const Responses& responses);
 
+/// What a completed case without a value, such as a jam, counts as in quantiles and probabilities: nothing, or more or
+/// less than every value and threshold (a censored value).
+enum class WithoutValue { left_out, above, below };
+
 /// `levels`: estimated of all settled points, beside those among the gates.
 [[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response,
-                                 std::span<const stats::Level> levels = {});
+                                 std::span<const stats::Level> levels = {},
+                                 WithoutValue without = WithoutValue::left_out);
 /// Returns the same without the intermediate checks and their verdict, which take most of the time.
 [[nodiscard]] History figures_of(const Responses& responses, const ResponseColumn& response,
-                                 std::span<const stats::Level> levels = {});
+                                 std::span<const stats::Level> levels = {},
+                                 WithoutValue without = WithoutValue::left_out);
 
 /// The quantiles that are shown where no other levels are wanted: 5, 25, 50, 75, 95 %.
 inline constexpr std::array<stats::Level, 5> shown_levels = {

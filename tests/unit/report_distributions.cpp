@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -68,6 +69,42 @@ INSTANTIATE_TEST_SUITE_P(Designs, OverDistributions,
                                          Sampled{R"({"kind": "saltelli", "base_points": 128})", 0.06},
                                          Sampled{R"({"kind": "lattice", "levels": 24, "placement": "centred"})",
                                                  0.04}));
+
+/// A time that doubles with x1, and none where it would be above 0.7: the process has jammed.
+double time_of_flow(const Inputs& inputs) {
+    const double time = input(inputs, "x1");
+    return time > 0.7 ? std::numeric_limits<double>::quiet_NaN() : time;
+}
+
+TEST_F(Study, ACaseWithoutAValueMayCountAsBeyondAllOthers) {
+    answer_by(store,
+              asked(R"({"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]})",
+                    R"({"kind": "halton", "points": 512, "sequences": 8})"),
+              time_of_flow);
+    const auto responses = ask("c");
+    const auto& y = responses.observable("y");
+    const std::array<stats::Level, 4> levels = {stats::Quantile{0.5}, stats::Quantile{0.9},
+                                                stats::Exceedance{0.5, true}, stats::Exceedance{0.9, true}};
+    const auto above = figures_of(responses, y, levels, WithoutValue::above);
+    const auto below = figures_of(responses, y, levels, WithoutValue::below);
+    const auto left_out = figures_of(responses, y, levels);
+    const auto expect = [](const stats::Estimate& found, double truth) {
+        EXPECT_NEAR(found.value, truth, found.error);
+        EXPECT_LT(found.error, 0.03);
+    };
+    expect(above.all.levels[0].second, 0.5);
+    EXPECT_TRUE(std::isnan(above.all.levels[1].second.value)) << "a time above all that were measured";
+    expect(above.all.levels[2].second, 0.5);
+    expect(above.all.levels[3].second, 0.3);
+    expect(below.all.levels[0].second, 0.2);
+    expect(below.all.levels[2].second, 0.2);
+    EXPECT_EQ(below.all.levels[3].second.value, 0);
+    expect(left_out.all.levels[0].second, 0.35);
+    expect(left_out.all.levels[2].second, 0.2 / 0.7);
+    EXPECT_EQ(above.beyond, above.all.excluded);
+    EXPECT_EQ(left_out.beyond, 0);
+    EXPECT_EQ(above.all.of(stats::Statistic::mean).value, left_out.all.of(stats::Statistic::mean).value);
+}
 
 TEST_F(Study, TotalIndicesOfSaltelliAreWithRespectToTheDistributions) {
     answer_by(store, asked(normal_and_triangular, R"({"kind": "saltelli", "base_points": 256})"), plane);
