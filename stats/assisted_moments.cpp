@@ -138,10 +138,11 @@ bool add_half(Parts& parts, const Cases& c, const Eigen::MatrixXd& integration, 
         const std::size_t s = c.sequence[static_cast<std::size_t>(training[k])];
         if (s % 2 == parity) left_out[s / 2].push_back(static_cast<Eigen::Index>(k));
     }
-    const response::FoldWeights weights = response::leave_folds_out(*model, left_out);
+    const Eigen::MatrixXd inverse = response::inverse_of(*model);
+    const response::FoldWeights weights = response::leave_folds_out(*model, inverse, left_out);
     const double v = h->noise() > 2 * response::smallest_noise ? h->noise() : 0;
     const Eigen::MatrixXd taught = c.x(training, Eigen::all);
-    parts.beyond.add(*model, taught, integration, v);
+    parts.beyond.add(*model, inverse, taught, integration, v);
 
     const Eigen::MatrixXd means = weights.predict(*model, response::mapped(*h, integration));
     const auto each = static_cast<std::size_t>(means.rows()) / scramblings;

@@ -98,7 +98,7 @@ bool add_model(const Sample& sample, const Eigen::VectorXd& z, std::size_t parit
         response::find_hyperparameters(x(teachers, Eigen::all), z(teachers), {starts, most, LearnedMap::never});
     const auto model = h ? response::solve_kriging(*h, x, z) : std::nullopt;
     if (!model) return false;
-    const auto weights = response::leave_folds_out(*model, left_out);
+    const auto weights = response::leave_folds_out(*model, response::inverse_of(*model), left_out);
     const Eigen::MatrixXd means = weights.predict(*model, response::mapped(*h, sample.factors));
     for (Eigen::Index i = 0; i < sample.size(); ++i)
         if (sample.of(i) % 2 == parity) model_of_z(i) = means(i, static_cast<Eigen::Index>(sample.of(i) / 2));

@@ -111,7 +111,10 @@ LevelEstimate level_estimate(const Exceedance& wanted, const GroupedSample& samp
 /// Distribution function with the model, and its error, at one threshold.
 class ModelDistribution {
 public:
-    explicit ModelDistribution(const LeftOutPredictions& model) : model_(model), sizes_(model.spread.size(), 0) {
+    explicit ModelDistribution(const LeftOutPredictions& model)
+        : model_(model), sizes_(model.spread.size(), 0), spread_(model.spread) {
+        for (auto& all : spread_)
+            for (std::size_t k = 0; k < model.scramblings; ++k) std::ranges::sort(part_of(std::span(all), k));
         for (const std::size_t s : model.sequences) ++sizes_[s];
         double squares = 0;
         for (std::size_t i = 0; i < model.values.size(); ++i)
@@ -162,13 +165,21 @@ private:
         return (model_.values[i] < threshold ? 1 : 0) -
                below(model_.predicted[i], model_.noise[model_.sequences[i]], threshold);
     }
-    /// Mean over one scrambling of the integration points.
+    template <class T>
+    [[nodiscard]] std::span<T> part_of(std::span<T> all, std::size_t scrambling) const {
+        const std::size_t size = all.size() / model_.scramblings;
+        return all.subspan(scrambling * size, size);
+    }
+    /// Mean over one scrambling of the integration points. Beyond 8.3 standard deviations a normal probability is 0 or
+    /// 1 to rounding.
     [[nodiscard]] double integral(std::size_t sequence, std::size_t scrambling, double threshold) const {
-        const std::span<const double> all = model_.spread[sequence];
-        const auto size = all.size() / model_.scramblings;
-        double sum = 0;
-        for (const double m : all.subspan(scrambling * size, size)) sum += below(m, model_.noise[sequence], threshold);
-        return sum / static_cast<double>(size);
+        const std::span<const double> ascending = part_of(std::span(spread_[sequence]), scrambling);
+        const double noise = model_.noise[sequence], reach = 8.3 * noise;
+        const auto near = std::ranges::lower_bound(ascending, threshold - reach);
+        const auto far = std::ranges::upper_bound(near, ascending.end(), threshold + reach);
+        auto sum = static_cast<double>(near - ascending.begin());
+        for (auto m = near; m != far; ++m) sum += below(*m, noise, threshold);
+        return sum / static_cast<double>(ascending.size());
     }
     [[nodiscard]] std::vector<double> by_sequence(double threshold) const {
         std::vector<double> each(sizes_.size(), 0);
@@ -182,8 +193,9 @@ private:
 
     const LeftOutPredictions& model_;
     std::vector<double> sizes_;
-    double error_ = 0;   ///< rms on left-out sequences
-    double misfit_ = 0;  ///< the part of it that is no noise
+    std::vector<std::vector<double>> spread_;  ///< of the model, each scrambling ascending
+    double error_ = 0;                         ///< rms on left-out sequences
+    double misfit_ = 0;                        ///< the part of it that is no noise
 };
 
 /// The threshold of a probability; none: it lies outside of the values.

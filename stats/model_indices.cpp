@@ -79,7 +79,7 @@ public:
             left_out.resize(std::max(left_out.size(), group + 2));
             left_out[group + 1].push_back(static_cast<Eigen::Index>(i));
         }
-        folds_ = response::leave_folds_out(state_.kriging, left_out);
+        folds_ = response::leave_folds_out(state_.kriging, response::inverse_of(state_.kriging), left_out);
     }
 
     [[nodiscard]] Eigen::MatrixXd at(const std::vector<double>& points, std::size_t factors) const {

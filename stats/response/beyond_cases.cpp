@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace grainsweep::stats::response {
 namespace {
@@ -39,9 +40,12 @@ bool reaches_far_out(const Eigen::MatrixXd& x, const std::vector<std::vector<Eig
 }  // namespace
 
 /// What the model without the cases of each end misses of them.
-std::vector<BeyondCases::Edge> BeyondCases::edges_of(const Kriging& model,
+std::vector<BeyondCases::Edge> BeyondCases::edges_of(const Kriging& model, const Eigen::MatrixXd& inverse,
                                                      const std::vector<std::vector<Eigen::Index>>& ends, double v) {
-    const Eigen::MatrixXd means = leave_folds_out(model, ends).predict(model, model.points);
+    std::set<Eigen::Index> all_cases;
+    for (const auto& end : ends) all_cases.insert(end.begin(), end.end());
+    const std::vector<Eigen::Index> cases(all_cases.begin(), all_cases.end());
+    const Eigen::MatrixXd means = leave_folds_out(model, inverse, ends).predict(model, model.points(cases, Eigen::all));
     const auto n = static_cast<double>(model.size());
     std::vector<Edge> edges;
     for (std::size_t e = 0; e < ends.size(); ++e) {
@@ -50,7 +54,8 @@ std::vector<BeyondCases::Edge> BeyondCases::edges_of(const Kriging& model,
         const auto count = static_cast<double>(ends[e].size());
         double missed = 0, all = 0;
         for (const Eigen::Index k : ends[e]) {
-            const double z = model.values(k), m = means(k, static_cast<Eigen::Index>(e));
+            const auto row = std::ranges::lower_bound(cases, k) - cases.begin();
+            const double z = model.values(k), m = means(row, static_cast<Eigen::Index>(e));
             const RawMoments seen = closure(z, 0), expected = closure(m, v);
             for (std::size_t p = 0; p < seen.size(); ++p) edge.missed[p] += (seen[p] - expected[p]) / n;
             edge.predicted.push_back(m);
@@ -91,21 +96,23 @@ BeyondCases::BeyondCases(std::span<const double> z, std::size_t sequences)
     tails_ = tails_of(sorted_, sequences_);
 }
 
-void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v) {
+void BeyondCases::add(const Kriging& model, const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& x,
+                      const Eigen::MatrixXd& q, double v) {
     const auto orders = orders_of(x);
     far_out_ = far_out_ || reaches_far_out(x, orders, q);
     if (far_out_ && tails_.empty()) tails_ = tails_of(sorted_, sequences_, true);
+    std::vector<std::vector<Eigen::Index>> ends;
     for (const std::size_t depth : {outermost, outermost / 2, 2 * outermost}) {
-        const auto count = std::min<std::size_t>(depth, static_cast<std::size_t>(x.rows()));
-        std::vector<std::vector<Eigen::Index>> ends;
+        const auto count =
+            static_cast<std::ptrdiff_t>(std::min<std::size_t>(depth, static_cast<std::size_t>(x.rows())));
         for (const auto& order : orders) {
-            ends.emplace_back(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
-            ends.emplace_back(order.end() - static_cast<std::ptrdiff_t>(count), order.end());
+            ends.emplace_back(order.begin(), order.begin() + count);
+            ends.emplace_back(order.end() - count, order.end());
         }
-        const auto edges = edges_of(model, ends, v);
-        if (depth == outermost) edges_.insert(edges_.end(), edges.begin(), edges.end());
-        for (const Edge& edge : edges) unforeseen_ = std::max(unforeseen_, edge.unforeseen);
     }
+    const auto edges = edges_of(model, inverse, ends, v);  // first those of depth `outermost`
+    edges_.insert(edges_.end(), edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(2 * orders.size()));
+    for (const Edge& edge : edges) unforeseen_ = std::max(unforeseen_, edge.unforeseen);
 }
 
 bool BeyondCases::endless() const {

@@ -36,8 +36,10 @@ public:
     /// Takes standardised responses of so many sequences.
     BeyondCases(std::span<const double> z, std::size_t sequences);
 
-    /// Adds one of two models: `x`, features of its cases; `q`, of the points of the integral; `v`, its noise variance.
-    void add(const Kriging& model, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q, double v);
+    /// Adds one of two models: `inverse`, inverse_of(model); `x`, features of its cases; `q`, of the points of the
+    /// integral; `v`, its noise variance.
+    void add(const Kriging& model, const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& x, const Eigen::MatrixXd& q,
+             double v);
 
     /// Returns whether a tail of the responses surely has no end.
     [[nodiscard]] bool endless() const;
@@ -57,8 +59,8 @@ private:
         double unforeseen = 0;  ///< the missed part of these cases
     };
 
-    static std::vector<Edge> edges_of(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& ends,
-                                      double v);
+    static std::vector<Edge> edges_of(const Kriging& model, const Eigen::MatrixXd& inverse,
+                                      const std::vector<std::vector<Eigen::Index>>& ends, double v);
 
     std::vector<double> sorted_;
     std::size_t sequences_;

@@ -96,11 +96,16 @@ Eigen::MatrixXd FoldWeights::predict(const Kriging& model, const Eigen::MatrixXd
     return mean;
 }
 
-FoldWeights leave_folds_out(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& left_out) {
+Eigen::MatrixXd inverse_of(const Kriging& model) {
     Eigen::MatrixXd b = model.factor;
     invert_lower(b);
     b = gram_of_lower(b);
     b.noalias() -= model.precision * model.mean_weights * model.mean_weights.transpose();
+    return b;
+}
+
+FoldWeights leave_folds_out(const Kriging& model, const Eigen::MatrixXd& b,
+                            const std::vector<std::vector<Eigen::Index>>& left_out) {
     const auto folds = static_cast<Eigen::Index>(left_out.size());
     FoldWeights result{Eigen::MatrixXd(model.size(), folds), Eigen::RowVectorXd(folds)};
     for (Eigen::Index s = 0; s < folds; ++s) {

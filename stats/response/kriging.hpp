@@ -64,9 +64,14 @@ struct FoldWeights {
     [[nodiscard]] Eigen::MatrixXd predict(const Kriging& model, const Eigen::MatrixXd& at) const;
 };
 
-/// Returns the weights of every fold s without the cases left_out[s], with the same hyperparameters. n^3/3 operations
-/// once, then n^2 per fold.
-[[nodiscard]] FoldWeights leave_folds_out(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& left_out);
+/// Returns K^-1 without what the estimated mean takes: B = K^-1 - p c c^T, p the precision of the mean and c its
+/// weights; n^3/3 operations.
+[[nodiscard]] Eigen::MatrixXd inverse_of(const Kriging& model);
+
+/// Returns the weights of every fold s without the cases left_out[s], with the same hyperparameters. `inverse`:
+/// inverse_of(model); n^2 operations per fold.
+[[nodiscard]] FoldWeights leave_folds_out(const Kriging& model, const Eigen::MatrixXd& inverse,
+                                          const std::vector<std::vector<Eigen::Index>>& left_out);
 
 /// Returns the residual of every case, predicted from all others.
 [[nodiscard]] LeftOut leave_one_out(const Kriging& model);
