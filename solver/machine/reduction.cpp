@@ -103,8 +103,8 @@ double error_of_mean_of_intervals(std::span<const FrameInterval> intervals) {
 
 constexpr std::array all_reductions = {
     ReductionInfo{"mean",
-                  "mean over the frames, of a force, torque or pressure of walls over every step between them; with a "
-                  "standard error that counts how long values stay alike",
+                  "mean over the frames (loads of walls: over every step), with a standard error that counts how long "
+                  "values stay alike",
                   Shape::scalar,
                   mean_of,
                   error_of_mean,

@@ -142,12 +142,13 @@ mill() {
         -o "$pictures/mill_power.png"
 }
 
-# Every installed machine as it is drawn, without the controls of the page; the chute, which starts empty, in a case.
+# Every installed machine as it is drawn, without the controls of the page; the chute, which starts empty, and the recoater,
+# which shows its work only later, in a case.
 machines() {
     local name
     for name in $("$program" machines --format csv | tail -n +2 | cut -d, -f1); do
-        if [ "$name" = chute ]; then
-            "$program" solve "$here/configs/machine_chute.json" --watch chute.html --frames 20
+        if [ "$name" = chute ] || [ "$name" = recoater ]; then
+            "$program" solve "$here/configs/machine_$name.json" --watch "$name.html" --frames 20
         else
             "$program" draw "$name" -o "$name.html"
         fi
