@@ -4,6 +4,7 @@
 // GRAINSWEEP_WRITE_DOCUMENTS the tables of docs/coverage.md are written to tests/reference/measured.
 #include "stats/assisted_moments.hpp"
 #include "stats/convergence.hpp"
+#include "stats/response_model.hpp"
 #include "tests/support/judged_responses.hpp"
 #include "tests/support/measured.hpp"
 
@@ -256,6 +257,46 @@ std::string count_stops(const JudgedResponse& response, std::int64_t block, doub
     };
     return stopped == campaigns() ? fmt::format("{:.3g} %", percent(wrong))
                                   : fmt::format("{:.3g} % of {:.3g} %", percent(wrong), percent(stopped));
+}
+
+/// Share of 40 fresh settings a campaign at which the interval of the predicted mean holds the response.
+void count_predictions(const JudgedResponse& response, std::int64_t n) {
+    const auto box = integration_of(response, 9, 1);
+    ResponseModelOptions options;
+    options.low = box.low;
+    options.high = box.high;
+    std::uint64_t fitted = 0, asked = 0, held = 0;
+    for (std::uint64_t seed = 1; seed <= campaigns(); ++seed) {
+        const auto campaign = ask_judged(response, "halton", n, seed);
+        const auto fit = fit_response({campaign.features, response.dimensions}, campaign.values, options);
+        const auto* model = std::get_if<ResponseModel>(&fit);
+        if (model == nullptr) continue;
+        ++fitted;
+        const auto fresh = ask_design("random", response.dimensions, {{"points", std::int64_t{40}}}, seed + 1000);
+        for (std::size_t i = 0; i < fresh.size(); ++i) {
+            const auto features = response.features(fresh.point(i));
+            const auto predicted = model->predict(Rows{features, response.dimensions}).front();
+            const double slip = rounding * std::max(std::abs(predicted.mean), 1.0);
+            ++asked;
+            held += std::abs(response.mean(features) - predicted.mean) <= predicted.mean_half_width() + slip ? 1 : 0;
+        }
+    }
+    const double share = static_cast<double>(held) / static_cast<double>(asked);
+    const double given = static_cast<double>(fitted) / static_cast<double>(campaigns());
+    const std::string cell = fitted == 0             ? "none"
+                             : fitted == campaigns() ? fmt::format("{:.3g}", share)
+                                                     : fmt::format("{:.3g} of {:.2g}", share, given);
+    std::printf("{\"response\": \"%s\", \"cases\": %lld, \"predicted means\": \"%s\"}\n", response.name.c_str(),
+                static_cast<long long>(n), cell.c_str());
+    remember_measured("predictions", {"response", "cases", "mean within its interval"},
+                      {{response.name, fmt::format("{}", n), cell}}, 2);
+}
+
+TEST(SlowCoverage, OfPredictedMeans) {
+    for (const auto& response : judged_responses()) {
+        if (!chosen(response.name)) continue;
+        for (const std::int64_t n : {64, 256}) count_predictions(response, n);
+    }
 }
 
 TEST(SlowCoverage, OfPlainMoments) {
