@@ -63,10 +63,10 @@ void add_meeting_points(const Triangle& a, const Triangle& b, double tolerance, 
 }
 
 /// Corners a < b of an edge.
-using Side = std::pair<std::int32_t, std::int32_t>;
+using TriangleSide = std::pair<std::int32_t, std::int32_t>;
 
 struct SideHash {
-    std::size_t operator()(const Side& side) const {
+    std::size_t operator()(const TriangleSide& side) const {
         const auto a = static_cast<std::uint64_t>(side.first), b = static_cast<std::uint64_t>(side.second);
         const std::uint64_t h = (a << 32U | b) * 0x9E3779B97F4A7C15ULL;
         return static_cast<std::size_t>(h ^ (h >> 29U));
@@ -124,9 +124,10 @@ public:
     }
 
 private:
-    [[nodiscard]] std::array<Side, 3> sides(std::uint32_t t) const {
+    [[nodiscard]] std::array<TriangleSide, 3> sides(std::uint32_t t) const {
         const auto& c = mesh_.surface().triangles[t];
-        return {Side(std::minmax(c[0], c[1])), Side(std::minmax(c[1], c[2])), Side(std::minmax(c[2], c[0]))};
+        return {TriangleSide(std::minmax(c[0], c[1])), TriangleSide(std::minmax(c[1], c[2])),
+                TriangleSide(std::minmax(c[2], c[0]))};
     }
     [[nodiscard]] const Vec3& corner(std::int32_t c) const {
         return mesh_.surface().corners[static_cast<std::size_t>(c)];
@@ -135,7 +136,7 @@ private:
     void count_edges() {
         edges_.reserve(2 * first_.size());
         for (std::uint32_t t = 0; t < first_.size(); ++t)
-            for (const Side& side : sides(t)) {
+            for (const TriangleSide& side : sides(t)) {
                 Edge& edge = edges_[side];
                 if (edge.count < 2) edge.triangles[edge.count] = t;
                 ++edge.count;
@@ -162,7 +163,7 @@ private:
             mesh_.near(middle, near, beside);
             for (const std::uint32_t t : beside) {
                 if (piece[t] == piece[edge.triangles[0]]) continue;
-                for (const Side& with : sides(t)) {
+                for (const TriangleSide& with : sides(t)) {
                     Edge& other = edges_.at(with);
                     const Vec3 &a = corner(with.first), along = corner(with.second) - a;
                     const double share = dot(middle - a, along) / dot(along, along);
@@ -198,7 +199,7 @@ private:
     }
 
     /// At one of the two ends along the width, and of a triangle that is not.
-    [[nodiscard]] bool at_open_end(const Side& side, std::uint32_t t) const {
+    [[nodiscard]] bool at_open_end(const TriangleSide& side, std::uint32_t t) const {
         const Vec3 &a = corner(side.first), &b = corner(side.second);
         const auto within = [&](double level) {
             const auto is_there = [&](const Vec3& x) { return std::abs(x[width_] - level) <= same_; };
@@ -206,20 +207,20 @@ private:
         };
         return within(mesh_.low()[width_]) || within(mesh_.high()[width_]);
     }
-    [[nodiscard]] bool is_free(const Side& side, std::uint32_t t) const {
+    [[nodiscard]] bool is_free(const TriangleSide& side, std::uint32_t t) const {
         const Edge& edge = edges_.at(side);
         return edge.count == 1 && !edge.meets && !at_open_end(side, t);
     }
     [[nodiscard]] std::ptrdiff_t count_free(std::uint32_t t) const {
-        return std::ranges::count_if(sides(t), [&](const Side& side) { return is_free(side, t); });
+        return std::ranges::count_if(sides(t), [&](const TriangleSide& side) { return is_free(side, t); });
     }
 
     [[nodiscard]] bool is_loose(const Part& part) const {
-        std::unordered_map<Side, int, SideHash> times;
+        std::unordered_map<TriangleSide, int, SideHash> times;
         bool shares_edge = false;
         for (const std::uint32_t t : part.triangles) {
             if (count_free(t) > 0) return true;
-            for (const Side& side : sides(t)) {
+            for (const TriangleSide& side : sides(t)) {
                 ++times[side];
                 shares_edge = shares_edge || edges_.at(side).count > 2;
             }
@@ -283,7 +284,7 @@ private:
     const Mesh& mesh_;
     std::size_t width_;
     double same_;  // m
-    std::unordered_map<Side, Edge, SideHash> edges_;
+    std::unordered_map<TriangleSide, Edge, SideHash> edges_;
     std::vector<std::uint32_t> first_, part_;  // of each triangle
     std::vector<Part> parts_;
     double area_ = 0;

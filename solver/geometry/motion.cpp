@@ -1,6 +1,7 @@
 #include "solver/geometry/motion.hpp"
 
 #include "solver/geometry/lines.hpp"
+#include "solver/geometry/quaternion.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -129,21 +130,6 @@ std::array<Vec3, 3> rotation_rows(const Vec3& k, double angle) {
     return {{{c + u * k[0] * k[0], u * k[0] * k[1] - s * k[2], u * k[0] * k[2] + s * k[1]},
              {u * k[1] * k[0] + s * k[2], c + u * k[1] * k[1], u * k[1] * k[2] - s * k[0]},
              {u * k[2] * k[0] - s * k[1], u * k[2] * k[1] + s * k[0], c + u * k[2] * k[2]}}};
-}
-
-using Quaternion = std::array<double, 4>;
-
-std::array<Vec3, 3> rows_of(const Quaternion& q) {
-    const auto [w, x, y, z] = q;
-    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-             {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-             {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
-}
-
-Quaternion product(const Quaternion& a, const Quaternion& b) {
-    return {
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
 }
 
 Pose turned_pose(const Flight& m) {

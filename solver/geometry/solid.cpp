@@ -60,6 +60,27 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> oriented(const TriangleS
 
 }  // namespace
 
+Solid solid_of(double volume, const Vec3& centre, const Inertia& given) {
+    const auto& [xx, xy, xz, yy, yz, zz] = given;
+    Solid solid{.volume = volume, .centre = centre, .axes = {}, .inertia = {}};
+    const double off = std::abs(xy) + std::abs(xz) + std::abs(yz);
+    if (off <= 1e-12 * (xx + yy + zz)) {  // x, y and z are the axes, in this order
+        solid.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        solid.inertia = {xx, yy, zz};
+        return solid;
+    }
+    Eigen::Matrix3d inertia;
+    inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        solid.inertia[k] = principal.eigenvalues()[column];
+        for (std::size_t a = 0; a < 3; ++a)
+            solid.axes[k][a] = principal.eigenvectors()(static_cast<Eigen::Index>(a), column);
+    }
+    return solid;
+}
+
 std::optional<Solid> solid_of(const TriangleSurface& surface) {
     const auto triangles = oriented(surface);
     if (!triangles || triangles->empty()) return std::nullopt;
@@ -85,22 +106,9 @@ std::optional<Solid> solid_of(const TriangleSurface& surface) {
     const Eigen::Vector3d centre = first / volume;
     const Eigen::Matrix3d about_centre = (second - volume * centre * centre.transpose()) * (volume < 0 ? -1 : 1);
     const Eigen::Matrix3d inertia = about_centre.trace() * Eigen::Matrix3d::Identity() - about_centre;
-    Solid solid{.volume = std::abs(volume), .centre = origin, .axes = {}, .inertia = {}};
-    solid.centre += Vec3{centre[0], centre[1], centre[2]};
-    const double off = std::abs(inertia(0, 1)) + std::abs(inertia(0, 2)) + std::abs(inertia(1, 2));
-    if (off <= 1e-12 * inertia.trace()) {  // x, y and z are the axes, in this order
-        solid.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-        solid.inertia = {inertia(0, 0), inertia(1, 1), inertia(2, 2)};
-        return solid;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto column = static_cast<Eigen::Index>(k);
-        solid.inertia[k] = principal.eigenvalues()[column];
-        for (std::size_t a = 0; a < 3; ++a)
-            solid.axes[k][a] = principal.eigenvectors()(static_cast<Eigen::Index>(a), column);
-    }
-    return solid;
+    const Vec3 from_origin{centre[0], centre[1], centre[2]};
+    return solid_of(std::abs(volume), origin + from_origin,
+                    {inertia(0, 0), inertia(0, 1), inertia(0, 2), inertia(1, 1), inertia(1, 2), inertia(2, 2)});
 }
 
 }  // namespace grainsweep::geometry

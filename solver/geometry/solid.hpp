@@ -15,6 +15,13 @@ struct Solid {
     Vec3 inertia{};  ///< about them, divided by the density, m5
 };
 
+/// Tensor of inertia: xx, xy, xz, yy, yz, zz, where xy is minus the product of inertia.
+using Inertia = std::array<double, 6>;
+
+/// Returns the body with these properties; `inertia`: about the centre, divided by the density. A tensor without
+/// products of inertia has the axes x, y and z in this order.
+[[nodiscard]] Solid solid_of(double volume, const Vec3& centre, const Inertia& inertia);
+
 /// Returns the body as a sum of tetrahedra between the triangles and one point (Tonon 2004, J. Math. Stat. 1, 8-11),
 /// for any orientation of the triangles. Empty if an edge does not belong to exactly two triangles, or the surface has
 /// only one side or no volume.
