@@ -6,6 +6,7 @@
 // make_engine chooses once per case.
 #pragma once
 
+#include "solver/dem/body.hpp"
 #include "solver/dem/crossings.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
@@ -67,6 +68,9 @@ struct ToCome {
     std::uint8_t kind = 0;             ///< of Setup::kinds
 };
 
+/// Returns the member spheres of a clump where it is, all of one kind.
+[[nodiscard]] std::vector<Sphere> members_of(const BodyShape& shape, const Body& body, std::uint8_t kind = 0);
+
 struct Setup {
     Domain domain;
     Material material;  ///< of all spheres, unless there are kinds
@@ -78,7 +82,9 @@ struct Setup {
     /// it is longer (step_control.hpp). Empty: the step is fixed, and a step beyond the limit is a fault.
     std::optional<double> step_share{};
     std::vector<Sphere> spheres;
-    std::vector<ToCome> to_come;  ///< spheres that may be added later
+    std::vector<ToCome> to_come;    ///< spheres that may be added later, also as members of clumps
+    std::vector<BodyShape> shapes;  ///< of clumps
+    std::vector<Body> bodies;       ///< clumps; their members are among the spheres
     std::vector<Wall> walls;
     std::vector<CountingPlane> counting;  ///< planes whose crossings are recorded
     Surface frozen;  ///< deviations from the material in contacts with frozen spheres; only without kinds
@@ -107,6 +113,7 @@ struct State {
     std::vector<Vec3> position, velocity, angular_velocity;  ///< velocities at the full step
     std::vector<double> radius;
     std::vector<char> mobile;
+    std::vector<BodyState> bodies;  ///< clumps present, in order of id
 };
 
 /// Contact of the present state: response of the laws at full-step velocities, with the present tangential
@@ -183,11 +190,13 @@ public:
     /// the lists and recomputes the forces once, without changing histories, so one call for many spheres costs less. A
     /// sphere beyond an open face is removed at once. Overlaps produce forces. Throws std::invalid_argument with one
     /// sentence for an impossible sphere, or one that Setup::to_come does not include. After a fault nothing is added.
-    virtual void add(std::span<const Sphere> spheres) = 0;
-    /// Removes particles by id; absent ids are ignored.
+    /// `bodies`: clumps whose members are among these spheres; Body::first counts from the first of them.
+    virtual void add(std::span<const Sphere> spheres, std::span<const Body> bodies = {}) = 0;
+    /// Removes particles by id; absent ids are ignored. A clump leaves as a whole: by the id of any member, and when
+    /// its centre of mass passes an open face.
     virtual void remove(std::span<const std::int32_t> ids) = 0;
 
-    [[nodiscard]] virtual std::size_t size() const = 0;  ///< particles present
+    [[nodiscard]] virtual std::size_t size() const = 0;  ///< spheres present, members of clumps included
     [[nodiscard]] virtual double wall_time() const = 0;  ///< s since the walls were set
     virtual void state(State& into) const = 0;           ///< reuses the vectors' memory
     /// Returns the largest particle-particle overlap divided by the smaller diameter, among the contacts of the last
@@ -232,6 +241,8 @@ public:
 void require_possible(const Setup& setup);
 /// Throws the same for spheres that `to_come` does not include, or too many to be numbered after the `given` ids.
 void require_announced(const std::vector<ToCome>& to_come, std::span<const Sphere> spheres, std::size_t given);
+/// Throws the same for clumps that do not fit the shapes, the spheres or the domain.
+void require_possible(std::span<const Body> bodies, const Setup& setup, std::span<const Sphere> spheres);
 /// Throws the same for a method that does not suit a possible setup.
 void require_possible(const Setup& setup, const Method& method);
 

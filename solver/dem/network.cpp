@@ -17,12 +17,19 @@ constexpr int most_iterations = 20;
 constexpr int least_iterations = 6;
 constexpr double converged = 5e-3;  ///< relative growth of the eigenvalue per iteration
 
+/// Springs and dampers of a contact, weighted.
+struct Weighted {
+    double normal, tangential, rolling;
+
+    Weighted(const Springs& s, double of_springs, double of_dampers)
+        : normal(of_springs * s.normal + of_dampers * s.normal_damper),
+          tangential(of_springs * s.tangential + of_dampers * s.tangential_damper),
+          rolling(of_springs * s.rolling + of_dampers * s.rolling_damper) {}
+};
+
 /// Returns the largest eigenvalue of a contact between fixed masses of 1 with the inertia of spheres.
-double strength(const Bond& bond, double of_springs, double of_dampers) {
-    const Springs& s = bond.springs;
-    const double normal = of_springs * s.normal + of_dampers * s.normal_damper;
-    const double tangential = of_springs * s.tangential + of_dampers * s.tangential_damper;
-    const double rolling = of_springs * s.rolling + of_dampers * s.rolling_damper;
+double strength(const Bond& bond, const Weighted& w) {
+    const auto& [normal, tangential, rolling] = w;
     const double lever = std::max(bond.lever_first, bond.lever_second);
     return std::max(normal, 3.5 * tangential + 2.5 * rolling / (lever * lever));
 }
@@ -60,6 +67,7 @@ std::vector<Freedom> freedoms_of(const MovingWall& wall, double time) {
 
 void Network::clear() {
     inverse_mass_.clear(), inverse_inertia_.clear(), freedoms_.clear(), bonds_.clear(), columns_.clear();
+    bodies_.clear(), carriers_.clear();
     wall_begin_ = 0;
 }
 
@@ -90,47 +98,85 @@ void Network::keep(const std::vector<std::uint64_t>& keys) {
     std::erase_if(bonds_, [&](const Bond& bond) { return !std::ranges::binary_search(keys, bond.key); });
 }
 
+Network::Moved Network::motion_of(std::int32_t sphere, const double* speeds) const {
+    const double* const x = speeds + 6 * node_of(sphere);
+    const Carrier* const by = carrier(sphere);
+    if (by == nullptr) return {at(x), at(x + 3)};
+    const Vec3 turning = in_space(bodies_[static_cast<std::size_t>(by->body)].axes, at(x + 3));
+    return {at(x) + cross(turning, by->lever), turning};
+}
+
+void Network::push(std::int32_t sphere, const Vec3& force, const Vec3& moment, double* forces) const {
+    double* const x = forces + 6 * node_of(sphere);
+    const Carrier* const by = carrier(sphere);
+    add_to(x, force);
+    if (by == nullptr) return add_to(x + 3, moment);
+    const Axes& axes = bodies_[static_cast<std::size_t>(by->body)].axes;
+    const Vec3 about_centre = moment + cross(by->lever, force);
+    add_to(x + 3, {dot(axes[0], about_centre), dot(axes[1], about_centre), dot(axes[2], about_centre)});
+}
+
+double Network::load_of(const Bond& bond, std::int32_t sphere, double strength, double normal, double tangential,
+                        double rolling) const {
+    const Carrier* const by = carrier(sphere);
+    if (by == nullptr) return strength;
+    // Trace of the contact's matrix, which bounds its eigenvalue, times the mass by which bound() divides.
+    const BodyNode& body = bodies_[static_cast<std::size_t>(by->body)];
+    const bool first = sphere == bond.first;
+    const Vec3 arm = by->lever + (first ? -bond.lever_first : bond.lever_second) * bond.normal;
+    const Vec3 across = std::abs(bond.normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 sideways = cross(bond.normal, across), u = (1 / norm(sideways)) * sideways, v = cross(bond.normal, u);
+    const auto mobility = [&](const Vec3& direction) {
+        return body.inverse_mass + added_inverse_mass(cross(arm, direction), body.axes, body.inertia);
+    };
+    const double least = *std::ranges::min_element(body.inertia);
+    const double trace =
+        normal * mobility(bond.normal) + tangential * (mobility(u) + mobility(v)) + 2 * rolling / least;
+    return trace / body.inverse_mass;
+}
+
 double Network::bound(double time_step) const {
     const double of_springs = time_step * time_step, of_dampers = 2 * time_step;
-    load_.assign(inverse_mass_.size() + freedoms_.size(), 0.0);
-    const std::size_t spheres = inverse_mass_.size();
+    load_.assign(nodes() + freedoms_.size(), 0.0);
+    const std::size_t spheres = inverse_mass_.size(), all = nodes();
     for (const Bond& bond : bonds_) {
-        const double s = strength(bond, of_springs, of_dampers);
-        load_[static_cast<std::size_t>(bond.first)] += s;
-        if (bond.second >= 0) load_[static_cast<std::size_t>(bond.second)] += s;
+        const Weighted w(bond.springs, of_springs, of_dampers);
+        const double s = strength(bond, w);
+        const auto load = [&](std::int32_t sphere) {
+            load_[node_of(sphere)] += load_of(bond, sphere, s, w.normal, w.tangential, w.rolling);
+        };
+        load(bond.first);
+        if (bond.second >= 0) load(bond.second);
         for (std::int32_t c = bond.columns; c < bond.columns_end; ++c) {
             const Column& column = columns_[static_cast<std::size_t>(c)];
-            load_[spheres + static_cast<std::size_t>(column.freedom)] += s * dot(column.velocity, column.velocity);
+            load_[all + static_cast<std::size_t>(column.freedom)] += s * dot(column.velocity, column.velocity);
         }
     }
     for (std::size_t i = 0; i < spheres; ++i) load_[i] *= inverse_mass_[i];
-    for (std::size_t k = 0; k < freedoms_.size(); ++k) load_[spheres + k] /= freedoms_[k].inertia;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) load_[spheres + b] *= bodies_[b].inverse_mass;
+    for (std::size_t k = 0; k < freedoms_.size(); ++k) load_[all + k] /= freedoms_[k].inertia;
     double largest = 0;
     for (const Bond& bond : bonds_) {
-        double sum = load_[static_cast<std::size_t>(bond.first)];
-        if (bond.second >= 0) sum += load_[static_cast<std::size_t>(bond.second)];
+        double sum = load_[node_of(bond.first)];
+        if (bond.second >= 0) sum += load_[node_of(bond.second)];
         for (std::int32_t c = bond.columns; c < bond.columns_end; ++c)
-            sum += load_[spheres + static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].freedom)];
+            sum += load_[all + static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].freedom)];
         largest = std::max(largest, sum);
     }
     return largest;
 }
 
 void Network::apply(double of_springs, double of_dampers, const double* speeds, double* force) const {
-    const std::size_t walls = 6 * inverse_mass_.size();
+    const std::size_t walls = 6 * nodes();
     for (const Bond& bond : bonds_) {
-        const Springs& s = bond.springs;
-        const double normal = of_springs * s.normal + of_dampers * s.normal_damper;
-        const double tangential = of_springs * s.tangential + of_dampers * s.tangential_damper;
-        const double rolling = of_springs * s.rolling + of_dampers * s.rolling_damper;
-        const std::size_t i = 6 * static_cast<std::size_t>(bond.first);
-        Vec3 velocity = at(speeds + i), turning = at(speeds + i + 3);
+        const auto [normal, tangential, rolling] = Weighted(bond.springs, of_springs, of_dampers);
+        auto [velocity, turning] = motion_of(bond.first, speeds);
         Vec3 surface = bond.lever_first * turning;
         if (bond.second >= 0) {
-            const double* const other = speeds + 6 * static_cast<std::size_t>(bond.second);
-            velocity = velocity - at(other);
-            turning = turning - at(other + 3);
-            surface += bond.lever_second * at(other + 3);
+            const Moved other = motion_of(bond.second, speeds);
+            velocity = velocity - other.velocity;
+            turning = turning - other.turning;
+            surface += bond.lever_second * other.turning;
         }
         for (std::int32_t c = bond.columns; c < bond.columns_end; ++c) {
             const Column& column = columns_[static_cast<std::size_t>(c)];
@@ -142,13 +188,8 @@ void Network::apply(double of_springs, double of_dampers, const double* speeds, 
         const Vec3 f = normal * along * n + drag;
         const Vec3 turn = cross(drag, n);  // -(n x drag)
         const Vec3 roll = rolling * (turning - dot(turning, n) * n);
-        add_to(force + i, f);
-        add_to(force + i + 3, bond.lever_first * turn + roll);
-        if (bond.second >= 0) {
-            double* const other = force + 6 * static_cast<std::size_t>(bond.second);
-            add_to(other, -f);
-            add_to(other + 3, bond.lever_second * turn - roll);
-        }
+        push(bond.first, f, bond.lever_first * turn + roll, force);
+        if (bond.second >= 0) push(bond.second, -f, bond.lever_second * turn - roll, force);
         for (std::int32_t c = bond.columns; c < bond.columns_end; ++c) {
             const Column& column = columns_[static_cast<std::size_t>(c)];
             force[walls + static_cast<std::size_t>(column.freedom)] -= dot(f, column.velocity);
@@ -158,27 +199,31 @@ void Network::apply(double of_springs, double of_dampers, const double* speeds, 
 
 StepShare Network::share(double time_step) const {
     if (bonds_.empty()) return {};
-    const std::size_t spheres = inverse_mass_.size();
+    const std::size_t spheres = inverse_mass_.size(), all = nodes();
     const auto n = static_cast<Eigen::Index>(size());
     const double of_springs = time_step * time_step, of_dampers = 2 * time_step;
 
     // Coordinates are scaled by the roots of their inertias, so that A becomes symmetric.
     Eigen::VectorXd scale = Eigen::VectorXd::Zero(n), start = scale;
     const double heaviest = std::max(*std::ranges::max_element(load_), 1e-300);
-    for (std::size_t i = 0; i < spheres; ++i) {
+    for (std::size_t i = 0; i < all; ++i) {
         // The fastest mode lies about the spheres with the stiffest contacts.
         const double relative = load_[i] / heaviest, weight = relative * relative * relative;
         if (weight == 0) continue;
         for (std::size_t k = 0; k < 6; ++k) {
             const auto at = static_cast<Eigen::Index>(6 * i + k);
-            scale[at] = std::sqrt(k < 3 ? inverse_mass_[i] : inverse_inertia_[i]);
+            if (i < spheres)
+                scale[at] = std::sqrt(k < 3 ? inverse_mass_[i] : inverse_inertia_[i]);
+            else
+                scale[at] =
+                    std::sqrt(k < 3 ? bodies_[i - spheres].inverse_mass : 1 / bodies_[i - spheres].inertia[k - 3]);
             start[at] = weight * (2 * stats::to_unit(stats::splitmix64(6 * i + k)) - 1);
         }
     }
     for (std::size_t k = 0; k < freedoms_.size(); ++k) {
-        const auto at = static_cast<Eigen::Index>(6 * spheres + k);
+        const auto at = static_cast<Eigen::Index>(6 * all + k);
         scale[at] = 1 / std::sqrt(freedoms_[k].inertia);
-        start[at] = load_[spheres + k] / heaviest;
+        start[at] = load_[all + k] / heaviest;
     }
     const auto applied = [&](double springs, double dampers, const Eigen::VectorXd& x) {
         const Eigen::VectorXd speeds = scale.cwiseProduct(x);
@@ -220,9 +265,10 @@ StepShare Network::share(double time_step) const {
     // x = longest step / this one: springs x^2 + dampers x = 4
     found.share = (dampers + std::sqrt(dampers * dampers + 16 * springs)) / 8;
     double most = -1;
-    for (std::size_t i = 0; i < spheres; ++i) {
+    for (std::size_t i = 0; i < all; ++i) {
         const double moved = mode.segment<6>(static_cast<Eigen::Index>(6 * i)).squaredNorm();
-        if (moved > most) most = moved, found.sphere = static_cast<std::int32_t>(i);
+        if (moved > most)
+            most = moved, found.sphere = i < spheres ? static_cast<std::int32_t>(i) : bodies_[i - spheres].first;
     }
     return found;
 }

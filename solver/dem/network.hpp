@@ -1,6 +1,6 @@
 // Linearised network of the present contacts, and the longest time step at which explicit stepping of it is stable.
 //
-//     M x'' + C x' + K x = 0      x: translations and rotations of all mobile spheres and free walls
+//     M x'' + C x' + K x = 0      x: translations and rotations of all mobile spheres, clumps and free walls
 //
 // Velocity Verlet with dampers that see the velocity of the half step before is stable as long as the largest
 // eigenvalue of M^-1 (dt^2 K + 2 dt C) is below 4. For one degree of freedom this is dt w < 2 (sqrt(1 + z^2) - z), with
@@ -12,11 +12,13 @@
 // has no tangential spring. All in SI.
 #pragma once
 
+#include "solver/dem/body.hpp"
 #include "solver/dem/laws/touch.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace grainsweep::dem {
@@ -63,6 +65,18 @@ public:
         inverse_mass_.push_back(inverse_mass);
         inverse_inertia_.push_back(inverse_mass / (0.4 * radius * radius));
     }
+    /// Adds a clump after all spheres: it moves its members, which have no motions of their own. `lever_of(i)`: from
+    /// the clump's centre of mass to the sphere with this number, m.
+    template <class LeverOf>
+    void add_body(double mass, const Vec3& inertia, const Axes& axes, std::span<const std::uint32_t> members,
+                  LeverOf&& lever_of) {
+        if (bodies_.empty()) carriers_.assign(inverse_mass_.size(), Carrier{});
+        for (const std::uint32_t i : members) {
+            carriers_[i] = {static_cast<std::int32_t>(bodies_.size()), lever_of(i)};
+            inverse_mass_[i] = inverse_inertia_[i] = 0;
+        }
+        bodies_.push_back({1 / mass, inertia, axes, members.empty() ? 0 : static_cast<std::int32_t>(members.front())});
+    }
     /// Adds the degrees of freedom of a wall; returns the first one's number.
     void add_wall(const std::vector<Freedom>& freedoms);
     /// Adds a contact with a sphere, or with what does not move (second -1).
@@ -87,13 +101,48 @@ private:
         Vec3 velocity;  ///< of the contact point at unit speed
     };
 
-    [[nodiscard]] std::size_t size() const { return 6 * inverse_mass_.size() + freedoms_.size(); }
+    /// Clump: its rotations are about its axes of inertia.
+    struct BodyNode {
+        double inverse_mass;
+        Vec3 inertia;
+        Axes axes;
+        std::int32_t first;  ///< a member
+    };
+    /// What moves a sphere: itself, or a clump.
+    struct Carrier {
+        std::int32_t body = -1;
+        Vec3 lever{};
+    };
+    /// Motion of a sphere's centre.
+    struct Moved {
+        Vec3 velocity, turning;
+    };
+
+    /// Returns the number of spheres and clumps: six degrees of freedom each.
+    [[nodiscard]] std::size_t nodes() const { return inverse_mass_.size() + bodies_.size(); }
+    [[nodiscard]] std::size_t size() const { return 6 * nodes() + freedoms_.size(); }
+    [[nodiscard]] const Carrier* carrier(std::int32_t sphere) const {
+        if (bodies_.empty() || carriers_[static_cast<std::size_t>(sphere)].body < 0) return nullptr;
+        return &carriers_[static_cast<std::size_t>(sphere)];
+    }
+    [[nodiscard]] std::size_t node_of(std::int32_t sphere) const {
+        const Carrier* const by = carrier(sphere);
+        return by == nullptr ? static_cast<std::size_t>(sphere)
+                             : inverse_mass_.size() + static_cast<std::size_t>(by->body);
+    }
+    [[nodiscard]] Moved motion_of(std::int32_t sphere, const double* speeds) const;
+    void push(std::int32_t sphere, const Vec3& force, const Vec3& moment, double* forces) const;
+    /// Returns the load of a contact on a node, for bound(): `strength` divided by its mass for a sphere.
+    [[nodiscard]] double load_of(const Bond& bond, std::int32_t sphere, double strength, double normal,
+                                 double tangential, double rolling) const;
     /// Adds A u to `force`, A = `of_springs` K + `of_dampers` C.
     void apply(double of_springs, double of_dampers, const double* speeds, double* force) const;
 
     std::vector<double> inverse_mass_, inverse_inertia_;
     std::vector<Freedom> freedoms_;
     std::size_t wall_begin_ = 0;  ///< first freedom of the last wall
+    std::vector<BodyNode> bodies_;
+    std::vector<Carrier> carriers_;  ///< by sphere, if there are clumps
     std::vector<Bond> bonds_;
     std::vector<Column> columns_;
     mutable std::vector<double> load_;  ///< of each sphere, scratch of bound(): strengths of its contacts

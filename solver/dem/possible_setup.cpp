@@ -104,12 +104,71 @@ void check_bridges(const Setup& setup, const std::vector<Material>& materials) {
                 "a period must be longer than two of the largest diameters and of the longest bridges");
 }
 
+void check(const BodyShape& shape) {
+    require(shape.members.size() >= 2, "a clump has at least two spheres");
+    for (const auto& member : shape.members)
+        require(positive(member.radius) && geometry::finite(member.place),
+                "the spheres of a clump must have positive radii and finite places");
+    require(positive(shape.mass), "the mass of a clump must be positive");
+    const auto& inertia = shape.inertia;
+    const double sum = inertia[0] + inertia[1] + inertia[2];
+    for (const double moment : inertia)
+        require(positive(moment) && moment <= (1 + 1e-9) * sum / 2,
+                "the moments of inertia of a clump must be positive, and none larger than the sum of the others");
+}
+
+/// Clumps must not resist rolling: their shapes do.
+void check_rolling(const Setup& setup) {
+    const ContactTable table(setup);
+    std::vector<bool> of_clumps(table.kinds(), false);
+    for (const Body& body : setup.bodies) of_clumps[table.kind_of(setup.spheres[body.first])] = true;
+    const auto check_contact = [](const Material& m) {
+        require(m.rolling_friction == 0,
+                "clumps have no rolling friction: their shape resists rolling; set it to 0 in their contacts");
+    };
+    for (std::size_t a = 0; a < table.kinds(); ++a) {
+        if (!of_clumps[a]) continue;
+        for (std::size_t b = 0; b < table.kinds(); ++b) check_contact(table.pairs()[place_of_pair(a, b)]);
+        for (const Wall& wall : setup.walls) check_contact(table.at_wall(wall, a));
+    }
+}
+
 }  // namespace
+
+void require_possible(std::span<const Body> bodies, const Setup& setup, std::span<const Sphere> spheres) {
+    std::vector<bool> taken(spheres.size(), false);
+    for (const Body& body : bodies) {
+        require(body.shape < setup.shapes.size(), "a clump is of a shape that there is not");
+        const BodyShape& shape = setup.shapes[body.shape];
+        require(positive(body.scale), "the scale of a clump must be positive");
+        require(geometry::finite(body.position) && geometry::finite(body.velocity) &&
+                    geometry::finite(body.angular_velocity),
+                "every clump must start with finite position and velocities");
+        const double length = geometry::norm(body.orientation);
+        require(std::abs(length - 1) < 1e-6, "the orientation of a clump must be a quaternion of unit length");
+        require(body.first + shape.members.size() <= spheres.size(), "a clump has fewer spheres than its shape");
+        const double reach = body.scale * reach_of(shape);
+        for (std::size_t k = 0; k < shape.members.size(); ++k) {
+            const std::size_t i = body.first + k;
+            require(!taken[i], "a sphere belongs to one clump only");
+            taken[i] = true;
+            require(spheres[i].mobile && spheres[i].kind == spheres[body.first].kind &&
+                        std::abs(spheres[i].radius - body.scale * shape.members[k].radius) <= 1e-9 * spheres[i].radius,
+                    "the spheres of a clump are mobile, of one kind, and have the radii of its shape");
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            require(!setup.domain.periodic[k] || setup.domain.high[k] - setup.domain.low[k] > 4 * reach,
+                    "a period must be longer than two of the largest clumps");
+    }
+}
 
 void require_possible(const Setup& setup) {
     check(setup.material);
     check_kinds(setup);
     check_spheres(setup);
+    for (const BodyShape& shape : setup.shapes) check(shape);
+    require_possible(setup.bodies, setup, setup.spheres);
+    check_rolling(setup);
     const std::string of_frozen = flaw(setup.frozen, "frozen spheres");
     require(of_frozen.empty(), of_frozen);
     const std::vector<Material> all = materials_of(setup);

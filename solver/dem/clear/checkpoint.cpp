@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000cULL;  // "grnscl", version 12
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000dULL;  // "grnscl", version 13
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(ids(), particles::gone);
@@ -20,6 +20,9 @@ void ClearEngine::state(State& into) const {
     into.angular_velocity.resize(n);
     into.radius.resize(n);
     into.mobile.resize(n);
+    into.bodies.clear();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) into.bodies.push_back(bodies_.state(b));
+    std::ranges::sort(into.bodies, {}, &BodyState::first);
     std::size_t k = 0;
     for (std::size_t id = 0; id < place.size(); ++id) {
         const std::uint32_t i = place[id];
@@ -37,6 +40,8 @@ void ClearEngine::state(State& into) const {
 template <class Self, class Visit>
 void ClearEngine::visit_state(Self& self, Visit&& visit) {
     particles::Particles::for_each_column(self.p_, visit);
+    Bodies::for_each_column(self.bodies_, visit);
+    visit(self.bodies_.offset);
     visit(self.added_);
     visit(self.position_at_build_);
     visit(self.near_open_face_);
@@ -137,6 +142,28 @@ void ClearEngine::require_possible() const {
             parts_done_ >= 0 && parts_done_ < control_.parts());
 }
 
+/// Finds members, and refuses bodies that no step makes.
+void ClearEngine::map_restored_bodies() {
+    constexpr auto require = ByteReader::require;
+    const std::size_t n = bodies_.size();
+    Bodies::for_each_column(bodies_, [&](const auto& column) { require(column.size() == n); });
+    require(bodies_.offset.size() == (n > 0 ? p_.size() : bodies_.offset.size()));
+    for (std::size_t b = 0; b < n; ++b) {
+        require(bodies_.first[b] >= 0 && bodies_.shape[b] < bodies_.shapes());
+        require(bodies_.scale[b] > 0 && std::isfinite(bodies_.scale[b]));
+        require(geometry::finite(bodies_.position[b]) && geometry::finite(bodies_.velocity[b]) &&
+                geometry::finite(bodies_.momentum[b]));
+        require(std::abs(geometry::norm(bodies_.orientation[b]) - 1) < 1e-9);
+    }
+    bodies_.derive();
+    require(bodies_.map(p_.id, ids()));
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        const double inverse = p_.inverse_mass[i];
+        require(bodies_.is_member(i) ? inverse == 1 / bodies_.mass[bodies_.body_of(i)]
+                                     : inverse >= inverse_masses_.first && inverse <= inverse_masses_.second);
+    }
+}
+
 void ClearEngine::restore_walls(ByteReader& in) {
     std::uint64_t walls = 0;
     in.get(walls);
@@ -201,12 +228,12 @@ void ClearEngine::restore(std::span<const std::byte> from) {
         for (const double x : column) in.require(x >= least && x <= most);
     };
     within(p_.radius, radii_.smallest, radii_.largest);
-    within(p_.inverse_mass, inverse_masses_.first, inverse_masses_.second);
     for (const std::uint8_t kind : p_.kind) in.require(kind < table_.kinds());
     list_.restore(in, p_.size());
     restore_walls(in);
     in.finish();
     require_possible();
+    map_restored_bodies();
     crossings_.forget();
     if (crossings_.wanted()) list_crossings();
     if (shaken_) shake();

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "solver/bytes.hpp"
+#include "solver/dem/clear/bodies.hpp"
 #include "solver/dem/energy_balance.hpp"
 #include "solver/dem/kinds.hpp"
 #include "solver/dem/reading.hpp"
@@ -19,6 +20,8 @@
 #include "solver/particles/neighbour_list.hpp"
 #include "solver/particles/pair_memory.hpp"
 #include "solver/particles/particles.hpp"
+
+#include <unordered_set>
 
 namespace grainsweep::dem::clear {
 
@@ -50,7 +53,7 @@ public:
     [[nodiscard]] bool at_step() const override { return parts_done_ == 0; }
     void set_walls(std::vector<Wall> walls) override;
     void change_walls(std::vector<Wall> walls) override;
-    void add(std::span<const Sphere> spheres) override;
+    void add(std::span<const Sphere> spheres, std::span<const Body> bodies) override;
     void remove(std::span<const std::int32_t> ids) override;
 
     [[nodiscard]] std::size_t size() const override { return p_.size(); }
@@ -88,6 +91,14 @@ private:
     [[nodiscard]] double reduced_mass(std::size_t i, std::size_t j) const {
         if (!equal_) return 1 / (p_.inverse_mass[i] + p_.inverse_mass[j]);
         return mobile(i) && mobile(j) ? mass_ / 2 : mass_;
+    }
+    /// Returns the same at a contact with a normal: a clump's side of it has the mass of its shape's DampingMass.
+    [[nodiscard]] double reduced_mass(std::size_t i, std::size_t j, const Vec3& normal) const {
+        if (!bodies_.is_member(i) && !bodies_.is_member(j)) return reduced_mass(i, j);
+        return 1 / (inverse_mass_at(i, normal) + inverse_mass_at(j, normal));
+    }
+    [[nodiscard]] double inverse_mass_at(std::size_t i, const Vec3& normal) const {
+        return bodies_.is_member(i) ? bodies_.inverse_mass_at(i, normal) : p_.inverse_mass[i];
     }
     [[nodiscard]] double effective_radius(std::size_t i, std::size_t j) const {
         return equal_ ? radius(i) / 2 : radius(i) * radius(j) / (radius(i) + radius(j));
@@ -133,7 +144,9 @@ private:
         return part_ * static_cast<double>(steps * control_.parts() + parts_done_);
     }
     [[nodiscard]] double inverse_mass_of(const Sphere& sphere) const;
-    void append(std::span<const Sphere> spheres, std::size_t id);
+    void append(std::span<const Sphere> spheres, std::span<const Body> bodies, std::size_t id);
+    void map_bodies();
+    [[nodiscard]] std::vector<bool> wrap_bodies(const std::unordered_set<std::int32_t>& removed);
     void restart_forces();
     void kick_and_drift();
     void kick();
@@ -166,6 +179,7 @@ private:
     template <class Self, class Visit>
     static void visit_state(Self& self, Visit&& visit);
     void require_possible() const;
+    void map_restored_bodies();
     void restore_walls(ByteReader& in);
 
     ContactTable table_;
@@ -195,9 +209,11 @@ private:
     std::vector<double> densities_;             // of kinds of contact, kg/m3
     std::vector<ToCome> to_come_;
     std::size_t spheres_at_start_;
+    Setup announced_;                  // shapes and domain, by which clumps that are added are judged
     std::vector<std::uint8_t> added_;  // kinds of the spheres added since
 
     particles::Particles p_;
+    Bodies bodies_;
     std::vector<Vec3> position_at_build_;
     std::vector<std::uint32_t> near_open_face_;
     particles::NeighbourList list_;

@@ -20,7 +20,7 @@ using namespace geometry;
     t.overlap = t.radius_i + t.radius_j - t.distance;
     t.normal = (1 / t.distance) * branch;
     t.effective_radius = effective_radius(i, j);
-    t.reduced_mass = reduced_mass(i, j);
+    t.reduced_mass = reduced_mass(i, j, t.normal);
     t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Vec3 v = p_.velocity[i] - p_.velocity[j];
@@ -46,7 +46,7 @@ using namespace geometry;
     t.overlap = t.radius_i - t.distance;
     t.normal = closest.normal;
     t.effective_radius = t.radius_i;
-    t.reduced_mass = 1 / inverse_mass(i);
+    t.reduced_mass = 1 / inverse_mass_at(i, t.normal);
     t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Vec3 v = p_.velocity[i] - wall_velocity;
@@ -79,6 +79,7 @@ void ClearEngine::evaluate(bool advance) {
     for (auto& contacts : walls_)
         if (contacts.wall.present()) wall_contacts(contacts, advance);
     peak_wall_overlap_ = std::max(peak_wall_overlap_, largest_wall_overlap_);
+    bodies_.gather(p_);
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
     const double swing2 = swing_factor_ * stiffest_;
@@ -260,6 +261,11 @@ void ClearEngine::for_each_touched_wall(Visit&& visit) const {
 /// Velocities that the laws saw in the last step.
 Velocities ClearEngine::half_a_step_before(std::size_t i) const {
     if (!mobile(i)) return {};
+    if (bodies_.is_member(i)) {
+        const std::size_t b = bodies_.body_of(i);
+        const Vec3 velocity = bodies_.velocity[b] - part_ / 2 * ((1 / bodies_.mass[b]) * bodies_.force[b] + body_);
+        return {velocity + cross(bodies_.spin_in_step[b], bodies_.lever(i)), bodies_.spin_in_step[b]};
+    }
     const double half = part_ / 2, inverse = inverse_mass(i);
     return {p_.velocity[i] - half * (inverse * p_.force[i] + body_),
             p_.angular_velocity[i] - (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i]};
@@ -292,6 +298,9 @@ void ClearEngine::gather_network(bool slides) {
     constexpr double rounding = 1e-12;
     network_.clear();
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        network_.add_body(bodies_.mass[b], bodies_.inertia[b], bodies_.axes[b], bodies_.members(b),
+                          [this](std::size_t i) { return bodies_.lever(i); });
     const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
                           const double* memory) {
         return bond_of(laws, t, memory, key_of(p_.id[i], id), static_cast<std::int32_t>(i), j, slides, rounding);
@@ -326,8 +335,12 @@ double ClearEngine::mechanical_energy(double& active) const {
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3&) {
         add(walls_[w].laws[p_.kind[i]]->energy(t, memory));
     });
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        motion += bodies_.kinetic_energy(b);
+        height -= bodies_.mass[b] * dot(gravity_, bodies_.position[b]);
+    }
     for (std::size_t i = 0; i < p_.size(); ++i) {
-        if (!mobile(i)) continue;
+        if (!mobile(i) || bodies_.is_member(i)) continue;
         const double mass = 1 / inverse_mass(i);
         motion += 0.5 * mass * dot(p_.velocity[i], p_.velocity[i]);
         height -= mass * dot(gravity_, p_.position[i]);

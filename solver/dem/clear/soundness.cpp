@@ -23,6 +23,7 @@ bool ClearEngine::sound() {
             p_.position[i] = position_at_build_[i];
             p_.velocity[i] = Vec3{};
             p_.angular_velocity[i] = Vec3{};
+            if (bodies_.is_member(i)) bodies_.repair(bodies_.body_of(i));
             report("the motion of a particle is no longer a number", i);
         } else if (speed * part_ > largest_sound_displacement * radius(i)) {
             std::snprintf(text, sizeof text, "a particle moves %.3g of its radius in one time step (limit %.3g)",
@@ -162,10 +163,12 @@ void ClearEngine::report_contacts() {
     for (std::size_t i = 0; i < p_.size(); ++i)
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
             const std::size_t j = list_[k].j();
-            const double r = norm(p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]));
+            const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
+            const double r = norm(branch);
             const double overlap = radius(i) + radius(j) - r;
             judge(i, overlap / (2 * std::min(radius(i), radius(j))), largest_sound_overlap,
-                  slope_over(std::sqrt(effective_radius(i, j) * overlap)) / reduced_mass(i, j) * stiffness_[pair(i, j)],
+                  slope_over(std::sqrt(effective_radius(i, j) * overlap)) / reduced_mass(i, j, (1 / r) * branch) *
+                      stiffness_[pair(i, j)],
                   "particle " + std::to_string(p_.id[j]));
         }
     for (std::size_t w = 0; w < walls_.size(); ++w)

@@ -18,6 +18,13 @@ namespace {
 /// particle and step, 83 at 0.5), a sweep at 0.5 (105 ns, 118 at 0.2); 0.3 is within 6 % of both.
 constexpr double default_skin = 0.3;
 
+/// Makes particle order[k] particle k.
+void reorder(std::vector<Vec3>& column, std::span<const std::uint32_t> order) {
+    std::vector<Vec3> fresh(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) fresh[k] = column[order[k]];
+    column.swap(fresh);
+}
+
 /// Steps between two checks of the energy: often enough to name the time, rare enough to cost nothing.
 constexpr std::int64_t energy_interval = 128;
 
@@ -54,10 +61,13 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       densities_(setup.kinds.densities),
       to_come_(setup.to_come),
       spheres_at_start_(setup.spheres.size()),
+      bodies_(setup.shapes),
       pairs_(factors_of_exchange(laws)),
       crossings_(setup.counting, domain_) {
     if (densities_.empty()) densities_ = {setup.material.density};
-    append(setup.spheres, 0);
+    announced_.domain = setup.domain;
+    announced_.shapes = setup.shapes;
+    append(setup.spheres, setup.bodies, 0);
     inverse_masses_.first = std::numeric_limits<double>::infinity();
     for_each_extreme_sphere(setup, [this](const Sphere& s) {
         inverse_masses_.first = std::min(inverse_masses_.first, inverse_mass_of(s));
@@ -92,7 +102,8 @@ double ClearEngine::inverse_mass_of(const Sphere& s) const {
 }
 
 /// Behind the particles there are; `id`: of the first.
-void ClearEngine::append(std::span<const Sphere> spheres, std::size_t id) {
+void ClearEngine::append(std::span<const Sphere> spheres, std::span<const Body> bodies, std::size_t id) {
+    bodies_.append(bodies, id);
     std::size_t i = p_.size();
     p_.resize(i + spheres.size());
     for (const Sphere& s : spheres) {
@@ -105,6 +116,14 @@ void ClearEngine::append(std::span<const Sphere> spheres, std::size_t id) {
         p_.kind[i] = table_.kind_of(s);
         ++i;
     }
+    map_bodies();
+}
+
+/// Finds the members of all bodies among the spheres.
+void ClearEngine::map_bodies() {
+    if (!bodies_.map(p_.id, ids())) throw std::logic_error("a clump lacks a member");
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        for (const std::uint32_t i : bodies_.members(b)) p_.inverse_mass[i] = 1 / bodies_.mass[b];
 }
 
 void ClearEngine::run(std::int64_t steps) {
@@ -139,7 +158,8 @@ void ClearEngine::step() {
         const double parts = static_cast<double>(control_.parts());
         crossings_.follow(
             static_cast<double>(work_.steps) + static_cast<double>(parts_done_) / parts, 1 / parts,
-            [this](std::size_t i) { return p_.id[i]; }, [this](std::size_t i) { return p_.position[i]; });
+            [this](std::size_t i) { return i < p_.size() ? p_.id[i] : bodies_.first[i - p_.size()]; },
+            [this](std::size_t i) { return i < p_.size() ? p_.position[i] : bodies_.position[i - p_.size()]; });
     }
     if (list_is_stale()) {
         if (!sound()) return;
@@ -168,8 +188,14 @@ void ClearEngine::kick_and_drift() {
     const double half = part_ / 2;
     const double far2 = skin_ * skin_ / 4;
     bool displaced = displaced_;
+    bodies_.kick_and_drift(part_, body_, p_);
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        for (const std::uint32_t i : bodies_.members(b)) {
+            const Vec3 moved = p_.position[i] - position_at_build_[i];
+            displaced |= !(dot(moved, moved) <= far2);
+        }
     for (std::size_t i = 0; i < p_.size(); ++i) {
-        if (!mobile(i)) continue;
+        if (!mobile(i) || bodies_.is_member(i)) continue;
         const double inverse = inverse_mass(i);
         p_.velocity[i] += half * (inverse * p_.force[i] + body_);
         p_.position[i] += part_ * p_.velocity[i];
@@ -183,8 +209,9 @@ void ClearEngine::kick_and_drift() {
 void ClearEngine::kick() {
     kick_walls();
     const double half = part_ / 2;
+    bodies_.kick(part_, body_, p_);
     for (std::size_t i = 0; i < p_.size(); ++i) {
-        if (!mobile(i)) continue;
+        if (!mobile(i) || bodies_.is_member(i)) continue;
         const double inverse = inverse_mass(i);
         p_.velocity[i] += half * (inverse * p_.force[i] + body_);
         p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
@@ -199,7 +226,8 @@ void ClearEngine::shake() {
 Vec3 ClearEngine::momentum() const {
     Vec3 total{};
     for (std::size_t i = 0; i < p_.size(); ++i)
-        if (mobile(i)) total += (1 / inverse_mass(i)) * p_.velocity[i];
+        if (mobile(i) && !bodies_.is_member(i)) total += (1 / inverse_mass(i)) * p_.velocity[i];
+    for (std::size_t b = 0; b < bodies_.size(); ++b) total += bodies_.mass[b] * bodies_.velocity[b];
     return total;
 }
 
@@ -210,14 +238,34 @@ bool ClearEngine::list_is_stale() const {
         const Vec3 moved = contacts.wall.moved_since(contacts.pose_when_built);
         if (!(dot(moved, moved) <= skin_ * skin_ / 4)) return true;
     }
+    if (std::ranges::any_of(bodies_.position, [&](const Vec3& x) { return domain_.outside(x); })) return true;
     return std::ranges::any_of(near_open_face_, [&](std::uint32_t i) { return domain_.outside(p_.position[i]); });
+}
+
+/// Moves bodies and their members into the domain. Returns which bodies leave: with the removed spheres, or through an
+/// open face.
+std::vector<bool> ClearEngine::wrap_bodies(const std::unordered_set<std::int32_t>& removed) {
+    std::vector<bool> leaving(bodies_.size());
+    bodies_.wrap(domain_, p_, [this](std::size_t b, const Vec3& shift) {
+        work_of_wrapping_ += bodies_.mass[b] * dot(gravity_, shift);
+    });
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        leaving[b] =
+            domain_.outside(bodies_.position[b]) ||
+            std::ranges::any_of(bodies_.members(b), [&](std::uint32_t i) { return removed.contains(p_.id[i]); });
+    return leaving;
 }
 
 void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     const std::unordered_set<std::int32_t> leaving(removed.begin(), removed.end());
     std::vector<std::uint32_t> staying;
     staying.reserve(p_.size());
+    const std::vector<bool> bodies_leaving = wrap_bodies(leaving);
     for (std::uint32_t i = 0; i < p_.size(); ++i) {
+        if (bodies_.is_member(i)) {
+            if (!bodies_leaving[bodies_.body_of(i)]) staying.push_back(i);
+            continue;
+        }
         Vec3& x = p_.position[i];
         const Vec3 shift = domain_.wrapping(x);
         if (shift != Vec3{}) {
@@ -233,8 +281,16 @@ void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     for (std::uint32_t k = 0; k < order.size(); ++k) fresh_index[order[k]] = k;
     const bool some_left = order.size() < p_.size();
     p_.reorder(order);
+    if (!bodies_leaving.empty()) {
+        reorder(bodies_.offset, order);
+        bodies_.remove(bodies_leaving);
+        map_bodies();
+        bodies_.position_at_build = bodies_.position;
+    }
 
-    const auto matters = [this](std::size_t i, std::size_t j) { return mobile(i) || mobile(j); };
+    const auto matters = [this](std::size_t i, std::size_t j) {
+        return (mobile(i) || mobile(j)) && !bodies_.same_body(i, j);
+    };
     particles::NeighbourList fresh;
     fresh.build(cells_, p_.position, radii(), skin_ + beyond_pair_, domain_, matters);
     pairs_.carry(list_, fresh, fresh_index);
@@ -248,7 +304,7 @@ void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     const Vec3 margin = {skin_, skin_, skin_};
     const geometry::Domain inner{domain_.low + margin, domain_.high - margin, domain_.periodic};
     for (std::uint32_t i = 0; i < p_.size(); ++i)
-        if (mobile(i) && inner.outside(p_.position[i])) near_open_face_.push_back(i);
+        if (mobile(i) && !bodies_.is_member(i) && inner.outside(p_.position[i])) near_open_face_.push_back(i);
     if (some_left) balance_.restart();
     if (crossings_.wanted()) list_crossings();
     ++work_.rebuilds;
@@ -256,9 +312,11 @@ void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
 
 /// No particle moves by more than the skin before the next rebuild: the step after which it is made included.
 void ClearEngine::list_crossings() {
+    const std::size_t spheres = p_.size();  // bodies follow them
     crossings_.list(
-        p_.size(), 2 * skin_, [this](std::size_t i) { return mobile(i); },
-        [this](std::size_t i) { return p_.position[i]; });
+        spheres + bodies_.size(), 2 * skin_,
+        [this, spheres](std::size_t i) { return i >= spheres || (mobile(i) && !bodies_.is_member(i)); },
+        [this, spheres](std::size_t i) { return i < spheres ? p_.position[i] : bodies_.position[i - spheres]; });
 }
 
 /// Ends the memories of pairs that do not touch at the rebuild, for laws whose memories outlive a separation.
@@ -379,11 +437,13 @@ void ClearEngine::restart_forces() {
     set_speed_limit();
 }
 
-void ClearEngine::add(std::span<const Sphere> spheres) {
+void ClearEngine::add(std::span<const Sphere> spheres, std::span<const Body> bodies) {
     require_announced(to_come_, spheres, ids());
+    dem::require_possible(bodies, announced_, spheres);
     if (spheres.empty() || !fault_.empty()) return;
-    append(spheres, ids());
+    const std::size_t before = ids();
     for (const Sphere& s : spheres) added_.push_back(table_.kind_of(s));
+    append(spheres, bodies, before);
     restart_forces();
 }
 

@@ -24,6 +24,7 @@ std::vector<std::int32_t> by_id(std::span<const std::int32_t> ids) {
 
 void MixedEngine::state(State& into) const {
     const auto n = size();
+    into.bodies.clear();
     into.id.resize(n);
     into.position.resize(n), into.velocity.resize(n), into.angular_velocity.resize(n);
     into.radius.resize(n), into.mobile.resize(n);

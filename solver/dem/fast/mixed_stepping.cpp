@@ -401,7 +401,8 @@ void MixedEngine::change_walls(std::vector<Wall> walls) {
     set_limits();
 }
 
-void MixedEngine::add(std::span<const Sphere> spheres) {
+void MixedEngine::add(std::span<const Sphere> spheres, std::span<const Body> bodies) {
+    if (!bodies.empty()) throw std::invalid_argument("a clump is of a shape that there is not");
     require_announced(to_come_, spheres, static_cast<std::size_t>(ids()));
     if (spheres.empty() || !fault_.empty()) return;
     join_lists();

@@ -57,7 +57,7 @@ public:
     int set_threads(int count) override;
     void set_walls(std::vector<Wall> walls) override;
     void change_walls(std::vector<Wall> walls) override;
-    void add(std::span<const Sphere> spheres) override;
+    void add(std::span<const Sphere> spheres, std::span<const Body> bodies) override;
     void remove(std::span<const std::int32_t> ids) override;
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
     [[nodiscard]] double wall_time() const override { return time_after(wall_steps_); }

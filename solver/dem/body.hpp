@@ -1,0 +1,115 @@
+// Clumps: rigid bodies of spheres, and their motion.
+//
+//     M V' = sum F_s + M g        L' = sum (x_s - X) x F_s + T_s        w = I^-1 L
+//
+// F_s and T_s: contact force on a member sphere and its torque about the sphere's own centre. A member moves with V + w
+// x (x_s - X) and spins with w. Contacts, histories and laws are those of spheres; members of one body never touch.
+//
+// Scheme: half a kick of V and L, drift of X, a step of the orientation by Richardson's extrapolation, forces at
+// half-step velocities, half a kick. It is of second order and keeps L of a free body exactly. The
+// order of operations is that of LIGGGHTS 3.8.
+#pragma once
+
+#include "solver/geometry/quaternion.hpp"
+#include "solver/geometry/vector.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace grainsweep::dem {
+
+using geometry::Quaternion;
+using geometry::Vec3;
+
+/// Mass by which contacts of a clump are damped. contact: (1/m + (r x n) I^-1 (r x n))^-1, the mass that an impact
+/// there feels, so that every single contact has the coefficient of restitution. body: m, as in LIGGGHTS; only an
+/// impact through the centre has the coefficient then.
+enum class DampingMass { contact, body };
+
+/// Shape of clumps, at scale 1, in the frame of its centre of mass and axes of inertia.
+struct BodyShape {
+    struct Member {
+        Vec3 place{};       ///< m
+        double radius = 0;  ///< m
+    };
+    std::vector<Member> members;
+    double mass = 0;  ///< kg; grows with the cube of the scale
+    Vec3 inertia{};   ///< principal moments, kg m2; grow with its fifth power
+    DampingMass damping = DampingMass::contact;
+};
+
+/// Clump at the start, or one that is added. Its members are consecutive spheres of one kind, in the order of the
+/// shape; the engine sets their radii, places and velocities.
+struct Body {
+    std::size_t shape = 0;  ///< of Setup::shapes
+    double scale = 1;
+    std::size_t first = 0;  ///< place of its first member in the list of spheres
+    Vec3 position{};        ///< of the centre of mass, m
+    Quaternion orientation{1, 0, 0, 0};
+    Vec3 velocity{};          ///< m/s
+    Vec3 angular_velocity{};  ///< rad/s
+};
+
+/// Clump that is present.
+struct BodyState {
+    std::int32_t first = 0;     ///< id of its first member; the others follow
+    std::uint32_t members = 0;  ///< number of them
+    std::uint32_t shape = 0;    ///< of Setup::shapes
+    double scale = 1;
+    Vec3 position{};
+    Quaternion orientation{1, 0, 0, 0};
+    Vec3 velocity{};          ///< at the full step
+    Vec3 angular_velocity{};  ///< likewise
+    Vec3 angular_momentum{};  ///< about the centre, kg m2/s
+    double mass = 0;          ///< kg
+    Vec3 inertia{};           ///< kg m2
+};
+
+[[nodiscard]] inline double mass_of(const BodyShape& shape, double scale) {
+    return scale * scale * scale * shape.mass;
+}
+[[nodiscard]] inline Vec3 inertia_of(const BodyShape& shape, double scale) {
+    using namespace geometry;
+    const double square = scale * scale;
+    return (square * square * scale) * shape.inertia;
+}
+/// Returns the largest distance of a point of the shape from its centre of mass, at scale 1, m.
+[[nodiscard]] double reach_of(const BodyShape& shape);
+
+/// Axes of inertia of a body in space.
+using Axes = std::array<Vec3, 3>;
+[[nodiscard]] inline Axes axes_of(const Quaternion& q) {
+    const auto [w, x, y, z] = q;
+    return {{{w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)},
+             {2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)},
+             {2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z}}};
+}
+/// Returns a vector of the body's frame in space.
+[[nodiscard]] inline Vec3 in_space(const Axes& axes, const Vec3& a) {
+    using namespace geometry;
+    return a[0] * axes[0] + a[1] * axes[1] + a[2] * axes[2];
+}
+/// Returns the angular velocity that belongs to an angular momentum.
+[[nodiscard]] inline Vec3 spin_of(const Vec3& momentum, const Axes& axes, const Vec3& inertia) {
+    using namespace geometry;
+    return in_space(axes, {dot(axes[0], momentum) / inertia[0], dot(axes[1], momentum) / inertia[1],
+                           dot(axes[2], momentum) / inertia[2]});
+}
+[[nodiscard]] inline Vec3 momentum_of(const Vec3& spin, const Axes& axes, const Vec3& inertia) {
+    using namespace geometry;
+    return in_space(
+        axes, {dot(axes[0], spin) * inertia[0], dot(axes[1], spin) * inertia[1], dot(axes[2], spin) * inertia[2]});
+}
+/// Returns 1/m_eff of a point for a force along n; `arm`: lever x n.
+[[nodiscard]] inline double added_inverse_mass(const Vec3& arm, const Axes& axes, const Vec3& inertia) {
+    using namespace geometry;
+    const double a = dot(axes[0], arm), b = dot(axes[1], arm), c = dot(axes[2], arm);
+    return a * a / inertia[0] + b * b / inertia[1] + c * c / inertia[2];
+}
+
+/// Advances the orientation by `span` s at a constant angular momentum, by one extrapolated step. Returns the angular
+/// velocity of the middle of the step, which forces at its end see.
+Vec3 turn(Quaternion& orientation, const Vec3& momentum, const Vec3& inertia, double span);
+
+}  // namespace grainsweep::dem
