@@ -18,9 +18,9 @@ void Run::judge_walls_that_appear() {
         if (contact.second >= 0) continue;
         const MachineWall& wall = spec_.walls[static_cast<std::size_t>(-1 - contact.second)];
         const std::size_t i = place_of(frame, contact.first);
-        const double share = contact.overlap / (2 * state_.radius[i]);
+        const double share = contact.overlap / (2 * spheres_.radius[i]);
         if (share <= deepest_at_start || !appears(wall)) continue;
-        const Vec3& x = state_.position[i];
+        const Vec3& x = spheres_.position[i];
         fault_ = "wall '" + wall.name + "' appears" +
                  kit::sentence(" %.3g diameters deep (limit %.3g) in a particle", share, deepest_at_start) +
                  kit::sentence(" at (%.4g, %.4g, %.4g) m, after %.6g s", x[0], x[1], x[2], time());

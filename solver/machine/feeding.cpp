@@ -75,7 +75,7 @@ private:
 
 Feeder::Feeder(const Spec& spec, std::size_t feed, std::uint64_t seed) : spec_(spec), feed_(feed), seed_(seed) {
     for (const auto& [species, share] : spec.feeds[feed].mix)
-        largest_ = std::max(largest_, spec.species[species].largest());
+        largest_ = std::max(largest_, spec.species[species].widest());
 }
 
 Vec3 Feeder::place(const Draws& draws, std::uint64_t series, std::uint64_t n) const {
@@ -127,21 +127,20 @@ Filled Feeder::batch(const dem::State& state, const std::vector<dem::Wall>& wall
     while (fed_ < owed_) {
         const auto particle = draws.of_feed(number_);
         const Species& species = spec_.species[particle.species];
+        const double reach = particle.radius * species.girth();  // of the sphere around it
         std::optional<Vec3> place;
         for (std::uint64_t n = 0; n < tries && !place; ++n) {
             const Vec3 x = this->place(draws, number_, n);
-            if (fits(obstacles, x, particle.radius) && !near.occupied(x, particle.radius)) place = x;
+            if (fits(obstacles, x, reach) && !near.occupied(x, reach)) place = x;
         }
         if (!place) break;  // it waits, and so do those behind it
         dem::Sphere sphere;
         sphere.position = *place;
         sphere.radius = particle.radius;
         sphere.velocity = feed().velocity;
-        sphere.kind = species.material;
-        near.add(*place, particle.radius);
-        added.spheres.push_back(sphere);
-        added.species.push_back(static_cast<std::uint8_t>(particle.species));
-        fed_ += spec_.densities[species.material] * particles::sphere_volume(2 * particle.radius);
+        near.add(*place, reach);
+        added.add(spec_, particle.species, sphere, draws.orientation(particle.species, number_));
+        fed_ += species.density(spec_.densities) * particles::sphere_volume(2 * particle.radius);
         ++number_;
     }
     return added;

@@ -16,6 +16,7 @@ namespace grainsweep::machine {
 namespace {
 
 constexpr double golden = 1 / std::numbers::phi;
+constexpr std::uint64_t first_orientations = std::uint64_t{1} << 40U;  // streams behind those of Draws::uniform()
 
 using geometry::norm;
 using kit::require;
@@ -28,7 +29,7 @@ public:
     void operator()(const std::vector<Placed>& placed) {
         for (const Placed& one : placed) {
             require_in_domain(one);
-            add(one.sphere, one.species);
+            into_.add(spec_, one.species, one.sphere, one.orientation.value_or(geometry::Quaternion{1, 0, 0, 0}));
         }
         begin_ = into_.spheres.size();
         ++number_;
@@ -39,7 +40,9 @@ public:
         const auto particles = draws.in_numbers(fill.count);
         const double largest = widest_in(spec_, fill.mix);
         const Obstacles obstacles(walls_in(spec_, 0, {{0.0}, {}}), spec_.domain, largest, 0);
-        const auto centres = places_of(spec_, fill, draws, particles, obstacles);
+        auto wide = particles;
+        for (auto& particle : wide) particle.radius *= spec_.species[particle.species].girth();
+        const auto centres = places_of(spec_, fill, draws, wide, obstacles);
         for (std::size_t n = 0; n < particles.size(); ++n) {
             dem::Sphere sphere;
             sphere.position = centres[n];
@@ -49,7 +52,7 @@ public:
             for (std::size_t k = 0; k < 3; ++k)
                 if (fill.shaken > 0 && !fill.glued)
                     sphere.velocity[k] += fill.shaken * (2 * draws.uniform(velocity_draw, 3 * n + k) - 1);
-            add(sphere, particles[n].species);
+            into_.add(spec_, particles[n].species, sphere, draws.orientation(particles[n].species, n));
         }
         loose_.push_back({begin_, into_.spheres.size()});
         begin_ = into_.spheres.size();
@@ -94,12 +97,6 @@ private:
                         sentence(": a sphere at (%.4g, %.4g, %.4g) m lies outside of the domain", x[0], x[1], x[2]));
     }
 
-    void add(dem::Sphere sphere, std::size_t species) {
-        sphere.kind = spec_.species[species].material;
-        into_.spheres.push_back(sphere);
-        into_.species.push_back(static_cast<std::uint8_t>(species));
-    }
-
     const Spec& spec_;
     std::uint64_t seed_;
     Filled& into_;
@@ -112,7 +109,12 @@ private:
 void require_out_of_wall(const Spec& spec, std::size_t number, const dem::MovingWall& wall,
                          const std::vector<Placed>& placed) {
     std::vector<dem::WallTouch> touches;
-    for (const auto& [species, sphere] : placed) {
+    Filled members;
+    for (const auto& [species, sphere, orientation] : placed)
+        members.add(spec, species, sphere, orientation.value_or(geometry::Quaternion{1, 0, 0, 0}));
+    for (std::size_t k = 0; k < members.spheres.size(); ++k) {
+        const std::size_t species = members.species[k];
+        const dem::Sphere& sphere = members.spheres[k];
         const Vec3& x = sphere.position;
         if (!sphere.mobile || spec.domain.outside(x)) continue;  // outside: it is refused for that
         touches.clear();
@@ -137,7 +139,8 @@ void require_out_of_walls(const Spec& spec) {
         const auto* placed = std::get_if<std::vector<Placed>>(&fill);
         if (placed == nullptr) continue;
         double largest = 0;
-        for (const Placed& one : *placed) largest = std::max(largest, one.sphere.radius);
+        for (const Placed& one : *placed)
+            largest = std::max(largest, one.sphere.radius * spec.species[one.species].girth());
         for (std::size_t w = 0; w < walls.size(); ++w) {
             if (!walls[w].present) continue;
             using Searches = dem::MovingWall::Searches;
@@ -149,11 +152,44 @@ void require_out_of_walls(const Spec& spec) {
     }
 }
 
+void Filled::add(const Spec& spec, std::size_t of, const dem::Sphere& given, const geometry::Quaternion& orientation) {
+    const Species& s = spec.species[of];
+    dem::Sphere sphere = given;
+    sphere.kind = s.material;
+    if (!s.shape) {
+        spheres.push_back(sphere);
+        species.push_back(static_cast<std::uint8_t>(of));
+        return;
+    }
+    const dem::Body body{.shape = shape_number(spec, of),
+                         .scale = 2 * sphere.radius,
+                         .first = spheres.size(),
+                         .position = sphere.position,
+                         .orientation = geometry::normalised(geometry::product(orientation, s.shape->turn)),
+                         .velocity = sphere.velocity,
+                         .angular_velocity = sphere.angular_velocity};
+    for (dem::Sphere member : dem::members_of(body_shape(spec, s), body, sphere.kind)) {
+        member.mobile = sphere.mobile;
+        if (!sphere.mobile) member.velocity = member.angular_velocity = Vec3{};
+        spheres.push_back(member);
+        species.push_back(static_cast<std::uint8_t>(of));
+    }
+    if (sphere.mobile) bodies.push_back(body);
+}
+
 Draws::Draws(const Spec& spec, const Mix& mix, std::uint64_t seed, std::uint64_t number)
     : spec_(spec), mix_(mix), seed_(seed), number_(number) {}
 
 double Draws::uniform(std::uint64_t purpose, std::uint64_t counter) const {
     return stats::to_unit(stats::bits_at(seed_, number_ * draws_of_one + purpose, counter));
+}
+
+geometry::Quaternion Draws::orientation(std::size_t species, std::uint64_t n) const {
+    if (!spec_.species[species].shape) return {1, 0, 0, 0};
+    const auto number = [&](std::uint64_t k) {
+        return stats::to_unit(stats::bits_at(seed_, first_orientations + number_, 3 * n + k));
+    };
+    return geometry::orientation_at(number(0), number(1), number(2));
 }
 
 double Draws::radius_of(std::size_t species, std::uint64_t n) const {

@@ -15,8 +15,13 @@ namespace grainsweep::machine {
 inline constexpr double deepest_at_start = 0.15;
 
 struct Filled {
-    std::vector<dem::Sphere> spheres;
-    std::vector<std::uint8_t> species;  ///< of each particle
+    std::vector<dem::Sphere> spheres;   ///< members of clumps, too
+    std::vector<std::uint8_t> species;  ///< of each sphere
+    std::vector<dem::Body> bodies;      ///< clumps that move
+
+    /// Adds a particle of a species; of a clump `sphere` is the sphere of equal volume, and `orientation` that of the
+    /// frame in which its shape is described. One that does not move becomes single spheres.
+    void add(const Spec& spec, std::size_t of, const dem::Sphere& sphere, const geometry::Quaternion& orientation);
 };
 
 /// Fills the machine, one filling after the other. Particles lie completely in their region, and touch no wall that is
@@ -41,6 +46,8 @@ public:
     [[nodiscard]] Particle of_feed(std::uint64_t n) const;
     /// Returns all particles of a filling: species in exact numbers, in random order.
     [[nodiscard]] std::vector<Particle> in_numbers(std::int64_t count) const;
+    /// Returns the orientation of the n-th particle, of a uniform distribution; of a sphere no turn.
+    [[nodiscard]] geometry::Quaternion orientation(std::size_t species, std::uint64_t n) const;
     /// Returns a uniform number in [0, 1).
     [[nodiscard]] double uniform(std::uint64_t purpose, std::uint64_t counter) const;
 

@@ -35,7 +35,8 @@ struct Pitch {
     Pitch(const Spec& spec, const Mix& mix) : largest(widest_in(spec, mix)) {
         double diameter = 0;
         for (const auto& [species, share] : mix)
-            if (share > 0) diameter = std::max(diameter, spec.species[species].diameter);
+            if (share > 0)
+                diameter = std::max(diameter, spec.species[species].diameter * spec.species[species].girth());
         distance = std::max(spacing * diameter, least_spacing * largest);
         jitter = std::min(most_jitter * diameter, (distance - largest) / 2);
     }
@@ -270,7 +271,7 @@ void require_places(const Spec& spec) {
 double widest_in(const Spec& spec, const Mix& mix) {
     double largest = 0;
     for (const auto& [species, share] : mix)
-        if (share > 0) largest = std::max(largest, spec.species[species].largest());
+        if (share > 0) largest = std::max(largest, spec.species[species].widest());
     return largest;
 }
 

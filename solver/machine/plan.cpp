@@ -33,10 +33,14 @@ constexpr double steps_per_period = 20;  // of a vibration
 // mean contact, and by that of the fastest one (measured at 20 and 60 kPa: 4.5 and 4.4, 2.5 and 2.6).
 constexpr double pressed_fraction = 0.6, pressed_contacts = 6, over_mean = 4.5, over_fastest = 2.5;
 
+double spheres_of(const Species& species) {
+    return species.shape ? static_cast<double>(species.shape->balls.size()) : 1;
+}
+
 double mean_mass(const Spec& spec, const Mix& mix) {
     double mass = 0;
     for (const auto& [species, share] : mix)
-        mass += share * spec.species[species].mean_volume() * spec.densities[spec.species[species].material];
+        mass += share * spec.species[species].mean_volume() * spec.species[species].density(spec.densities);
     return mass;
 }
 
@@ -46,6 +50,13 @@ double mean_volume(const Spec& spec, const Mix& mix) {
     return volume;
 }
 
+/// Returns the mean number of spheres of a particle.
+double spheres_in(const Spec& spec, const Mix& mix) {
+    double spheres = 0;
+    for (const auto& [species, share] : mix) spheres += share * spheres_of(spec.species[species]);
+    return spheres;
+}
+
 double duration_of(const Spec& spec, const Phases& during) {
     double seconds = 0;
     for (std::size_t p = 0; p < spec.phases.size(); ++p)
@@ -53,12 +64,14 @@ double duration_of(const Spec& spec, const Phases& during) {
     return seconds;
 }
 
-double particles_at_start(const Spec& spec) {
+double spheres_at_start(const Spec& spec) {
     double count = 0;
     for (const auto& fill : spec.fills) {
-        const auto* region = std::get_if<Fill>(&fill);
-        count += region != nullptr ? static_cast<double>(region->count)
-                                   : static_cast<double>(std::get<std::vector<Placed>>(fill).size());
+        if (const auto* region = std::get_if<Fill>(&fill))
+            count += static_cast<double>(region->count) * spheres_in(spec, region->mix);
+        else
+            for (const Placed& one : std::get<std::vector<Placed>>(fill))
+                count += spheres_of(spec.species[one.species]);
     }
     return count;
 }
@@ -174,7 +187,7 @@ void warn_of_fillings(const Spec& spec, std::vector<Warning>& warnings) {
 void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (const Species& species : spec.species)
-        smallest = std::min(smallest, species.smallest()), largest = std::max(largest, species.largest());
+        smallest = std::min(smallest, species.finest()), largest = std::max(largest, species.widest());
     for (const MachineWall& wall : spec.walls) {
         std::vector<geometry::Motion> motions;
         for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
@@ -305,11 +318,12 @@ double length_of(const Phase& phase) {
 
 CostEstimate cost_of(const Spec& spec) {
     require_places(spec);
-    double work = 0, most = particles_at_start(spec);
+    double work = 0, most = spheres_at_start(spec);
     work += most * duration_of(spec, {});
     for (const Feed& feed : spec.feeds) {
         // A fed particle stays for half of the time, in the mean.
-        const double fed = feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix);
+        const double fed =
+            feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix) * spheres_in(spec, feed.mix);
         work += fed * duration_of(spec, feed.during) / 2;
         most += fed;
     }

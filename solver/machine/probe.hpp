@@ -29,8 +29,10 @@ inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 /// Data that a probe may read at a moment.
 struct Frame {
     const dem::Engine& engine;
-    const dem::State& state;                         ///< all particles present
-    const std::vector<dem::ContactForce>& contacts;  ///< empty, unless the probe needs them
+    /// All particles present: spheres, and each clump as the sphere of equal volume at its centre of mass, with the id
+    /// of its first member.
+    const dem::State& state;
+    const std::vector<dem::ContactForce>& contacts;  ///< of spheres; empty, unless the probe needs them
     std::span<const std::uint8_t> species;           ///< by id
     std::span<const double> density;                 ///< by id, kg/m3
     const geometry::Domain& domain;
@@ -41,12 +43,38 @@ struct Frame {
     double time_step = 0;                 ///< s
     /// In step(): the contacts in the order of their partners (partner_order.hpp).
     std::span<const std::uint32_t> by_partners = {};
+    std::span<const std::int32_t> particle = {};  ///< by id of a sphere: id of its particle; empty: its own
+    const dem::State* members = nullptr;          ///< all spheres and clumps; nullptr: there are no clumps
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }
     [[nodiscard]] std::size_t species_of(std::size_t i) const { return species[id(i)]; }
     [[nodiscard]] double volume(std::size_t i) const;  ///< m3
     [[nodiscard]] double mass(std::size_t i) const { return density[id(i)] * volume(i); }
+    /// Returns the id of the particle that a sphere is, or is a member of.
+    [[nodiscard]] std::int32_t particle_of(std::int32_t id) const {
+        return particle.empty() ? id : particle[static_cast<std::size_t>(id)];
+    }
+    /// Returns whether an id is that of a particle, not only of a member.
+    [[nodiscard]] bool is_particle(std::size_t id) const {
+        return particle.empty() || static_cast<std::size_t>(particle[id]) == id;
+    }
+    /// Returns all spheres present, members of clumps included.
+    [[nodiscard]] const dem::State& spheres() const { return members == nullptr ? state : *members; }
+    /// Returns the frame with all spheres as its particles.
+    [[nodiscard]] Frame of_spheres() const {
+        return {engine, spheres(),    contacts, species,   density,     domain,   gravity,
+                time,   peak_overlap, radius,   time_step, by_partners, particle, members};
+    }
+    /// Calls visit(i, clump) for every clump, with its index in `state`.
+    template <class Visit>
+    void each_clump(Visit&& visit) const {
+        std::size_t i = 0;
+        for (const dem::BodyState& clump : spheres().bodies) {
+            while (state.id[i] != clump.first) ++i;
+            visit(i, clump);
+        }
+    }
     /// Returns the mass of a particle, present or not, kg.
     [[nodiscard]] double mass_of(std::size_t id) const;
 };

@@ -43,7 +43,12 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
     for (const Feed& feed : spec_.feeds)
         for (const auto& [number, share] : feed.mix) {
             const Species& species = spec_.species[number];
-            setup.to_come.push_back({species.smallest() / 2, species.largest() / 2, species.material});
+            const auto announce = [&](double radius) {  // divided by the diameter
+                setup.to_come.push_back({species.smallest() * radius, species.largest() * radius, species.material});
+            };
+            if (!species.shape) announce(0.5);
+            for (std::size_t k = 0; species.shape && k < species.shape->balls.size(); ++k)
+                announce(species.shape->balls[k].radius);
         }
     enlist(start);
     for (const Measure& measure : spec_.measures) {
@@ -188,7 +193,7 @@ void Run::end_phase(std::uint8_t condition) {
         if (holds(spec_.feeds[k].during, phase_))
             feeders_[k].owe(-static_cast<double>(credited_ahead(spec_.feeds[k])) * spec_.time_step);
     ended_by_.push_back(condition);
-    if (phase_ == 0) lost_first_ = static_cast<std::int64_t>(species_.size() - engine_->size());
+    if (phase_ == 0) lost_first_ = so_far() - present();
     ++phase_;
     if (!finished()) begin_phase();
 }
@@ -222,8 +227,8 @@ void Run::feed() {
         const std::int64_t due = credited_ahead(spec_.feeds[k]);
         if ((step_ - phase_begin_) % steps_in(spec_.feeds[k].interval) != 0 || due == 0) continue;
         feeders_[k].owe(static_cast<double>(due) * spec_.time_step);
-        engine_->state(state_);
-        add(feeders_[k].batch(state_, walls_now(), time()));
+        engine_->state(spheres_);
+        add(feeders_[k].batch(spheres_, walls_now(), time()));
     }
 }
 
@@ -235,20 +240,69 @@ std::vector<dem::Wall> Run::walls_now() const {
 
 void Run::add(const Filled& added) {
     if (added.spheres.empty()) return;
-    engine_->add(added.spheres);
+    engine_->add(added.spheres, added.bodies);
     enlist(added);
 }
 
 void Run::enlist(const Filled& filled) {
-    for (const std::uint8_t species : filled.species) {
-        species_.push_back(species);
-        density_.push_back(spec_.densities[spec_.species[species].material]);
+    const auto begin = static_cast<std::int32_t>(species_.size());
+    for (std::size_t k = 0; k < filled.spheres.size(); ++k) {
+        const Species& species = spec_.species[filled.species[k]];
+        species_.push_back(filled.species[k]);
+        density_.push_back(species.density(spec_.densities));
+        radius_.push_back(filled.spheres[k].radius);
+        if (has_clumps()) particle_.push_back(begin + static_cast<std::int32_t>(k));
     }
-    for (const auto& sphere : filled.spheres) radius_.push_back(sphere.radius);
+    for (const dem::Body& body : filled.bodies) {
+        const std::size_t first = static_cast<std::size_t>(begin) + body.first;
+        const std::size_t members = spec_.species[species_[first]].shape->balls.size();
+        radius_[first] = body.scale / 2;
+        for (std::size_t k = 1; k < members; ++k) {
+            radius_[first + k] = 0;
+            particle_[first + k] = static_cast<std::int32_t>(first);
+        }
+    }
+}
+
+std::int64_t Run::so_far() const {
+    std::int64_t count = 0;
+    if (!has_clumps()) return static_cast<std::int64_t>(species_.size());
+    for (std::size_t id = 0; id < particle_.size(); ++id)
+        count += static_cast<std::size_t>(particle_[id]) == id ? 1 : 0;
+    return count;
+}
+
+std::int64_t Run::present() const {
+    auto count = static_cast<std::int64_t>(engine_->size());
+    if (!has_clumps()) return count;
+    dem::State state;
+    engine_->state(state);
+    for (const dem::BodyState& clump : state.bodies) count -= static_cast<std::int64_t>(clump.members) - 1;
+    return count;
+}
+
+/// Makes one particle of each clump.
+void Run::gather_particles() {
+    const dem::State& from = spheres_;
+    dem::State& into = particles_;
+    into = {};
+    auto clump = from.bodies.begin();
+    for (std::size_t i = 0; i < from.id.size();) {
+        const bool first = clump != from.bodies.end() && clump->first == from.id[i];
+        into.id.push_back(from.id[i]);
+        into.mobile.push_back(from.mobile[i]);
+        into.position.push_back(first ? clump->position : from.position[i]);
+        into.velocity.push_back(first ? clump->velocity : from.velocity[i]);
+        into.angular_velocity.push_back(first ? clump->angular_velocity : from.angular_velocity[i]);
+        into.radius.push_back(first ? clump->scale / 2 : from.radius[i]);
+        i += first ? clump->members : 1;
+        if (first) ++clump;
+    }
 }
 
 Frame Run::look(Contacts contacts) {
-    engine_->state(state_);
+    engine_->state(spheres_);
+    if (has_clumps()) gather_particles();
     contacts_.clear();
     if (contacts == Contacts::present) engine_->contacts(contacts_);
     if (contacts == Contacts::of_step) engine_->step_contacts(contacts_);
@@ -256,10 +310,20 @@ Frame Run::look(Contacts contacts) {
 }
 
 Frame Run::frame() const {
-    return {*engine_,      state_,         contacts_,
-            species_,      density_,       spec_.domain,
-            spec_.gravity, time(),         engine_->peak_overlap(),
-            radius_,       spec_.time_step};
+    return {*engine_,
+            particles(),
+            contacts_,
+            species_,
+            density_,
+            spec_.domain,
+            spec_.gravity,
+            time(),
+            engine_->peak_overlap(),
+            radius_,
+            spec_.time_step,
+            {},
+            particle_,
+            has_clumps() ? &spheres_ : nullptr};
 }
 
 void Run::take_frame() {
@@ -300,7 +364,7 @@ double Run::mass_in(const Region& region) {
     const Frame frame = look(Contacts::none);
     double mass = 0;
     for (std::size_t i = 0; i < frame.size(); ++i)
-        if (state_.mobile[i] != 0 && region.contains(state_.position[i])) mass += frame.mass(i);
+        if (frame.state.mobile[i] != 0 && region.contains(frame.state.position[i])) mass += frame.mass(i);
     return mass;
 }
 
@@ -319,9 +383,10 @@ bool Run::holds_now(std::size_t condition) {
         const Frame frame = look(Contacts::none);
         double energy = 0, scale = 0;
         for (std::size_t i = 0; i < frame.size(); ++i) {
-            if (state_.mobile[i] == 0) continue;
-            energy += frame.mass(i) / 2 * dot(state_.velocity[i], state_.velocity[i]);
-            scale += frame.mass(i) * norm(spec_.gravity) * 2 * state_.radius[i];
+            const dem::State& state = frame.state;
+            if (state.mobile[i] == 0) continue;
+            energy += frame.mass(i) / 2 * dot(state.velocity[i], state.velocity[i]);
+            scale += frame.mass(i) * norm(spec_.gravity) * 2 * state.radius[i];
         }
         if (!(energy < calm * scale)) calm_since = time();
         return time() - calm_since >= falling_time(spec_);
@@ -350,8 +415,39 @@ double Run::progress() const {
     return all > 0 ? std::min(done / all, 1 - 1e-9) : 0;
 }
 
+/// Adds, where there are clumps, the body of each sphere, its velocity, long axis and orientation.
+void Run::add_orientations(Snapshot& picture) const {
+    if (!has_clumps()) return;
+    dem::State state;
+    engine_->state(state);
+    const std::size_t count = state.id.size();
+    auto& body = picture.scalars["body"];
+    auto& velocity = picture.vectors["body_velocity"];
+    auto& axis = picture.vectors["long_axis"];
+    std::array<std::vector<double>*, 4> parts{};
+    for (std::size_t k = 0; k < 4; ++k)
+        (parts[k] = &picture.scalars[std::string("orientation_") + "wxyz"[k]])->assign(count, k == 0 ? 1.0 : 0.0);
+    body.assign(state.id.begin(), state.id.end());
+    velocity = state.velocity;
+    axis.assign(count, Vec3{});
+    std::size_t i = 0;
+    for (const dem::BodyState& clump : state.bodies) {
+        while (state.id[i] != clump.first) ++i;
+        const auto& shape = *spec_.species[species_[static_cast<std::size_t>(clump.first)]].shape;
+        const auto turn = geometry::product(clump.orientation, geometry::conjugate(shape.turn));
+        for (const std::size_t end = i + clump.members; i < end; ++i) {
+            body[i] = clump.first;
+            velocity[i] = clump.velocity;
+            axis[i] = dem::axes_of(clump.orientation)[shape.long_axis()];
+            for (std::size_t k = 0; k < 4; ++k) (*parts[k])[i] = turn[k];
+        }
+    }
+    picture.units["body_velocity"] = "m/s";
+}
+
 Snapshot Run::snapshot() const {
     Snapshot picture = picture_of(*engine_);
+    add_orientations(picture);
     auto& species = picture.scalars["species"];
     for (const double id : picture.scalars["id"]) species.push_back(species_[static_cast<std::size_t>(id)]);
     for (std::size_t k = 0; k < 3; ++k)
@@ -388,6 +484,7 @@ void Run::fields(State& run, Visit&& visit) {
         visit(run.judged_overlap_), visit(run.judged_wall_overlap_), visit(run.fault_), visit(run.lost_first_),
         visit(run.times_.begin);
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
+    if (run.has_clumps()) visit(run.particle_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),
             visit(record.looked), visit(record.intervals), visit(record.integral);
@@ -427,8 +524,12 @@ void Run::restore(std::span<const std::byte> from) {
         in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size() &&
                    record.bins.size() == record.last.size());
     engine_->restore(kit::engine_at_end(in));
-    engine_->state(state_);
-    in.require(state_.id.empty() || static_cast<std::size_t>(state_.id.back()) < species_.size());
+    engine_->state(spheres_);
+    in.require(spheres_.id.empty() || static_cast<std::size_t>(spheres_.id.back()) < species_.size());
+    in.require(!has_clumps() ||
+               (particle_.size() == species_.size() && std::ranges::all_of(particle_, [this](std::int32_t id) {
+                    return id >= 0 && static_cast<std::size_t>(id) < species_.size();
+                })));
 }
 
 }  // namespace grainsweep::machine

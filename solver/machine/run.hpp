@@ -80,6 +80,15 @@ private:
     enum class Contacts { none, present, of_step };
     [[nodiscard]] Frame look(Contacts contacts);
     [[nodiscard]] Frame frame() const;
+    [[nodiscard]] bool has_clumps() const {
+        return std::ranges::any_of(spec_.species, [](const Species& s) { return s.shape.has_value(); });
+    }
+    [[nodiscard]] const dem::State& particles() const { return has_clumps() ? particles_ : spheres_; }
+    /// Return the number of particles present, and of all so far.
+    [[nodiscard]] std::int64_t present() const;
+    [[nodiscard]] std::int64_t so_far() const;
+    void gather_particles();
+    void add_orientations(Snapshot& picture) const;
     void give_crossings();
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
@@ -93,8 +102,10 @@ private:
 
     Spec spec_;
     std::vector<std::uint8_t> species_;  // by id
-    std::vector<double> density_;        // by id
-    std::vector<double> radius_;         // by id
+    std::vector<double> density_;        // by id; mass divided by volume
+    std::vector<double> radius_;  // by id; of a clump's first member the radius of the sphere of equal volume, of
+                                  // the others 0
+    std::vector<std::int32_t> particle_;  // by id of a sphere, where there are clumps: id of its particle
     std::unique_ptr<dem::Engine> engine_;
     std::vector<std::unique_ptr<Probe>> probes_;                 // of measures
     std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // probes that end a phase, by phase and condition
@@ -121,7 +132,8 @@ private:
     PhaseTimes times_;
     std::vector<std::uint8_t> ended_by_;  // by phase: number of the condition, from 1; 0: its time
     std::vector<Record> records_;
-    dem::State state_;
+    dem::State spheres_;
+    dem::State particles_;  // of which each clump is one; only where there are clumps
     std::vector<dem::ContactForce> contacts_;
     PartnerOrder partner_order_;
     std::vector<dem::Crossing> crossings_;

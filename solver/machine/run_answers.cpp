@@ -29,7 +29,7 @@ std::string Run::with_names(std::string fault) const {
 std::string Run::remark() const {
     constexpr double many = 0.1;   // of the particles: a vessel that does not hold its filling; a feed flows through
     constexpr double deep = 0.05;  // overlap divided by the diameter: here Hertz's force errs by about as much
-    const auto filled = static_cast<double>(species_.size());
+    const auto filled = static_cast<double>(so_far());
     std::string lost, soft;
     const bool fed = std::ranges::any_of(spec_.feeds, [](const Feed& feed) { return holds(feed.during, 0); });
     if (spec_.phases.size() > 1 && !fed && static_cast<double>(lost_first_) > many * filled)
@@ -86,8 +86,9 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
 }
 
 void Run::observe(Observations& into) const {
-    into.scalars["particles"] = static_cast<double>(engine_->size()) - static_cast<double>(glued_);
-    into.scalars["lost"] = static_cast<double>(species_.size()) - static_cast<double>(engine_->size());
+    const std::int64_t now = present();
+    into.scalars["particles"] = static_cast<double>(now - glued_);
+    into.scalars["lost"] = static_cast<double>(so_far() - now);
     into.scalars["max_overlap"] = peak_overlap();
     into.scalars["max_wall_overlap"] = peak_wall_overlap();
     into.scalars["smallest_step"] = spec_.time_step / static_cast<double>(engine_->work().most_parts);

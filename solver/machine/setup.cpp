@@ -38,7 +38,7 @@ std::optional<Motion> acting(const WallMotion& given, const PhaseTimes& times) {
 
 double widest_of(const Spec& spec) {
     double largest = 0;
-    for (const Species& species : spec.species) largest = std::max(largest, species.largest());
+    for (const Species& species : spec.species) largest = std::max(largest, species.widest());
     return largest;
 }
 
@@ -102,7 +102,8 @@ bool holds(const Phases& phases, std::size_t phase) {
 }
 
 bool is_integrated(const Measure& measure) {
-    return find_probe(measure.probe)->source == Source::loads && find_reduction(measure.reduction)->of_intervals != nullptr;
+    return find_probe(measure.probe)->source == Source::loads &&
+           find_reduction(measure.reduction)->of_intervals != nullptr;
 }
 
 static bool loads_are_integrated(const Spec& spec, std::size_t wall) {
@@ -125,6 +126,22 @@ std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const Phase
     return walls;
 }
 
+dem::BodyShape body_shape(const Spec& spec, const Species& species) {
+    const double density = spec.densities[species.material];
+    dem::BodyShape shape;
+    for (const auto& ball : species.shape->balls) shape.members.push_back({ball.centre, ball.radius});
+    shape.mass = density * species.shape->mass;
+    shape.inertia = density * species.shape->inertia;
+    shape.damping = species.damping_mass;
+    return shape;
+}
+
+std::size_t shape_number(const Spec& spec, std::size_t species) {
+    const auto has_shape = [](const Species& one) { return one.shape.has_value(); };
+    return static_cast<std::size_t>(std::ranges::count_if(
+        spec.species.begin(), spec.species.begin() + static_cast<std::ptrdiff_t>(species), has_shape));
+}
+
 dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     dem::Setup setup;
     setup.domain = {spec.domain.low, spec.domain.high, spec.domain.periodic};
@@ -135,6 +152,9 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     setup.time_step = spec.time_step;
     setup.step_share = spec.step_share;
     setup.spheres = filled.spheres;
+    setup.bodies = filled.bodies;
+    for (const Species& species : spec.species)
+        if (species.shape) setup.shapes.push_back(body_shape(spec, species));
     setup.deepest_in_walls = deepest_in_walls;
     setup.walls = walls_in(spec, 0, {{0.0}, {}});
     return setup;
@@ -146,22 +166,27 @@ static double impact_time(const dem::Material& pair, double radius, double speed
                                                      : dem::hertz_contact_time(pair, radius, speed);
 }
 
+/// Returns the density by which a sphere has the least mass that an impact on a particle feels, kg/m3.
+static double impact_density(const Spec& spec, const Species& species) {
+    return spec.densities[species.material] * (species.shape ? species.shape->lightness : 1);
+}
+
 double time_step_of(const Spec& spec, double fraction, double speed) {
     double shortest = never;
     const auto pair_of = [&](std::size_t a, std::size_t b) { return spec.pairs[dem::place_of_pair(a, b)]; };
     for (const Species& a : spec.species) {
         dem::Material own = pair_of(a.material, a.material);
-        own.density = spec.densities[a.material];
-        shortest = std::min(shortest, dem::shortest_time(own, a.smallest() / 2, speed));
+        own.density = impact_density(spec, a);
+        shortest = std::min(shortest, dem::shortest_time(own, a.finest() / 2, speed));
         for (const Species& b : spec.species) {
             dem::Material pair = pair_of(a.material, b.material);
-            pair.density = std::min(spec.densities[a.material], spec.densities[b.material]);
-            shortest = std::min(shortest, impact_time(pair, std::min(a.smallest(), b.smallest()) / 2, speed));
+            pair.density = std::min(impact_density(spec, a), impact_density(spec, b));
+            shortest = std::min(shortest, impact_time(pair, std::min(a.finest(), b.finest()) / 2, speed));
         }
         for (const MachineWall& wall : spec.walls) {
             dem::Material pair = wall.materials[a.material];
-            pair.density = spec.densities[a.material];
-            shortest = std::min(shortest, impact_time(pair, a.smallest() / 2, speed));
+            pair.density = impact_density(spec, a);
+            shortest = std::min(shortest, impact_time(pair, a.finest() / 2, speed));
         }
     }
     return fraction * shortest;

@@ -18,6 +18,11 @@ struct PhaseTimes {
 /// Returns the walls in a phase, with their presence and their motion from now on. Motions of phases that have not
 /// begun are left out.
 [[nodiscard]] std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times);
+/// Returns the shape of a species of clumps for an engine: at scale 1 it has the volume of a sphere of 1 m, so that a
+/// clump's diameter is its scale.
+[[nodiscard]] dem::BodyShape body_shape(const Spec& spec, const Species& species);
+/// Returns the number of a species among those with a shape: of dem::Setup::shapes.
+[[nodiscard]] std::size_t shape_number(const Spec& spec, std::size_t species);
 /// Returns the setup at the start, in the first phase.
 [[nodiscard]] dem::Setup setup_of(const Spec& spec, const Filled& filled);
 /// Returns the time step: a fraction of the shortest Rayleigh time and of the shortest Hertz contact time of any two

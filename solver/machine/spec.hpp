@@ -7,6 +7,7 @@
 #include "solver/dem/engine.hpp"
 #include "solver/machine/probe.hpp"
 #include "solver/machine/region.hpp"
+#include "solver/particles/clump.hpp"
 #include "solver/particles/size_distribution.hpp"
 
 #include <cstddef>
@@ -23,14 +24,27 @@ namespace grainsweep::machine {
 /// Species: particles that the user distinguishes. Several species may have one material.
 struct Species {
     std::string name;
-    std::uint8_t material = 0;          ///< index in Spec::densities
-    double diameter = 0;                ///< D, m
-    particles::SizeDistribution sizes;  ///< of d/D
+    std::uint8_t material = 0;              ///< index in Spec::densities
+    double diameter = 0;                    ///< D, m; of a clump: of the sphere of equal volume
+    particles::SizeDistribution sizes;      ///< of d/D
+    std::optional<particles::Clump> shape;  ///< empty: spheres
+    dem::DampingMass damping_mass = dem::DampingMass::contact;
 
     [[nodiscard]] double largest() const { return diameter * sizes.largest(); }
     [[nodiscard]] double smallest() const { return diameter * sizes.smallest(); }
-    /// Returns the mean volume of a sphere, m3.
+    /// Returns the diameter of the sphere around a particle's centre of mass that holds it, divided by d.
+    [[nodiscard]] double girth() const { return shape ? 2 * shape->reach() : 1; }
+    /// Returns the diameters of the largest sphere around a particle, and of the smallest sphere of any, m.
+    [[nodiscard]] double widest() const { return largest() * girth(); }
+    [[nodiscard]] double finest() const { return shape ? 2 * shape->smallest() * smallest() : smallest(); }
+    /// Returns a particle's mass divided by density and volume: 1 unless the shape has a mass of its own.
+    [[nodiscard]] double mass_factor() const { return shape ? shape->mass / particles::sphere_volume(1) : 1; }
+    /// Returns the mean volume of a particle, m3.
     [[nodiscard]] double mean_volume() const { return particles::sphere_volume(diameter) * sizes.moment(3); }
+    /// Returns a particle's mass divided by its volume, kg/m3; `densities`: of the materials.
+    [[nodiscard]] double density(const std::vector<double>& densities) const {
+        return densities[material] * mass_factor();
+    }
 };
 
 /// Numbers of the phases in which something is present; empty: all.
@@ -69,10 +83,11 @@ struct Fill {
     bool glued = false;
 };
 
-/// Individually placed spheres.
+/// Individually placed particle: a sphere, or the sphere of equal volume at a clump's centre of mass.
 struct Placed {
     std::size_t species = 0;
     dem::Sphere sphere;
+    std::optional<geometry::Quaternion> orientation{};  ///< of a clump, in the frame in which its shape is described
 };
 
 struct Feed {

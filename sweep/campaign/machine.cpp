@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -25,7 +26,7 @@ constexpr std::size_t most_machine_files = 1000;
 constexpr double most_steps = 1e12;  // of a phase
 
 /// Calls visit(pointer) for every text of the document that names a file: "stl" of walls, "file" in "sizes" of species,
-/// "spheres" of fillings.
+/// "stl" and "spheres" in their "shape", "spheres" of fillings.
 template <class Visit>
 void for_each_file(const Json& document, const Visit& visit) {
     const auto of = [&](const Json::json_pointer& place) {
@@ -42,7 +43,11 @@ void for_each_file(const Json& document, const Visit& visit) {
         return all;
     };
     for (const auto& wall : entries("walls")) of(wall / "stl");
-    for (const auto& species : entries("species")) of(species / "sizes" / "file");
+    for (const auto& species : entries("species")) {
+        of(species / "sizes" / "file");
+        of(species / "shape" / "stl");
+        of(species / "shape" / "spheres");
+    }
     for (const auto& fill : entries("fill")) of(fill / "spheres");
 }
 
@@ -131,6 +136,8 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string&
     spec.method.precision = std::get<std::string>(inputs.find("precision")->second) == "double"
                                 ? dem::Method::Precision::double_precision
                                 : dem::Method::Precision::mixed;
+    if (std::ranges::any_of(spec.species, [](const machine::Species& s) { return s.shape.has_value(); }))
+        spec.method.precision = dem::Method::Precision::double_precision;
     spec.time_step = input_number(inputs, "time_step");
     const double longest = machine::time_step_of(spec, 1, machine::fastest_of(spec));
     if (spec.time_step > longest)
@@ -159,6 +166,7 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     add_species_numbers(top, reading.spec, reading.scope);
     read_checks(top, reading);
     read_contacts(top, reading);
+    refuse_rolling_shapes(top, reading);
     read_walls(top, reading);
     read_fills(top, reading);
     read_feeds(top, reading);

@@ -72,10 +72,41 @@ constexpr auto size_keys = std::to_array<Field>({
     {"file", MachineKey::text, "a CSV file with measured sizes, as size_file of the scenes"},
 });
 
+constexpr std::array<std::string_view, 2> damping_words = {"contact", "body"};
+constexpr auto grain_shape_keys = std::to_array<Field>({
+    {"aspect_ratio", MachineKey::quantity,
+     "equal spheres in a row along x: length divided by width, 1 to 20; two spheres up to 1.5, else 1 + ceil(2 (A - "
+     "1))"},
+    {"spheres", MachineKey::value,
+     "spheres [[x, y, z, diameter], ...] in any unit, or a CSV file with the header x,y,z,diameter or x,y,z,radius; "
+     "with "
+     "stl the largest number of spheres"},
+    {"stl", MachineKey::text,
+     "a closed surface in any unit, which spheres cover; mass and inertia are those of its body"},
+    {"error", MachineKey::quantity,
+     "of stl: enough spheres where they share all but this part of the volume; default: until a further one of at most "
+     "16 would add less than 0.5 %"},
+    {"mass", MachineKey::quantity, "kg, of a particle of the diameter; default: density times volume"},
+    {"inertia", MachineKey::array,
+     "xx, xy, xz, yy, yz, zz about the centre of mass, kg m2, of a particle of the diameter; default: evenly filled"},
+    {"centre", MachineKey::vector, "of mass, in the unit of the spheres or the stl; default: evenly filled"},
+    {"damping_mass",
+     MachineKey::word,
+     "mass by which contacts are damped. contact: (1/m + (r x n) I^-1 (r x n))^-1, so that every impact has the "
+     "restitution; body: that of the particle, as in LIGGGHTS",
+     "\"contact\"",
+     {},
+     damping_words},
+});
+
 constexpr auto species_keys = std::to_array<Field>({
     {"material", MachineKey::text, "one of the materials; default: the only one, or the only one with a density"},
-    {"diameter", MachineKey::quantity, "m; of unequal sizes the unit D; with a file of sizes their mean by default"},
+    {"diameter", MachineKey::quantity,
+     "m; of unequal sizes the unit D; with a file of sizes their mean by default; of a shape the diameter of the "
+     "sphere "
+     "of equal volume"},
     holding({"sizes", MachineKey::object, "how diameters are distributed; default: all equal"}, size_keys),
+    holding({"shape", MachineKey::object, "a rigid body of spheres; default: a sphere"}, grain_shape_keys),
     {"powder", MachineKey::text,
      "a powder file beside the machine file: gives material, diameter, sizes and contacts as far as the machine does "
      "not"},
@@ -101,8 +132,8 @@ constexpr std::array fill_keys = {
                                     no_negative_number),
     fields::flag<&Fill::glued>("glued", "true: they never move, and are touched as a wall is"),
     Field{"spheres", MachineKey::value,
-          "spheres one by one: a list, or a CSV file with the header x,y,z and diameter, vx,vy,vz, wx,wy,wz as far as "
-          "known"},
+          "particles one by one: a list, or a CSV file with the header x,y,z and diameter, vx,vy,vz, wx,wy,wz, of a "
+          "shape qw,qx,qy,qz, as far as known"},
     Field{"when", MachineKey::quantity, "0: it is left out", "1"},
 };
 
@@ -111,6 +142,7 @@ constexpr std::array sphere_keys = {
     Field{"diameter", MachineKey::quantity, "m; default: that of the species"},
     fields::vector<&dem::Sphere::velocity>("velocity", "m/s", ""),
     fields::vector<&dem::Sphere::angular_velocity>("spin", "rad/s", ""),
+    Field{"orientation", MachineKey::array, "of a shape: a quaternion w, x, y, z", "[1, 0, 0, 0]"},
 };
 
 using machine::Feed;
@@ -303,6 +335,9 @@ std::span<const Field> species() {
 std::span<const Field> sizes() {
     return size_keys;
 }
+std::span<const Field> grain_shape() {
+    return grain_shape_keys;
+}
 std::span<const Field> fill() {
     return fill_keys;
 }
@@ -363,6 +398,7 @@ std::span<const Type> all() {
             {"contacts", "", contacts(), []() -> const void* { return &dem::standard_contact(); }},
             {"A species", "", species_keys},
             {"sizes of a species", "", size_keys},
+            {"shape of a species", "", grain_shape_keys},
             {"A wall", "", wall()},
             {"turned, of a wall", "", machine::placement_fields(), fields::initial<machine::Placement>},
             {"A motion of a wall", "", motion()},

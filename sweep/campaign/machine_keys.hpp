@@ -16,6 +16,7 @@ namespace grainsweep::campaign::machine_keys {
 [[nodiscard]] std::span<const Field> contacts();
 [[nodiscard]] std::span<const Field> species();
 [[nodiscard]] std::span<const Field> sizes();
+[[nodiscard]] std::span<const Field> grain_shape();
 [[nodiscard]] std::span<const Field> wall();
 [[nodiscard]] std::span<const Field> motion();
 [[nodiscard]] std::span<const Field> fill();

@@ -65,7 +65,7 @@ machine::Region feed_region(const Cursor& place, const MachineReading& reading, 
     machine::Disc disc;
     reading.scope.read(Section(place["disc"], fields), fields, &disc);
     double largest = 0;
-    for (const auto& [species, share] : mix) largest = std::max(largest, reading.spec.species[species].largest());
+    for (const auto& [species, share] : mix) largest = std::max(largest, reading.spec.species[species].widest());
     machine::Region::Round round{disc.centre, disc.normal, disc.radius, disc.inner, thickness * largest};
     round.base = geometry::operator-(round.base, geometry::operator*(round.length / 2, round.axis));
     machine::Region region{round};
@@ -96,7 +96,7 @@ machine::Mix read_mix(const Section& section, const MachineReading& reading) {
         const Species& species = reading.spec.species[number];
         double share = reading.scope.number(place, "1", no_negative_number);
         if (by != "count") share /= species.mean_volume();
-        if (by == "mass") share /= reading.spec.densities[species.material];
+        if (by == "mass") share /= species.density(reading.spec.densities);
         mix.emplace_back(number, share);
         sum += share;
     }
@@ -110,7 +110,7 @@ std::int64_t count_of(const Section& section, const MachineReading& reading, con
     for (const auto& [number, share] : mix) {
         const Species& species = reading.spec.species[number];
         volume += share * species.mean_volume();
-        mass += share * species.mean_volume() * reading.spec.densities[species.material];
+        mass += share * species.mean_volume() * species.density(reading.spec.densities);
     }
     const auto given = [&](const char* key) { return static_cast<int>(section.find(key).has_value()); };
     if (given("count") + given("mass") + given("volume") != 1)
@@ -131,11 +131,17 @@ machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading
     dem::Sphere sphere;
     scope.read(section, machine_keys::sphere(), &sphere);
     sphere.radius = scope.number(section, "diameter", "m", reading.spec.species[species].diameter, positive_number) / 2;
-    return {species, sphere};
+    const auto given = section.find("orientation");
+    if (!given) return {species, sphere, {}};
+    if (!given->json().is_array() || given->json().size() != 4) given->refuse("must be a quaternion: w, x, y, z");
+    std::array<double, 4> parts{};
+    for (std::size_t k = 0; k < 4; ++k) parts[k] = scope.number((*given)[k], "1");
+    if (!(geometry::norm(parts) > 0)) given->refuse("a quaternion must not be 0");
+    return {species, sphere, geometry::normalised(parts)};
 }
 
-constexpr std::array<std::string_view, 10> sphere_columns = {"x",  "y",  "z",  "diameter", "vx",
-                                                             "vy", "vz", "wx", "wy",       "wz"};
+constexpr std::array<std::string_view, 14> sphere_columns = {"x",  "y",  "z",  "diameter", "vx", "vy", "vz",
+                                                             "wx", "wy", "wz", "qw",       "qx", "qy", "qz"};
 
 /// Returns the rows of a CSV file, in SI units. Absent values are 0; an absent diameter is the diameter of the species.
 std::vector<machine::Placed> spheres_in_file(const Cursor& place, const MachineReading& reading, std::size_t species) {
@@ -164,7 +170,10 @@ std::vector<machine::Placed> spheres_in_file(const Cursor& place, const MachineR
         sphere.angular_velocity = {value("wx", 0), value("wy", 0), value("wz", 0)};
         sphere.radius = value("diameter", reading.spec.species[species].diameter) / 2;
         if (!(sphere.radius > 0)) place.refuse(fmt::format("line {}: a diameter must be above 0", table.number()));
-        all.push_back({species, sphere});
+        machine::Placed placed{species, sphere, {}};
+        const geometry::Quaternion q{value("qw", 1), value("qx", 0), value("qy", 0), value("qz", 0)};
+        if (reading.spec.species[species].shape && geometry::norm(q) > 0) placed.orientation = geometry::normalised(q);
+        all.push_back(placed);
     }
     return all;
 }
@@ -207,6 +216,7 @@ void read_species(const Section& top, MachineReading& reading) {
         species.diameter = reading.scope.number(section, "diameter", "m", 0, {1e-7, 10});
         if (const auto sizes = section.find("sizes"))
             species.sizes = sizes_of(Section(*sizes, machine_keys::sizes()), reading, species.diameter);
+        if (const auto shape = section.find("shape")) read_grain_shape(*shape, reading, species);
         if (!(species.diameter > 0)) throw input_error(place.path(), "", "key 'diameter' is missing");
         species.diameter *= reading.particles_scale;
         reading.species.push_back(name);

@@ -51,6 +51,10 @@ void read_measures(const Section& top, MachineReading& reading);
 void read_surroundings(const Section& top, MachineReading& reading);
 void read_checks(const Section& top, MachineReading& reading);
 
+/// Reads the "shape" of a species with material and, unless its spheres have one, diameter.
+void read_grain_shape(const Cursor& place, const MachineReading& reading, machine::Species& species);
+/// Refuses rolling friction of species with a shape.
+void refuse_rolling_shapes(const Section& top, const MachineReading& reading);
 [[nodiscard]] geometry::Shape read_shape(const Section& wall, const MachineReading& reading);
 /// Reads the next motion of a wall, which has its shape and earlier motions. `present`: whether the motion acts in this
 /// case.

@@ -9,14 +9,15 @@ namespace probes {
 
 ProbeInfo amount_count(), amount_mass(), amount_volume(), bed_angle(), bed_fraction(), bed_layer_depth(),
     bed_surface_angle(), bed_surface_residual(), bed_surface_speed(), centre(), contact_energy(), contact_force(),
-    contact_force_density(), coordination(), cover(), cover_angle(), cover_area(), cover_outline(),
+    contact_force_density(), contact_number(), coordination(), cover(), cover_angle(), cover_area(), cover_outline(),
     discharged_diameters(), discharged_mass(), discharged_number(), discharged_share(), fabric(), flow_mass(),
     flow_number(), granular_temperature(), heap_angle(), heap_height(), heap_outline(), heap_residual(), heap_run_out(),
     height_of_share(), impact_energy(), impact_energy_spectrum(), impact_number(), impact_number_spectrum(),
-    kinetic_energy(), lacey(), mass_share(), mean_diameter(), mean_height(), momentum(), overlap(), profile(), radius(),
-    residence_time(), residence_time_density(), residence_time_sd(), rms_speed(), rolling_torque(), solid_fraction(),
-    spin(), stress(), stress_profile(), velocity(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(),
-    wall_position(), wall_pressure(), wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
+    kinetic_energy(), lacey(), mass_share(), mean_diameter(), mean_height(), momentum(), nematic_order(), orientation(),
+    overlap(), point_fraction(), profile(), radius(), residence_time(), residence_time_density(), residence_time_sd(),
+    rms_speed(), rolling_torque(), rotational_energy(), solid_fraction(), spin(), stress(), stress_profile(),
+    velocity(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(), wall_position(), wall_pressure(),
+    wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
 
 }  // namespace probes
 
@@ -37,6 +38,7 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 contact_energy,
                                 contact_force,
                                 contact_force_density,
+                                contact_number,
                                 coordination,
                                 cover,
                                 cover_angle,
@@ -66,7 +68,10 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 mean_diameter,
                                 mean_height,
                                 momentum,
+                                nematic_order,
+                                orientation,
                                 overlap,
+                                point_fraction,
                                 profile,
                                 radius,
                                 residence_time,
@@ -74,6 +79,7 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 residence_time_sd,
                                 rms_speed,
                                 rolling_torque,
+                                rotational_energy,
                                 solid_fraction,
                                 spin,
                                 stress,

@@ -1,10 +1,17 @@
-// Contacts of a bed: the mean number of partners, and the deepest overlap.
+// Contacts of a bed: the mean numbers of partners and of contacts, and the deepest overlap.
+//
+// A clump touches a partner once or at several of its spheres: it counts once as a partner, and each place as a
+// contact.
 #include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
+
+#include <set>
+#include <utility>
 
 namespace grainsweep::machine::probes {
 namespace {
 
+template <bool each_contact>
 class Coordination final : public machine::Probe {
 public:
     explicit Coordination(const Options& options) : selection_(options) {}
@@ -15,10 +22,12 @@ public:
             counts[frame.id(i)] = 1;
             ++particles;
         });
+        std::set<std::pair<std::int32_t, std::int32_t>> met;  // of clumps
         for (const auto& contact : frame.contacts) {
             if (contact.second < 0) continue;
-            partners +=
-                counts[static_cast<std::size_t>(contact.first)] + counts[static_cast<std::size_t>(contact.second)];
+            const std::int32_t a = frame.particle_of(contact.first), b = frame.particle_of(contact.second);
+            if (!each_contact && frame.members != nullptr && !met.insert(std::minmax(a, b)).second) continue;
+            partners += counts[static_cast<std::size_t>(a)] + counts[static_cast<std::size_t>(b)];
         }
         return particles > 0 ? partners / particles : undefined;
     }
@@ -49,8 +58,20 @@ constexpr std::array overlap_options = {
 }  // namespace
 
 ProbeInfo coordination() {
-    return {"coordination",           "1", "mean number of other particles that a particle touches", contacts_options,
-            make_probe<Coordination>, true};
+    return {"coordination",
+            "1",
+            "mean number of other particles that a particle touches",
+            contacts_options,
+            make_probe<Coordination<false>>,
+            true};
+}
+ProbeInfo contact_number() {
+    return {"contacts",
+            "1",
+            "mean number of contacts of a particle with others; a clump may touch one at several spheres",
+            contacts_options,
+            make_probe<Coordination<true>>,
+            true};
 }
 ProbeInfo overlap() {
     return {"overlap", "1", "deepest overlap of two particles divided by the diameter of the smaller one",

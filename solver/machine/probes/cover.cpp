@@ -26,7 +26,7 @@ std::vector<std::size_t> cells_in_drum(const observables::SectionGrid& grid, dou
 class CoverImage final : public machine::Probe {
 public:
     explicit CoverImage(const Options& options)
-        : look_(options),
+        : look_(options, true),
           cover_(options.number("radius"), options.number("cell")),
           cells_(cells_in_drum(cover_.grid(), options.number("radius"))) {}
     double look(const Frame&) override { return undefined; }
@@ -51,7 +51,7 @@ template <OfCover of>
 class CoverProbe final : public machine::Probe {
 public:
     explicit CoverProbe(const Options& options)
-        : look_(options),
+        : look_(options, true),
           radius_(options.number("radius")),
           reach_(options.number("reach", 1)),
           cover_(radius_, options.number("cell")),

@@ -25,6 +25,7 @@ public:
             const bool present = i < frame.size() && frame.id(i) == id;
             const bool inside = present && (!from_ || from_->contains(frame.state.position[i]));
             if (present) ++i;
+            if (!frame.is_particle(id)) continue;
             if (!of_species_.empty() && std::ranges::find(of_species_, frame.species[id]) == of_species_.end())
                 continue;
             const double amount = amount_of(frame, id);

@@ -2,7 +2,10 @@
 #include "solver/machine/probe.hpp"
 #include "solver/machine/upright.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <utility>
 
 namespace grainsweep::machine::probes {
@@ -10,6 +13,15 @@ namespace {
 
 using geometry::dot;
 using geometry::operator-;
+
+/// Returns the height of the highest point of a clump above its centre of mass, m.
+double top_of(const dem::State& spheres, const dem::BodyState& clump, const Vec3& up) {
+    const auto first = static_cast<std::size_t>(std::ranges::lower_bound(spheres.id, clump.first) - spheres.id.begin());
+    double top = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = first; i < first + clump.members; ++i)
+        top = std::max(top, dot(spheres.position[i] - clump.position, up) + spheres.radius[i]);
+    return top;
+}
 
 class HeightOfShare final : public machine::Probe {
 public:
@@ -23,9 +35,14 @@ public:
         const Vec3 up = up_of(frame, along_);
         std::vector<std::pair<double, double>> heights;
         double volume = 0;
+        std::map<std::size_t, double> tops;  // of clumps: of their highest spheres
+        if (surface_)
+            frame.each_clump(
+                [&](std::size_t i, const dem::BodyState& clump) { tops[i] = top_of(frame.spheres(), clump, up); });
         selection_.each(frame, [&](std::size_t i) {
-            heights.emplace_back(dot(frame.state.position[i] - from_, up) + (surface_ ? frame.state.radius[i] : 0),
-                                 frame.volume(i));
+            const auto top = tops.find(i);
+            const double above = !surface_ ? 0 : top == tops.end() ? frame.state.radius[i] : top->second;
+            heights.emplace_back(dot(frame.state.position[i] - from_, up) + above, frame.volume(i));
             volume += frame.volume(i);
         });
         std::ranges::sort(heights);

@@ -1,4 +1,4 @@
-// Kinetic energy of translation: sum of m v^2/2.
+// Kinetic energy of translation, sum of m v^2/2, and of rotation, sum of w . I w/2.
 #include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
@@ -20,6 +20,28 @@ private:
     Selection selection_;
 };
 
+class RotationalEnergyProbe final : public machine::Probe {
+public:
+    explicit RotationalEnergyProbe(const Options& options) : selection_(options) {}
+    double look(const Frame& frame) override {
+        double energy = 0;
+        const auto of_sphere = [&](std::size_t i) {
+            const double r = frame.state.radius[i];
+            return 0.2 * frame.mass(i) * r * r *
+                   geometry::dot(frame.state.angular_velocity[i], frame.state.angular_velocity[i]);
+        };
+        selection_.each(frame, [&](std::size_t i) { energy += of_sphere(i); });
+        frame.each_clump([&](std::size_t i, const dem::BodyState& clump) {
+            if (!selection_.holds(frame, i)) return;
+            energy += geometry::dot(clump.angular_momentum, clump.angular_velocity) / 2 - of_sphere(i);
+        });
+        return energy;
+    }
+
+private:
+    Selection selection_;
+};
+
 constexpr std::array kinetic_energy_options = {of_option, in_option};
 
 }  // namespace
@@ -27,6 +49,10 @@ constexpr std::array kinetic_energy_options = {of_option, in_option};
 ProbeInfo kinetic_energy() {
     return {"kinetic_energy", "J", "kinetic energy of translation", kinetic_energy_options,
             make_probe<KineticEnergyProbe>};
+}
+ProbeInfo rotational_energy() {
+    return {"rotational_energy", "J", "kinetic energy of rotation", kinetic_energy_options,
+            make_probe<RotationalEnergyProbe>};
 }
 
 }  // namespace grainsweep::machine::probes

@@ -21,11 +21,16 @@ inline constexpr Field section_diameter_option =
 /// Selected particles in the plane across an axis, with "up" against gravity.
 class SectionLook {
 public:
-    explicit SectionLook(const Options& options)
-        : selection_(options), axis_(options.vector("axis")), through_(options.vector("through", {})) {}
+    /// `by_members`: a clump is all of its spheres; else it is the sphere of equal volume at its centre of mass.
+    explicit SectionLook(const Options& options, bool by_members = false)
+        : by_members_(by_members),
+          selection_(options),
+          axis_(options.vector("axis")),
+          through_(options.vector("through", {})) {}
 
     /// Returns nothing if gravity has no component across the axis: there is no surface.
-    [[nodiscard]] std::optional<observables::Section> operator()(const Frame& frame) const {
+    [[nodiscard]] std::optional<observables::Section> operator()(const Frame& given) const {
+        const Frame frame = by_members_ ? given.of_spheres() : given;
         using geometry::operator-;
         using geometry::operator*;
         const Vec3 down = frame.gravity - geometry::dot(frame.gravity, axis_) * axis_;
@@ -40,6 +45,7 @@ public:
     }
 
 private:
+    bool by_members_;
     Selection selection_;
     Vec3 axis_, through_;
 };

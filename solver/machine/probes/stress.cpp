@@ -92,8 +92,9 @@ private:
         for (std::size_t k = 0; of_contacts_ && k < frame.contacts.size(); ++k) add(frame, frame.contacts[k]);
     }
     void add(const Frame& frame, const dem::ContactForce& contact) {
-        const dem::State& state = frame.state;
+        const dem::State& state = frame.spheres();
         const std::size_t i = place_of(frame, contact.first);
+        if (frame.members != nullptr) return add_by_particles(frame, contact);
         // From the centre of the first partner towards the other one: where the contact begins and ends.
         double begin = 0, end = state.radius[i] - contact.overlap;
         if (contact.second >= 0) {
@@ -107,6 +108,24 @@ private:
             const Vec3 x = state.position[i] - begin * contact.normal - (p + 0.5) * piece;
             if (Held* const held = holding(x + frame.domain.wrapping(x))) held->contacts.add(force, piece);
         }
+    }
+    /// Adds a contact where there are clumps: from the centre of mass of one partner to the contact, and on to that of
+    /// the other. What does not move begins at the contact.
+    void add_by_particles(const Frame& frame, const dem::ContactForce& contact) {
+        const Vec3 force = contact.normal_force * contact.normal + contact.tangential_force;
+        const Vec3 point = contact_point(frame, contact);
+        const auto add_way = [&](std::int32_t id, double sign) {
+            const std::size_t p = particle_place_of(frame, id);
+            if (frame.state.mobile[p] == 0) return;
+            const Vec3 way = frame.domain.separation(point, frame.state.position[p]);
+            const Vec3 piece = (sign / pieces) * way;
+            for (int k = 0; k < pieces; ++k) {
+                const Vec3 x = point - ((k + 0.5) / pieces) * way;
+                if (Held* const held = holding(x + frame.domain.wrapping(x))) held->contacts.add(force, piece);
+            }
+        };
+        add_way(contact.first, 1);
+        if (contact.second >= 0) add_way(contact.second, -1);
     }
     [[nodiscard]] Held* holding(const Vec3& x) {
         if (in_ && !in_->contains(x)) return nullptr;
