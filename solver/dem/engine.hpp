@@ -82,9 +82,9 @@ struct Setup {
     /// it is longer (step_control.hpp). Empty: the step is fixed, and a step beyond the limit is a fault.
     std::optional<double> step_share{};
     std::vector<Sphere> spheres;
-    std::vector<ToCome> to_come;    ///< spheres that may be added later, also as members of clumps
-    std::vector<BodyShape> shapes;  ///< of clumps
-    std::vector<Body> bodies;       ///< clumps; their members are among the spheres
+    std::vector<ToCome> to_come;      ///< spheres that may be added later, also as members of clumps
+    std::vector<BodyShape> shapes{};  ///< of clumps
+    std::vector<Body> bodies{};       ///< clumps; their members are among the spheres
     std::vector<Wall> walls;
     std::vector<CountingPlane> counting;  ///< planes whose crossings are recorded
     Surface frozen;  ///< deviations from the material in contacts with frozen spheres; only without kinds
@@ -113,7 +113,7 @@ struct State {
     std::vector<Vec3> position, velocity, angular_velocity;  ///< velocities at the full step
     std::vector<double> radius;
     std::vector<char> mobile;
-    std::vector<BodyState> bodies;  ///< clumps present, in order of id
+    std::vector<BodyState> bodies{};  ///< clumps present, in order of id
 };
 
 /// Contact of the present state: response of the laws at full-step velocities, with the present tangential

@@ -144,7 +144,7 @@ void require_possible(std::span<const Body> bodies, const Setup& setup, std::spa
         require(geometry::finite(body.position) && geometry::finite(body.velocity) &&
                     geometry::finite(body.angular_velocity),
                 "every clump must start with finite position and velocities");
-        const double length = geometry::norm(body.orientation);
+        const double length = geometry::magnitude(body.orientation);
         require(std::abs(length - 1) < 1e-6, "the orientation of a clump must be a quaternion of unit length");
         require(body.first + shape.members.size() <= spheres.size(), "a clump has fewer spheres than its shape");
         const double reach = body.scale * reach_of(shape);

@@ -29,13 +29,13 @@ using Quaternion = std::array<double, 4>;
     return {q[0], -q[1], -q[2], -q[3]};
 }
 
-[[nodiscard]] inline double norm(const Quaternion& q) {
+[[nodiscard]] inline double magnitude(const Quaternion& q) {
     return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
-/// Returns the quaternion divided by its norm, which must not be 0.
+/// Returns the quaternion divided by its magnitude, which must not be 0.
 [[nodiscard]] inline Quaternion normalised(const Quaternion& q) {
-    const double n = norm(q);
+    const double n = magnitude(q);
     return {q[0] / n, q[1] / n, q[2] / n, q[3] / n};
 }
 

@@ -17,7 +17,7 @@ inline constexpr double deepest_at_start = 0.15;
 struct Filled {
     std::vector<dem::Sphere> spheres;   ///< members of clumps, too
     std::vector<std::uint8_t> species;  ///< of each sphere
-    std::vector<dem::Body> bodies;      ///< clumps that move
+    std::vector<dem::Body> bodies{};    ///< clumps that move
 
     /// Adds a particle of a species; of a clump `sphere` is the sphere of equal volume, and `orientation` that of the
     /// frame in which its shape is described. One that does not move becomes single spheres.

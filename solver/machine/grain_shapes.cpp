@@ -30,7 +30,9 @@ GrainShape covered(std::string_view contents, const particles::CoverRequest& req
     auto cover = particles::ball_cover(surface, request);
     if (cover.balls.size() < 2)
         throw std::invalid_argument("one sphere covers the body: leave \"shape\" out, or ask for more \"spheres\"");
-    require_shape(cover.balls);
+    if (!particles::flaw_of(cover.balls).empty())
+        throw std::invalid_argument(
+            "the spheres that cover it do not hang together: ask for more \"spheres\", or list them");
     GrainShape shape = made_of(std::move(cover.balls), *geometry::solid_of(surface));
     shape.overlap = cover.overlap;
     return shape;

@@ -24,10 +24,10 @@ namespace grainsweep::machine {
 /// Species: particles that the user distinguishes. Several species may have one material.
 struct Species {
     std::string name;
-    std::uint8_t material = 0;              ///< index in Spec::densities
-    double diameter = 0;                    ///< D, m; of a clump: of the sphere of equal volume
-    particles::SizeDistribution sizes;      ///< of d/D
-    std::optional<particles::Clump> shape;  ///< empty: spheres
+    std::uint8_t material = 0;                ///< index in Spec::densities
+    double diameter = 0;                      ///< D, m; of a clump: of the sphere of equal volume
+    particles::SizeDistribution sizes;        ///< of d/D
+    std::optional<particles::Clump> shape{};  ///< empty: spheres
     dem::DampingMass damping_mass = dem::DampingMass::contact;
 
     [[nodiscard]] double largest() const { return diameter * sizes.largest(); }

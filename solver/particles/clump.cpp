@@ -77,7 +77,7 @@ std::string flaw_of(std::span<const Ball> balls) {
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const std::string sphere = number_text("sphere %.0f", static_cast<double>(i + 1));
         if (balls[i].radius < least_radius * largest)
-            return sphere + " has less than a thousandth of the largest diameter: are all in one unit?";
+            return sphere + " has less than a thousandth of the largest diameter: give all in one unit";
         for (std::size_t j = 0; j < balls.size(); ++j)
             if (j != i && norm(balls[i].centre - balls[j].centre) <= balls[j].radius - balls[i].radius &&
                 (balls[i].radius < balls[j].radius || j < i))
@@ -85,8 +85,8 @@ std::string flaw_of(std::span<const Ball> balls) {
                                             static_cast<double>(j + 1));
     }
     if (const std::size_t count = joined(balls); count < balls.size())
-        return number_text("the spheres fall into pieces: %.0f of them hang together", static_cast<double>(count)) +
-               number_text(", %.0f do not touch these", static_cast<double>(balls.size() - count));
+        return number_text("the spheres fall into pieces: %.0f", static_cast<double>(count)) +
+               number_text(" of %.0f hang together, the others do not touch these", static_cast<double>(balls.size()));
     return {};
 }
 
@@ -95,7 +95,7 @@ std::string flaw_of(std::span<const Ball> balls, const Solid& solid, double dens
     const double filled = density * solid.volume;
     if (!(mass <= most_mass_ratio * filled && mass >= filled / most_mass_ratio))
         return number_text("its mass is %.3g times", mass / filled) +
-               number_text(" the %.3g kg of its volume at the density of the material: are the units right?", filled);
+               number_text(" the %.3g kg of its volume at the density of the material: check the units", filled);
     double farthest = 0;
     for (const Ball& ball : balls) farthest = std::max(farthest, norm(ball.centre - centre) + ball.radius);
     if (std::ranges::none_of(balls, [&](const Ball& ball) { return norm(ball.centre - centre) < ball.radius; }) &&
@@ -114,7 +114,7 @@ std::string flaw_of(std::span<const Ball> balls, const Solid& solid, double dens
                number_text(", and no point is farther than %.3g m from its centre", farthest);
     if (half < 1e-3 * mass * farthest * farthest)
         return number_text("its inertia is that of a body of %.3g m", std::sqrt(half / mass)) +
-               number_text(", and it reaches %.3g m from its centre: are the units right?", farthest);
+               number_text(", and it reaches %.3g m from its centre: check the units", farthest);
     return {};
 }
 

@@ -46,7 +46,8 @@ void for_each_file(const Json& document, const Visit& visit) {
     for (const auto& species : entries("species")) {
         of(species / "sizes" / "file");
         of(species / "shape" / "stl");
-        of(species / "shape" / "spheres");
+        // Beside an stl it is a number, or an expression.
+        if (!document.contains(species / "shape" / "stl")) of(species / "shape" / "spheres");
     }
     for (const auto& fill : entries("fill")) of(fill / "spheres");
 }

@@ -136,7 +136,7 @@ machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading
     if (!given->json().is_array() || given->json().size() != 4) given->refuse("must be a quaternion: w, x, y, z");
     std::array<double, 4> parts{};
     for (std::size_t k = 0; k < 4; ++k) parts[k] = scope.number((*given)[k], "1");
-    if (!(geometry::norm(parts) > 0)) given->refuse("a quaternion must not be 0");
+    if (!(geometry::magnitude(parts) > 0)) given->refuse("a quaternion must not be 0");
     return {species, sphere, geometry::normalised(parts)};
 }
 
@@ -172,7 +172,7 @@ std::vector<machine::Placed> spheres_in_file(const Cursor& place, const MachineR
         if (!(sphere.radius > 0)) place.refuse(fmt::format("line {}: a diameter must be above 0", table.number()));
         machine::Placed placed{species, sphere, {}};
         const geometry::Quaternion q{value("qw", 1), value("qx", 0), value("qy", 0), value("qz", 0)};
-        if (reading.spec.species[species].shape && geometry::norm(q) > 0) placed.orientation = geometry::normalised(q);
+        if (reading.spec.species[species].shape && geometry::magnitude(q) > 0) placed.orientation = geometry::normalised(q);
         all.push_back(placed);
     }
     return all;

@@ -67,6 +67,7 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, machines, designs, schema
 [[nodiscard]] std::vector<Command> draw_commands();       // draw
 [[nodiscard]] std::vector<Command> powder_commands();     // powder
+[[nodiscard]] std::vector<Command> shape_commands();      // shape
 [[nodiscard]] std::vector<Command> manual_commands();     // completion, manual
 
 /// Returns all commands, in the order of --help.

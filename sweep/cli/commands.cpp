@@ -34,6 +34,7 @@ constexpr auto command_examples = std::to_array<std::pair<std::string_view, std:
     {"accuracy", "accuracy configs/quickstart.json"},
     {"draw", "draw v_blender -o v_blender.html"},
     {"powder", "powder import export.csv -o sizes.csv"},
+    {"shape", "shape stone.stl --spheres 12 -o stone.csv"},
     {"scenes", "scenes powder_spreading"},
     {"machines", "machines v_blender"},
     {"designs", "designs halton"},
@@ -60,6 +61,7 @@ std::vector<Command> all_commands() {
              solve_commands(),
              draw_commands(),
              powder_commands(),
+             shape_commands(),
              catalogue_commands(),
              manual_commands(),
          }) {

@@ -153,7 +153,7 @@ void ClearEngine::map_restored_bodies() {
         require(bodies_.scale[b] > 0 && std::isfinite(bodies_.scale[b]));
         require(geometry::finite(bodies_.position[b]) && geometry::finite(bodies_.velocity[b]) &&
                 geometry::finite(bodies_.momentum[b]));
-        require(std::abs(geometry::norm(bodies_.orientation[b]) - 1) < 1e-9);
+        require(std::abs(geometry::magnitude(bodies_.orientation[b]) - 1) < 1e-9);
     }
     bodies_.derive();
     require(bodies_.map(p_.id, ids()));
