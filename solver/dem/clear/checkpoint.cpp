@@ -145,16 +145,8 @@ void ClearEngine::require_possible() const {
 /// Finds members, and refuses bodies that no step makes.
 void ClearEngine::map_restored_bodies() {
     constexpr auto require = ByteReader::require;
-    const std::size_t n = bodies_.size();
-    Bodies::for_each_column(bodies_, [&](const auto& column) { require(column.size() == n); });
-    require(bodies_.offset.size() == (n > 0 ? p_.size() : bodies_.offset.size()));
-    for (std::size_t b = 0; b < n; ++b) {
-        require(bodies_.first[b] >= 0 && bodies_.shape[b] < bodies_.shapes());
-        require(bodies_.scale[b] > 0 && std::isfinite(bodies_.scale[b]));
-        require(geometry::finite(bodies_.position[b]) && geometry::finite(bodies_.velocity[b]) &&
-                geometry::finite(bodies_.momentum[b]));
-        require(std::abs(geometry::magnitude(bodies_.orientation[b]) - 1) < 1e-9);
-    }
+    require(bodies_.possible());
+    require(bodies_.empty() || bodies_.offset.size() == p_.size());
     bodies_.derive();
     require(bodies_.map(p_.id, ids()));
     for (std::size_t i = 0; i < p_.size(); ++i) {
