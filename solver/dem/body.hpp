@@ -90,26 +90,42 @@ using Axes = std::array<Vec3, 3>;
     using namespace geometry;
     return a[0] * axes[0] + a[1] * axes[1] + a[2] * axes[2];
 }
-/// Returns the angular velocity that belongs to an angular momentum.
-[[nodiscard]] inline Vec3 spin_of(const Vec3& momentum, const Axes& axes, const Vec3& inertia) {
+/// Returns the angular velocity that belongs to an angular momentum; `inverse`: of the principal moments, 1/(kg m2).
+[[nodiscard]] inline Vec3 spin_of(const Vec3& momentum, const Axes& axes, const Vec3& inverse) {
     using namespace geometry;
-    return in_space(axes, {dot(axes[0], momentum) / inertia[0], dot(axes[1], momentum) / inertia[1],
-                           dot(axes[2], momentum) / inertia[2]});
+    return in_space(axes, {dot(axes[0], momentum) * inverse[0], dot(axes[1], momentum) * inverse[1],
+                           dot(axes[2], momentum) * inverse[2]});
 }
 [[nodiscard]] inline Vec3 momentum_of(const Vec3& spin, const Axes& axes, const Vec3& inertia) {
-    using namespace geometry;
-    return in_space(
-        axes, {dot(axes[0], spin) * inertia[0], dot(axes[1], spin) * inertia[1], dot(axes[2], spin) * inertia[2]});
+    return spin_of(spin, axes, inertia);
 }
-/// Returns 1/m_eff of a point for a force along n; `arm`: lever x n.
-[[nodiscard]] inline double added_inverse_mass(const Vec3& arm, const Axes& axes, const Vec3& inertia) {
+/// Returns what a force along n at a point adds to the inverse mass there; `arm`: lever x n.
+[[nodiscard]] inline double added_inverse_mass(const Vec3& arm, const Axes& axes, const Vec3& inverse) {
     using namespace geometry;
     const double a = dot(axes[0], arm), b = dot(axes[1], arm), c = dot(axes[2], arm);
-    return a * a / inertia[0] + b * b / inertia[1] + c * c / inertia[2];
+    return a * a * inverse[0] + b * b * inverse[1] + c * c * inverse[2];
+}
+[[nodiscard]] inline Vec3 inverse_of(const Vec3& moments) {
+    return {1 / moments[0], 1 / moments[1], 1 / moments[2]};
 }
 
 /// Advances the orientation by `span` s at a constant angular momentum, by one extrapolated step. Returns the angular
-/// velocity of the middle of the step, which forces at its end see.
-Vec3 turn(Quaternion& orientation, const Vec3& momentum, const Vec3& inertia, double span);
+/// velocity of the middle of the step, which forces at its end see. `inverse`: of the principal moments, 1/(kg m2).
+[[nodiscard]] inline Vec3 turn(Quaternion& q, const Vec3& momentum, const Vec3& inverse, double span) {
+    using namespace geometry;
+    // q + part w q, of unit length
+    const auto advanced = [](const Quaternion& from, const Vec3& spin, double part) {
+        const Quaternion rate = product({0, spin[0], spin[1], spin[2]}, from);
+        return normalised(
+            {from[0] + part * rate[0], from[1] + part * rate[1], from[2] + part * rate[2], from[3] + part * rate[3]});
+    };
+    const Vec3 before = spin_of(momentum, axes_of(q), inverse);
+    const Quaternion whole = advanced(q, before, span / 2), middle = advanced(q, before, span / 4);
+    const Vec3 spin = spin_of(momentum, axes_of(middle), inverse);
+    const Quaternion halves = advanced(middle, spin, span / 4);
+    q = normalised(
+        {2 * halves[0] - whole[0], 2 * halves[1] - whole[1], 2 * halves[2] - whole[2], 2 * halves[3] - whole[3]});
+    return spin;
+}
 
 }  // namespace grainsweep::dem

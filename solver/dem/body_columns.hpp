@@ -35,8 +35,8 @@ public:
     }
 
     // Derived from the state.
-    std::vector<double> mass;
-    std::vector<Vec3> inertia;
+    std::vector<double> mass, inverse_mass;
+    std::vector<Vec3> inertia, inverse_inertia;
     std::vector<Axes> axes;
 
     /// Appends bodies whose `first` counts from this id.
@@ -51,14 +51,14 @@ public:
     /// Changes the momenta by the forces during `span` s; `acceleration`: of gravity and shaking.
     void kick_body(std::size_t body, double span, const Vec3& acceleration) {
         using namespace geometry;
-        velocity[body] += span * ((1 / mass[body]) * force[body] + acceleration);
+        velocity[body] += span * (inverse_mass[body] * force[body] + acceleration);
         momentum[body] += span * torque[body];
     }
     /// Moves and turns a body by its momenta.
     void drift_body(std::size_t body, double span) {
         using namespace geometry;
         position[body] += span * velocity[body];
-        spin[body] = spin_in_step[body] = turn(orientation[body], momentum[body], inertia[body], span);
+        spin[body] = spin_in_step[body] = turn(orientation[body], momentum[body], inverse_inertia[body], span);
         axes[body] = axes_of(orientation[body]);
     }
     /// Returns the place of a member from the centre of mass, in space.
@@ -68,15 +68,15 @@ public:
     }
     /// Returns 1/m* of a body's side of a contact of a member with this lever.
     [[nodiscard]] double inverse_mass_at(std::size_t body, const Vec3& lever, const Vec3& normal) const {
-        const double inverse = 1 / mass[body];
+        const double inverse = inverse_mass[body];
         if (shape_of(body).damping == DampingMass::body) return inverse;
-        return inverse + added_inverse_mass(geometry::cross(lever, normal), axes[body], inertia[body]);
+        return inverse + added_inverse_mass(geometry::cross(lever, normal), axes[body], inverse_inertia[body]);
     }
     /// Returns the kinetic energy of a body with these momenta.
     [[nodiscard]] double kinetic_energy(std::size_t body, const Vec3& of_velocity, const Vec3& of_momentum) const {
         using namespace geometry;
         return 0.5 * (mass[body] * dot(of_velocity, of_velocity) +
-                      dot(of_momentum, spin_of(of_momentum, axes[body], inertia[body])));
+                      dot(of_momentum, spin_of(of_momentum, axes[body], inverse_inertia[body])));
     }
     /// Gives a body whose motion is no longer a number a state that can be reported.
     void repair(std::size_t body) {

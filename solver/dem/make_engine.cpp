@@ -7,8 +7,8 @@ namespace grainsweep::dem {
 std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     require_possible(setup);
     require_possible(setup, method);
-    // One line per precision: where an engine joins. The double-precision engine computes clumps.
-    return method.precision == Method::Precision::mixed && setup.shapes.empty()
+    // One line per precision: where an engine joins.
+    return method.precision == Method::Precision::mixed
                ? fast::make_mixed_engine(setup, method.path, method.skin, method.rest_speed, {.most = method.threads})
                : clear::make_clear_engine(setup, method);
 }

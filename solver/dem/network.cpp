@@ -127,7 +127,7 @@ double Network::load_of(const Bond& bond, std::int32_t sphere, double strength, 
     const Vec3 across = std::abs(bond.normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 sideways = cross(bond.normal, across), u = (1 / norm(sideways)) * sideways, v = cross(bond.normal, u);
     const auto mobility = [&](const Vec3& direction) {
-        return body.inverse_mass + added_inverse_mass(cross(arm, direction), body.axes, body.inertia);
+        return body.inverse_mass + added_inverse_mass(cross(arm, direction), body.axes, body.inverse_inertia);
     };
     const double least = *std::ranges::min_element(body.inertia);
     const double trace =

@@ -75,7 +75,8 @@ public:
             carriers_[i] = {static_cast<std::int32_t>(bodies_.size()), lever_of(i)};
             inverse_mass_[i] = inverse_inertia_[i] = 0;
         }
-        bodies_.push_back({1 / mass, inertia, axes, members.empty() ? 0 : static_cast<std::int32_t>(members.front())});
+        bodies_.push_back({1 / mass, inertia, inverse_of(inertia), axes,
+                           members.empty() ? 0 : static_cast<std::int32_t>(members.front())});
     }
     /// Adds the degrees of freedom of a wall; returns the first one's number.
     void add_wall(const std::vector<Freedom>& freedoms);
@@ -104,7 +105,7 @@ private:
     /// Clump: its rotations are about its axes of inertia.
     struct BodyNode {
         double inverse_mass;
-        Vec3 inertia;
+        Vec3 inertia, inverse_inertia;
         Axes axes;
         std::int32_t first;  ///< a member
     };

@@ -209,6 +209,7 @@ void require_possible(const Setup& setup, const Method& method) {
     require(not_negative(method.skin), "the skin must not be negative");
     require(not_negative(method.rest_speed), "the rest speed must not be negative");
     if (method.rest_speed > 0) {
+        require(setup.shapes.empty(), "clumps are always advanced: no rest speed");
         require(is_still(setup.shaking), "powder in a vessel that is shaken never rests: no rest speed");
         require(geometry::norm(setup.gravity) > 0,
                 "a rest speed needs gravity: net forces are compared with the weight");

@@ -35,8 +35,8 @@ using Quaternion = std::array<double, 4>;
 
 /// Returns the quaternion divided by its magnitude, which must not be 0.
 [[nodiscard]] inline Quaternion normalised(const Quaternion& q) {
-    const double n = magnitude(q);
-    return {q[0] / n, q[1] / n, q[2] / n, q[3] / n};
+    const double inverse = 1 / magnitude(q);
+    return {inverse * q[0], inverse * q[1], inverse * q[2], inverse * q[3]};
 }
 
 /// Returns a vector of the body's frame in space.

@@ -60,7 +60,7 @@ void Bodies::kick_and_drift(double span, const Vec3& acceleration, particles::Pa
 void Bodies::kick(double span, const Vec3& acceleration, particles::Particles& spheres) {
     for (std::size_t b = 0; b < size(); ++b) {
         kick_body(b, span / 2, acceleration);
-        spin[b] = spin_of(momentum[b], axes[b], inertia[b]);
+        spin[b] = spin_of(momentum[b], axes[b], inverse_inertia[b]);
         set_velocities(b, spheres);
     }
 }

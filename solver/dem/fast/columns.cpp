@@ -49,6 +49,7 @@ void Columns::bind(Field& f) const {
     f.residuals = residuals.data();
     f.forces = forces.data();
     f.kind = kind.data();
+    f.member = member.data();
     f.row = row.data();
     f.advanced = advanced.data();
     f.advanced_before = advanced_before.data();

@@ -85,6 +85,7 @@ struct Columns : PairColumns {
     Column<Force> forces, forces_next;
     Column<std::int32_t> id, id_next;
     Column<std::uint8_t> kind, kind_next;
+    Column<std::int32_t> member;  ///< where there are clumps, see Field
 
     Column<std::int32_t> row;
     Column<std::int32_t> column[3];

@@ -21,7 +21,8 @@ constexpr double rounding_at_rest = 1e-5;
 
 ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field,
                              const std::int32_t* id, std::span<const Velocities> motions, std::int32_t width,
-                             std::span<const ParkedContact> parked, std::span<const Velocities> before)
+                             std::span<const ParkedContact> parked, std::span<const Velocities> before,
+                             const Clumps* clumps)
     : laws_(laws),
       space_(space),
       field_(field),
@@ -30,6 +31,7 @@ ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, c
       width_(width),
       parked_(parked),
       before_(before),
+      clumps_(clumps),
       beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
       beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
     std::ranges::transform(laws.front()->traits().memory, memory_unit_.begin(),
@@ -47,6 +49,12 @@ double ContactReader::radius(std::int32_t i) const {
 double ContactReader::mass(std::int32_t i) const {
     const double inverse = static_cast<double>(field_.records[i].inverse_mass);
     return inverse > 0 ? space_.scale.mass / inverse : std::numeric_limits<double>::infinity();
+}
+
+double ContactReader::inverse_mass_at(std::int32_t i, const Vec3& normal) const {
+    const std::int32_t body = clumps_ == nullptr ? -1 : clumps_->body_of(field_, i);
+    if (body < 0) return 1 / mass(i);
+    return clumps_->inverse_mass_at(static_cast<std::size_t>(body), clumps_->lever_at(field_, i), normal);
 }
 
 ContactReader::Memory ContactReader::memory(const float* const* column, std::int64_t at) const {
@@ -118,13 +126,13 @@ ContactReader::Memory ContactReader::memory(const ParkedContact& contact) const 
 
 /// Adds the values that depend on the masses.
 void ContactReader::complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
-    t.reduced_mass = 1 / (1 / mass(i) + 1 / mass(j));
+    t.reduced_mass = 1 / (inverse_mass_at(i, t.normal) + inverse_mass_at(j, t.normal));
     t.rolling_inertia =
         inertia_about_contact / (1 / (mass(i) * t.radius_i * t.radius_i) + 1 / (mass(j) * t.radius_j * t.radius_j));
 }
 
 void ContactReader::complete(std::int32_t i, Touch<Partner::wall>& t) const {
-    t.reduced_mass = mass(i);
+    t.reduced_mass = clumps_ == nullptr || clumps_->empty() ? mass(i) : 1 / inverse_mass_at(i, t.normal);
     t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
 }
 
@@ -210,6 +218,12 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
     for (std::int32_t i = 0; i < field_.count; ++i) {
         const double inverse = static_cast<double>(field_.records[i].inverse_mass) / space_.scale.mass;
         into.add_sphere(inverse, radius(i));
+    }
+    for (std::size_t b = 0; clumps_ != nullptr && b < clumps_->size(); ++b) {
+        const auto members = clumps_->members(b);
+        const std::vector<std::uint32_t> places(members.begin(), members.end());
+        into.add_body(clumps_->mass[b], clumps_->inertia[b], clumps_->axes[b], places,
+                      [&](std::uint32_t i) { return clumps_->lever_at(field_, static_cast<std::int32_t>(i)); });
     }
     const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
                           const Memory& memory) {

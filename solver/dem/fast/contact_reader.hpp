@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "solver/dem/engine.hpp"
+#include "solver/dem/fast/clumps.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/walls.hpp"
@@ -35,7 +36,7 @@ public:
     /// energy is needed. `before`: at the half step before; if given, the forces are the forces of the last step.
     ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Velocities> motions, std::int32_t width, std::span<const ParkedContact> parked = {},
-                  std::span<const Velocities> before = {});
+                  std::span<const Velocities> before = {}, const Clumps* clumps = nullptr);
 
     /// Computes overlap, force and torques of a contact of two particles at rest.
     void stand_still(ParkedContact& contact) const;
@@ -59,6 +60,8 @@ private:
     [[nodiscard]] const AnyContact& laws_of(std::int32_t i, std::int32_t j) const;
     [[nodiscard]] double radius(std::int32_t i) const;
     [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite if frozen
+    /// Returns 1/m* of a particle's side of a contact, 1/kg.
+    [[nodiscard]] double inverse_mass_at(std::int32_t i, const Vec3& normal) const;
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
     [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const;
     /// Calls visit(i, j, touch, memory) for touching pairs; only the geometry of the touch is set.
@@ -83,6 +86,7 @@ private:
     std::int32_t width_;
     std::span<const ParkedContact> parked_;
     std::span<const Velocities> before_;
+    const Clumps* clumps_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // m
     Memory memory_unit_{};
 };

@@ -78,6 +78,12 @@ struct ParkedContact {
     float overlap;       ///< divided by the smaller diameter
 };
 
+/// Member of a clump: what its contacts need of the body, in the engine's units.
+struct MemberArm {
+    float lever[3];            ///< from the centre of mass, in space
+    float inverse_inertia[6];  ///< of the body in space: xx, xy, xz, yy, yz, zz; 0: contacts are damped by its mass
+};
+
 /// Constants of a case, in the engine's units.
 struct Constants {
     double unit[3];  ///< length of one position unit
@@ -186,6 +192,11 @@ struct Field {
     std::uint8_t* kind;           ///< of each record
     std::int32_t kinds;           ///< number of kinds
     const double* laws_of_pairs;  ///< rows of constants_at_most: of kind a with kind b in row a*kinds + b
+
+    // Clumps; null if there are none.
+    std::int32_t* member;             ///< number of each record among the members; -1: it is no member
+    const MemberArm* arms;            ///< of each member
+    const std::int32_t* member_body;  ///< likewise
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;

@@ -13,6 +13,10 @@ namespace grainsweep::dem::fast {
 template <class Self, class Archive>
 void MixedEngine::pass(Self& self, Archive& archive) {
     archive.list(self.added_);
+    if (self.clumps_.shapes() > 0) {
+        Clumps::for_each_column(self.clumps_, [&archive](auto& column) { archive.list(column); });
+        archive.list(self.clumps_.fallen);
+    }
     archive.value(self.field_.count);
     archive.value(self.field_.inner_count);
     archive.value(self.field_.outer_count);
@@ -145,7 +149,8 @@ void MixedEngine::require_possible() const {
         const Record& r = c.records[k];
         require(r.radius >= 0.5F * smallest_diameter_ * (1 - rounding) && r.radius <= 0.5F + rounding);
         require(r.inverse_mass >= 0 &&
-                r.inverse_mass <= (1 + rounding) * lightest_ / (8 * r.radius * r.radius * r.radius));
+                (clumps_.shapes() > 0 ||
+                 r.inverse_mass <= (1 + rounding) * lightest_ / (8 * r.radius * r.radius * r.radius)));
     }
 
     // A list is sorted by its first particles; behind the particles two more fill vectors up.
@@ -187,6 +192,17 @@ void MixedEngine::require_possible() const {
                 c.wall_particle[k] / places_per_index < static_cast<Place>(n) + fillers);
 }
 
+/// Finds the members of all clumps, and refuses bodies that no step makes.
+void MixedEngine::restore_clumps() {
+    constexpr auto require = ByteReader::require;
+    require(clumps_.possible() && clumps_.fallen.size() == clumps_.size());
+    clumps_.derive();
+    require(clumps_.map(field_, columns_, static_cast<std::size_t>(ids()), space_.scale));
+    for (std::size_t b = 0; b < clumps_.size(); ++b)
+        for (const std::int32_t i : clumps_.members(b))
+            require(field_.records[i].inverse_mass == static_cast<float>(space_.scale.mass / clumps_.mass[b]));
+}
+
 /// Behind a list's end entries are read ahead and never count; let them lead to something, too.
 void MixedEngine::tidy_spare_entries() {
     const auto tidy = [this](Column<Place>& places, std::int32_t count) {
@@ -224,6 +240,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_lists(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
+    restore_clumps();
     suit_caches();
     tidy_spare_entries();
     place_fillers(field_);

@@ -47,6 +47,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       resolved_(resolved_in_parts_.front()),
       sound_(contacts_differ_ ? deepest_overlaps(setup) : resolved_),
       watch_(setup, space_.scale),
+      clumps_(setup.shapes),
+      acceleration_(setup.gravity),
       resting_(setup, laws_, space_.scale, rest_speed),
       subdomains_(*kernels_, threads),
       threads_(threads),
@@ -109,7 +111,10 @@ void MixedEngine::load(const Setup& setup) {
         lightest_ = std::max(lightest_, static_cast<float>(1 / relative_density(sphere)));
     });
     for (const Sphere& sphere : setup.spheres) kinds_.push_back(table_.kind_of(sphere));
-    append(setup.spheres, 0);
+    announced_.domain = setup.domain;
+    announced_.shapes = setup.shapes;
+    append(setup.spheres, setup.bodies, 0);
+    map_clumps();
 }
 
 /// Changes no bit.
@@ -119,7 +124,7 @@ void MixedEngine::suit_caches() {
 }
 
 /// Behind the particles there are; `id`: of the first.
-void MixedEngine::append(std::span<const Sphere> spheres, std::int32_t id) {
+void MixedEngine::append(std::span<const Sphere> spheres, std::span<const Body> bodies, std::int32_t id) {
     auto i = static_cast<std::size_t>(field_.count);
     const std::size_t n = i + spheres.size();
     columns_.hold_particles(n, walls_.count());
@@ -129,6 +134,9 @@ void MixedEngine::append(std::span<const Sphere> spheres, std::int32_t id) {
     field_.count = static_cast<std::int32_t>(n);
     suit_caches();
     const Scale& s = space_.scale;
+    const std::size_t begin = i;
+    const std::size_t earlier = clumps_.size();
+    clumps_.append(bodies, static_cast<std::size_t>(id));
     for (const Sphere& sphere : spheres) {
         const auto k = static_cast<std::int32_t>(i);
         Record& r = columns_.records[i] = {};
@@ -160,6 +168,10 @@ void MixedEngine::append(std::span<const Sphere> spheres, std::int32_t id) {
         }
         leave_over(field_, k, residual);
     }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (std::size_t k = 0; k < clumps_.shape_of(earlier + b).members.size(); ++k)
+            columns_.records[begin + bodies[b].first + k].inverse_mass =
+                static_cast<float>(s.mass / clumps_.mass[earlier + b]);
     place_fillers(field_);
 }
 

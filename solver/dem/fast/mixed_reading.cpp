@@ -25,6 +25,15 @@ std::vector<std::int32_t> by_id(std::span<const std::int32_t> ids) {
 void MixedEngine::state(State& into) const {
     const auto n = size();
     into.bodies.clear();
+    std::vector<Clumps::Motion> full;
+    for (std::size_t b = 0; b < clumps_.size(); ++b) {
+        full.push_back(clumps_.motion(field_, space_.scale, b, 1, acceleration_));
+        BodyState state = clumps_.state(b);
+        state.velocity = full[b].velocity, state.angular_velocity = full[b].spin;
+        state.angular_momentum = full[b].momentum;
+        into.bodies.push_back(state);
+    }
+    std::ranges::sort(into.bodies, {}, &BodyState::first);
     into.id.resize(n);
     into.position.resize(n), into.velocity.resize(n), into.angular_velocity.resize(n);
     into.radius.resize(n), into.mobile.resize(n);
@@ -51,6 +60,11 @@ void MixedEngine::state(State& into) const {
                 s.speed();
             into.angular_velocity[k][axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / s.time;
         }
+        if (const std::int32_t body = clumps_.body_of(field_, i); body >= 0) {
+            const Clumps::Motion& m = full[static_cast<std::size_t>(body)];
+            into.velocity[k] = geometry::operator+(m.velocity, geometry::cross(m.spin, clumps_.lever_at(field_, i)));
+            into.angular_velocity[k] = m.spin;
+        }
     }
 }
 
@@ -69,6 +83,13 @@ std::vector<Velocities> MixedEngine::motions(double share) const {
             m.spin[axis] = (static_cast<double>(r.spin[a]) + share * half_spin_change(i, a)) / space_.scale.time;
         }
     }
+    for (std::size_t b = 0; b < clumps_.size(); ++b) {
+        const Clumps::Motion m = clumps_.motion(field_, space_.scale, b, share, acceleration_);
+        const auto members = clumps_.members(b);
+        for (std::size_t k = 0; k < members.size(); ++k)
+            all[static_cast<std::size_t>(members[k])] = {
+                geometry::operator+(m.velocity, geometry::cross(m.spin, clumps_.lever_of(b, k))), m.spin};
+    }
     return all;
 }
 
@@ -76,7 +97,7 @@ void MixedEngine::read_contacts(std::span<const Velocities> before, std::vector<
     join_lists();
     const std::vector<Velocities> now = motions();
     const ContactReader reader(laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked(),
-                               before);
+                               before, &clumps_);
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.count(); ++w) reader.wall(walls_, w, into);
@@ -89,12 +110,19 @@ WallLoad MixedEngine::wall_load(std::size_t wall, const Vec3& about) const {
 Moment MixedEngine::moment(std::span<const Velocities> motions) const {
     join_lists();
     const ContactReader reader(laws_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
-    return {field_, space_, columns_.id.data(), motions, reader.stored(walls_), work_.steps};
+    Moment now{field_, space_, columns_.id.data(), motions, reader.stored(walls_), work_.steps, 0, 0};
+    for (std::size_t b = 0; b < clumps_.size(); ++b) {
+        const Clumps::Motion m = clumps_.motion(field_, space_.scale, b, 1, acceleration_);
+        now.of_clumps += clumps_.kinetic_energy(b, m.velocity, m.momentum);
+        now.fallen += clumps_.fallen[b];
+    }
+    return now;
 }
 
 void MixedEngine::set_limits() {
     const std::vector<Velocities> now = motions();
     watch_.set_limit(moment(now), walls_.all());
+    std::ranges::fill(clumps_.fallen, 0.0);
     if (fault_.empty() && field_.count > 0)
         fault_ = walls_.too_fast(0.5 * static_cast<double>(smallest_diameter_) * space_.scale.length, work_.steps);
 }
@@ -103,6 +131,7 @@ void MixedEngine::check_energy() {
     const std::vector<Velocities> now = motions();
     std::int32_t particle = 0;
     const std::string what = watch_.check(moment(now), particle);
+    std::ranges::fill(clumps_.fallen, 0.0);
     if (!what.empty()) fault_ = describe(view(), what, particle);
 }
 

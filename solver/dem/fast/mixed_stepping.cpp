@@ -36,6 +36,7 @@ void MixedEngine::advance(std::int64_t steps, bool one_part) {
             begin_tally();
             walls_.bound_velocities(wall_time(), true, tally_);
             advance_particles();
+            advance_clumps();
         }
         const bool whole = ++part_ == control_.parts();
         if (whole) {
@@ -61,7 +62,8 @@ void MixedEngine::advance(std::int64_t steps, bool one_part) {
         begin_tally();
         walls_.sum_up(ends);
         press_walls(true);
-        sweep_pairs(goes_on, advanced, false);
+        sweep_pairs(goes_on && clumps_.empty(), advanced, false);
+        if (advanced) advance_clumps();
         note_overlaps();
         recent_overlap_ = static_cast<double>(std::max(overlap(), tally_.wall_overlap));
         work_.pair_visits += field_.inner_count;
@@ -79,7 +81,7 @@ void MixedEngine::check_network() {
     const auto gather = [this](bool slides) {
         const std::vector<Velocities> before = slides ? motions(0) : std::vector<Velocities>{};
         const ContactReader reader(laws_, space_, field_, columns_.id.data(), before, kernels_->width,
-                                   resting_.parked(), before);
+                                   resting_.parked(), before, &clumps_);
         reader.network(walls_, wall_time(), slides, network_);
     };
     gather(false);
@@ -163,7 +165,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         join_lists();
         const Parts parts = subdomains_.parts();
         rebuild(field_, columns_, *kernels_, space_, walls_, removed, needs_.resting ? &resting_ : nullptr,
-                drift_.steps, parts);
+                drift_.steps, parts, clumps_.shapes() > 0 ? &clumps_ : nullptr, static_cast<std::size_t>(ids()));
         touches_.reorder(field_, columns_);
         touches_.list(field_, walls_, space_.scale, static_cast<double>(space_.skin), parts);
         parts.run_shares(field_.count, [this](Range range) {  // carried data belong to the old order
@@ -252,23 +254,43 @@ void MixedEngine::press_walls(bool moves) {
 }
 
 void MixedEngine::list_advanced() {
-    if (needs_.skips) columns_.list_advanced(field_, [this](std::int32_t i) { return is_frozen(i) || is_resting(i); });
+    if (needs_.skips)
+        columns_.list_advanced(field_,
+                               [this](std::int32_t i) { return is_frozen(i) || is_resting(i) || is_member(i); });
+}
+
+/// Finds the members of all clumps among the records.
+void MixedEngine::map_clumps() {
+    if (!clumps_.map(field_, columns_, static_cast<std::size_t>(ids()), space_.scale))
+        throw std::logic_error("a clump lacks a member");
+}
+
+/// Steps all clumps by the forces on their members.
+void MixedEngine::advance_clumps() {
+    clumps_.advance(field_, {space_.scale, space_.domain}, gravity_, acceleration_, subdomains_.parts(), tally_);
 }
 
 /// Before the next rebuild no particle moves by more than the skin, and one step more (travel_limit).
 void MixedEngine::list_crossings() {
     crossings_.list(
-        size(), (static_cast<double>(space_.skin) + travel_limit) * space_.scale.length,
-        [this](std::size_t i) { return field_.records[i].inverse_mass > 0; },
-        [this](std::size_t i) { return position_of(field_.records[i], space_.scale); });
+        size() + clumps_.size(), (static_cast<double>(space_.skin) + travel_limit) * space_.scale.length,
+        [this](std::size_t i) {
+            return i >= size() || (field_.records[i].inverse_mass > 0 && !is_member(static_cast<std::int32_t>(i)));
+        },
+        [this](std::size_t i) { return place_to_follow(i); });
+}
+
+/// Of a record, or of a clump, which follow them.
+Vec3 MixedEngine::place_to_follow(std::size_t i) const {
+    return i < size() ? position_of(field_.records[i], space_.scale) : clumps_.position[i - size()];
 }
 
 void MixedEngine::follow_crossings() {
     const double parts = static_cast<double>(control_.parts());
     crossings_.follow(
         static_cast<double>(work_.steps) + static_cast<double>(part_) / parts, 1 / parts,
-        [this](std::size_t i) { return columns_.id[i]; },
-        [this](std::size_t i) { return position_of(field_.records[i], space_.scale); });
+        [this](std::size_t i) { return i < size() ? columns_.id[i] : clumps_.first[i - size()]; },
+        [this](std::size_t i) { return place_to_follow(i); });
 }
 
 /// Adds the displacement of the step just made.
@@ -312,18 +334,19 @@ void MixedEngine::shake() {
     const Vec3 b = shaking_acceleration(shaking_, space_.scale.time, work_.steps * control_.parts() + part_);
     for (std::size_t a = 0; a < 3; ++a)
         field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], space_.scale);
+    for (std::size_t a = 0; a < 3; ++a) acceleration_[a] = gravity_[a] + b[a];
 }
 
 /// Change of velocity over half a step by the forces at hand, engine's units.
 double MixedEngine::half_change(std::int32_t i, int a) const {
     const Record& r = field_.records[i];
-    if (!(r.inverse_mass > 0) || is_resting(i)) return 0;
+    if (!(r.inverse_mass > 0) || is_resting(i) || is_member(i)) return 0;
     return 0.5 * (static_cast<double>(field_.forces[i].force[a]) * static_cast<double>(r.inverse_mass) +
                   static_cast<double>(field_.constants.gravity[a]));
 }
 
 double MixedEngine::half_spin_change(std::int32_t i, int a) const {
-    if (is_resting(i)) return 0;
+    if (is_resting(i) || is_member(i)) return 0;
     const Record& r = field_.records[i];
     const double inertia = 0.4 * static_cast<double>(r.radius) * static_cast<double>(r.radius);
     return 0.5 * static_cast<double>(field_.forces[i].torque[a]) * static_cast<double>(r.inverse_mass) / inertia;
@@ -331,6 +354,8 @@ double MixedEngine::half_spin_change(std::int32_t i, int a) const {
 
 /// Moves the stored half-step velocities to the full step, and clears the forces.
 void MixedEngine::full_step_velocities() {
+    clumps_.gather(field_, space_.scale);
+    clumps_.shift(0.5, space_.scale.time, acceleration_);
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
         Residual residual = residual_of(field_, i);
@@ -344,6 +369,7 @@ void MixedEngine::full_step_velocities() {
         field_.forces[i] = Force{};
         leave_over(field_, i, residual);
     }
+    clumps_.write_motions(field_, space_.scale);
     walls_.kick(wall_time(), -0.5);  // they are half a step ahead of the forces
 }
 
@@ -372,6 +398,9 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
         }
         leave_over(field_, i, residual);
     }
+    clumps_.gather(field_, space_.scale);
+    clumps_.shift(-0.5, space_.scale.time, acceleration_);
+    clumps_.write_motions(field_, space_.scale);
     walls_.kick(wall_time(), 0.5);
     if (beyond(sound_)) fault_ = describe_overlap(view(), tally_);
     if (suspicious() && fault_.empty()) fault_ = unsound_contact(view(), false);
@@ -402,8 +431,8 @@ void MixedEngine::change_walls(std::vector<Wall> walls) {
 }
 
 void MixedEngine::add(std::span<const Sphere> spheres, std::span<const Body> bodies) {
-    if (!bodies.empty()) throw std::invalid_argument("a clump is of a shape that there is not");
     require_announced(to_come_, spheres, static_cast<std::size_t>(ids()));
+    dem::require_possible(bodies, announced_, spheres);
     if (spheres.empty() || !fault_.empty()) return;
     join_lists();
     full_step_velocities();
@@ -413,11 +442,12 @@ void MixedEngine::add(std::span<const Sphere> spheres, std::span<const Body> bod
     for (std::int32_t k = 0; k < wall_contacts(field_); ++k)
         if (Place& place = field_.wall_particle[k]; index_at(place) >= before)
             place = place_at(index_at(place) + added);
-    append(spheres, ids());
+    append(spheres, bodies, ids());
     for (std::int32_t i = before; i < field_.count; ++i) {
         watch_.begin(field_.records[i]);
         added_.push_back(columns_.kind[static_cast<std::size_t>(i)]);
     }
+    map_clumps();
     resting_.advance_also(spheres.size());
     restart_forces();
     set_limits();

@@ -21,6 +21,7 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/checkpoint.hpp"
+#include "solver/dem/fast/clumps.hpp"
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/contact_reader.hpp"
 #include "solver/dem/fast/faults.hpp"
@@ -93,7 +94,10 @@ private:
     void take_parts();
     void use_parts();
     void check_network();
-    void append(std::span<const Sphere> spheres, std::int32_t id);
+    void append(std::span<const Sphere> spheres, std::span<const Body> bodies, std::int32_t id);
+    void map_clumps();
+    void advance_clumps();
+    void restore_clumps();
     void suit_caches();
     [[nodiscard]] float single_radius(const Sphere& sphere) const;
     [[nodiscard]] double relative_density(const Sphere& sphere) const;
@@ -111,6 +115,7 @@ private:
     void list_advanced();
     void list_crossings();
     void follow_crossings();
+    [[nodiscard]] Vec3 place_to_follow(std::size_t i) const;
     void use_wanted_subdomains();
     void advance_particles();
     void sweep_pairs(bool goes_on, bool advance, bool keep_histories);
@@ -131,6 +136,9 @@ private:
     /// Returns the number of ids given so far.
     [[nodiscard]] std::int32_t ids() const { return spheres_at_start_ + static_cast<std::int32_t>(added_.size()); }
     [[nodiscard]] bool is_frozen(std::int32_t particle) const { return !(field_.records[particle].inverse_mass > 0); }
+    [[nodiscard]] bool is_member(std::int32_t particle) const {
+        return field_.member != nullptr && field_.member[particle] >= 0;
+    }
     [[nodiscard]] bool is_resting(std::int32_t particle) const {
         return needs_.resting && resting_.holds(particle) && !is_frozen(particle);
     }
@@ -178,6 +186,9 @@ private:
     bool box_includes_rest_ = true;  ///< displacements are also relative to a body at rest or a face
 
     Watch watch_;
+    Clumps clumps_;
+    Vec3 acceleration_;  ///< of gravity and shaking at the present step, m/s2
+    Setup announced_;    ///< shapes and domain, by which clumps that are added are judged
     Columns columns_;
     Resting resting_;
     Subdomains subdomains_;

@@ -1,5 +1,6 @@
 #include "solver/dem/fast/rebuild.hpp"
 
+#include "solver/dem/fast/clumps.hpp"
 #include "solver/dem/fast/parts.hpp"
 #include "solver/dem/fast/resting.hpp"
 #include "solver/dem/fast/wall_lists.hpp"
@@ -8,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 
 namespace grainsweep::dem::fast {
@@ -147,7 +149,8 @@ std::int32_t take_out(const Field& f, Columns& c, const ListSpace& space, std::s
         std::int32_t stay = 0;
         for (std::int32_t i = range.begin; i < range.end; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            const bool leaves = !faces.contain(f.records[i]) ||
+            const bool member = f.member != nullptr && f.member[i] >= 0;  // leaves with its body, which is in `ids`
+            const bool leaves = (!member && !faces.contain(f.records[i])) ||
                                 (!gone.empty() && std::binary_search(gone.begin(), gone.end(), c.id[k]));
             c.place[k] = leaves ? -1 : 0;
             stay += leaves ? 0 : 1;
@@ -295,6 +298,24 @@ void find_pairs_together(Field& f, Columns& c, const Kernels& kernels, float ski
     });
 }
 
+/// Removes the pairs of members of one body from the outer list.
+void leave_out_own_pairs(Field& f) {
+    const auto body_of = [&](std::int32_t i) { return f.member[i] < 0 ? -1 : f.member_body[f.member[i]]; };
+    std::int32_t to = 0;
+    for (std::int32_t i = 0; i < f.count; ++i) {
+        const std::int32_t begin = f.row[i], end = f.row[i + 1], body = body_of(i);
+        f.row[i] = to;
+        for (std::int32_t k = begin; k < end; ++k) {
+            if (body >= 0 && body_of(index_of(f.outer_second[k])) == body) continue;
+            f.outer_first[to] = f.outer_first[k];
+            f.outer_second[to] = f.outer_second[k];
+            f.outer_reach[to] = f.outer_reach[k];
+            ++to;
+        }
+    }
+    f.row[f.count] = f.outer_count = to;
+}
+
 void find_pairs(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Parts& parts) {
     const float skin = space.skin + f.constants.beyond;
     if (parts.count() == 1)
@@ -302,6 +323,7 @@ void find_pairs(Field& f, Columns& c, const Kernels& kernels, const ListSpace& s
     else
         find_pairs_together(f, c, kernels, skin, parts);
     f.row[f.count] = f.outer_count;
+    if (f.member != nullptr) leave_out_own_pairs(f);
     pad_pairs(f, c);
 }
 
@@ -425,11 +447,16 @@ void refresh(Field& f, PairColumns& c, const Kernels& kernels, float skin, bool 
 }
 
 void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Walls& walls,
-             std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps, const Parts& parts) {
+             std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps, const Parts& parts,
+             Clumps* clumps, std::size_t ids_so_far) {
     if (resting != nullptr) resting->compare_forces(f, steps);
-    const std::int32_t kept = take_out(f, c, space, ids, parts);
+    std::vector<std::int32_t> removed(ids.begin(), ids.end());
+    if (clumps != nullptr) clumps->take_out({space.domain.low, space.domain.high, space.domain.periodic}, removed);
+    const std::int32_t kept = take_out(f, c, space, removed, parts);
     sort_particles(f, c, space, kept, parts);
     place_fillers(f);
+    if (clumps != nullptr && !clumps->map(f, c, ids_so_far, space.scale))
+        throw std::logic_error("a clump lacks a member");
     find_pairs(f, c, kernels, space, parts);
     const std::int32_t contacts = find_owners(f, c, kernels, parts);
     if (resting != nullptr) update_resting(f, c, space, *resting, contacts);

@@ -185,10 +185,14 @@ void Subdomains::place_copies(Field& whole, Columns& columns) {
     }
     columns.records.hold(next + spare);
     columns.kind.hold(next + spare);
+    if (columns.member.capacity() > 0) columns.member.hold(next + spare);
     columns.forces.hold(next + spare);
     columns.bind(whole);
     for (const auto& subdomain : subdomains_)
-        for (std::int32_t k = 0; k < 2; ++k) whole.records[subdomain->filler + k] = whole.records[whole.filler + k];
+        for (std::int32_t k = 0; k < 2; ++k) {
+            whole.records[subdomain->filler + k] = whole.records[whole.filler + k];
+            if (whole.member != nullptr) whole.member[subdomain->filler + k] = -1;
+        }
 }
 
 /// The outer list of a subdomain, which of its pairs touch, and their histories.

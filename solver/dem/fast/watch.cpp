@@ -12,6 +12,15 @@ namespace grainsweep::dem::fast {
 
 using namespace geometry;
 
+namespace {
+
+/// Whether a record moves with a clump.
+bool is_member(const Field& field, std::int32_t i) {
+    return field.member != nullptr && field.member[i] >= 0;
+}
+
+}  // namespace
+
 Watch::Watch(const Setup& setup, const Scale& scale)
     : gravity_(setup.gravity),
       domain_(setup.domain),
@@ -27,10 +36,10 @@ Watch::Watch(const Setup& setup, const Scale& scale)
 
 double Watch::kinetic(const Moment& now) const {
     const Scale& s = now.space.scale;
-    double energy = 0;
+    double energy = now.of_clumps;
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
-        if (!(r.inverse_mass > 0)) continue;
+        if (!(r.inverse_mass > 0) || is_member(now.field, i)) continue;
         const Velocities& m = now.motions[static_cast<std::size_t>(i)];
         const double mass = s.mass / static_cast<double>(r.inverse_mass);
         const double radius = static_cast<double>(r.radius) * s.length;
@@ -42,11 +51,11 @@ double Watch::kinetic(const Moment& now) const {
 /// Adds the work of gravity since the last check.
 void Watch::add_gravity_work(const Moment& now) {
     const Scale& s = now.space.scale;
-    double work = 0;
+    double work = now.fallen;
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
         Place3& seen = seen_[static_cast<std::size_t>(now.id[i])];
-        if (r.inverse_mass > 0) {
+        if (r.inverse_mass > 0 && !is_member(now.field, i)) {
             Vec3 moved{};
             for (std::size_t a = 0; a < 3; ++a)
                 moved[a] = static_cast<std::int32_t>(static_cast<std::uint32_t>(r.position[a]) -

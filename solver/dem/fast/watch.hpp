@@ -35,6 +35,8 @@ struct Moment {
     std::span<const Velocities> motions;  ///< in the order of the records
     StoredEnergy stored;
     std::int64_t steps = 0;  ///< so far
+    double of_clumps = 0;    ///< kinetic energy of clumps, J
+    double fallen = 0;       ///< work of gravity on clumps since the last check, J
 };
 
 class Watch {

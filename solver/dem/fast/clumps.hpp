@@ -1,0 +1,97 @@
+// Clumps of the mixed engine: states of bodies in SI and double precision; members are records like others.
+//
+// A sweep adds the forces on the members and does not advance them. After it, every body sums its members' forces in
+// the order of its shape, steps, and writes places, velocities and spins of its members: positions exact to a unit,
+// with the rest as residual. Bodies do not depend on each other, so no bit depends on the number of threads.
+#pragma once
+
+#include "solver/dem/body_columns.hpp"
+#include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/layout.hpp"
+#include "solver/dem/fast/parts.hpp"
+#include "solver/dem/fast/scale.hpp"
+#include "solver/dem/reading.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace grainsweep::dem::fast {
+
+/// Space in which members are placed.
+struct MemberSpace {
+    const Scale& scale;
+    const Domain& domain;
+};
+
+class Clumps : public BodyColumns {
+public:
+    using BodyColumns::BodyColumns;
+
+    std::vector<double> fallen;  ///< by body: work of gravity since it was last taken, J
+
+    /// Appends bodies whose `first` counts from this id.
+    void append(std::span<const Body> bodies, std::size_t id);
+    /// Finds the members among the records by their ids, all below `ids`, and writes their numbers to the columns.
+    /// Returns whether all are there.
+    [[nodiscard]] bool map(Field& field, Columns& columns, std::size_t ids, const Scale& scale);
+    /// Removes the bodies of which members are among the removed spheres, or whose centres are beyond an open face.
+    /// Appends the ids of all their members to `removed`. Moves centres by periods into the domain.
+    void take_out(const geometry::Domain& domain, std::vector<std::int32_t>& removed);
+
+    /// Returns the members of a body, as places in the records, in the order of its shape.
+    [[nodiscard]] std::span<const std::int32_t> members(std::size_t body) const {
+        return std::span(record_).subspan(static_cast<std::size_t>(begin_[body]),
+                                          static_cast<std::size_t>(begin_[body + 1] - begin_[body]));
+    }
+    /// Returns the body of a record; -1: it is none's.
+    [[nodiscard]] std::int32_t body_of(const Field& field, std::int32_t record) const {
+        return field.member == nullptr || field.member[record] < 0
+                   ? -1
+                   : body_[static_cast<std::size_t>(field.member[record])];
+    }
+    [[nodiscard]] Vec3 lever_at(const Field& field, std::int32_t record) const {
+        return lever_[static_cast<std::size_t>(field.member[record])];
+    }
+
+    /// Sums forces and torques of the members of all bodies.
+    void gather(const Field& field, const Scale& scale);
+    /// Steps all bodies by the forces on their members, which are cleared. Adds the extremes of the members' motions to
+    /// the tally.
+    void advance(Field& field, const MemberSpace& space, const Vec3& gravity, const Vec3& acceleration,
+                 const Parts& parts, Tally& tally);
+    /// Changes velocities by a share of a step's change, after gather(); spins follow.
+    void shift(double share, double step, const Vec3& acceleration);
+    /// Writes velocities and spins of all members.
+    void write_motions(Field& field, const Scale& scale) const;
+
+    /// Returns the motion of a member's body at the half step before (share 0) up to the full step (1).
+    struct Motion {
+        Vec3 velocity{}, momentum{}, spin{};
+    };
+    [[nodiscard]] Motion motion(const Field& field, const Scale& scale, std::size_t body, double share,
+                                const Vec3& acceleration) const;
+
+private:
+    /// Factors between SI and the units of the engine.
+    struct Units {
+        double length, time, inverse_length, inverse_speed, force, inertia;
+        Vec3 centre, inverse_unit;
+        std::array<bool, 3> periodic;
+        Units(const Scale& scale, const Domain& domain);
+    };
+
+    void step(Field& field, const Units& units, const Vec3& gravity, const Vec3& acceleration, std::size_t body,
+              Tally& tally);
+    void set_arms(std::size_t body, const Units& units);
+    void write_motion(Field& field, const Units& units, std::size_t body, std::size_t slot) const;
+    [[nodiscard]] std::pair<Vec3, Vec3> sums(const Field& field, double force_unit, double length,
+                                             std::size_t body) const;
+
+    std::vector<std::int32_t> begin_, record_, body_;  ///< of bodies; of members: their record, their body
+    std::vector<Vec3> place_, lever_;                  ///< of members: in the body, m; from its centre in space, m
+    std::vector<MemberArm> arms_;                      ///< of members
+    std::vector<Tally> tallies_;
+};
+
+}  // namespace grainsweep::dem::fast
