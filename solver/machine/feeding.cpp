@@ -1,75 +1,19 @@
 #include "solver/machine/feeding.hpp"
 
+#include "solver/machine/neighbourhood.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <stdexcept>
 
 namespace grainsweep::machine {
 namespace {
 
-using geometry::norm;
-
 constexpr std::uint64_t tries = 1000;  // of one particle in a batch
 constexpr std::uint64_t tries_of_empty = 100000, series_of_empty = ~std::uint64_t{0};
-
-/// Spheres by cells of a width, to find those near a place.
-class Neighbourhood {
-public:
-    Neighbourhood(const geometry::Domain& domain, double width) : domain_(domain), width_(width) {}
-
-    void add(const Vec3& centre, double radius) { cells_[cell_of(centre)].push_back({centre, radius}); }
-    /// Whether a sphere there would overlap one of them.
-    [[nodiscard]] bool occupied(const Vec3& centre, double radius) const {
-        for (int image = 0; image < 27; ++image) {
-            const Vec3 place = image_of(centre, image);
-            if (image != 13 && place == centre) continue;  // no such image
-            if (overlaps(place, radius)) return true;
-        }
-        return false;
-    }
-
-private:
-    using Cell = std::array<std::int64_t, 3>;
-    struct Ball {
-        Vec3 centre;
-        double radius;
-    };
-
-    [[nodiscard]] Cell cell_of(const Vec3& x) const {
-        Cell cell{};
-        for (std::size_t k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(x[k] / width_));
-        return cell;
-    }
-    [[nodiscard]] Vec3 image_of(const Vec3& x, int image) const {
-        const std::array<int, 3> shift = {image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-        Vec3 moved = x;
-        for (std::size_t k = 0; k < 3; ++k)
-            if (domain_.periodic[k]) moved[k] += shift[k] * domain_.length(k);
-        return moved;
-    }
-    [[nodiscard]] bool overlaps(const Vec3& centre, double radius) const {
-        const Cell middle = cell_of(centre);
-        for (std::int64_t x = -1; x <= 1; ++x)
-            for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t z = -1; z <= 1; ++z) {
-                    const auto found = cells_.find({middle[0] + x, middle[1] + y, middle[2] + z});
-                    if (found == cells_.end()) continue;
-                    for (const Ball& ball : found->second)
-                        if (norm(geometry::operator-(ball.centre, centre)) < ball.radius + radius) return true;
-                }
-        return false;
-    }
-
-    const geometry::Domain& domain_;
-    double width_;
-    std::map<Cell, std::vector<Ball>> cells_;
-};
 
 }  // namespace
 
@@ -91,10 +35,7 @@ Vec3 Feeder::place(const Draws& draws, std::uint64_t series, std::uint64_t n) co
 
 bool Feeder::fits(const Obstacles& obstacles, const Vec3& centre, double radius) const {
     if (feed().through.depth(centre) < radius) return false;
-    for (std::size_t k = 0; k < 3; ++k)
-        if (!spec_.domain.periodic[k] && (centre[k] < spec_.domain.low[k] || centre[k] > spec_.domain.high[k]))
-            return false;
-    return !obstacles.touch(centre, radius);
+    return !spec_.domain.outside(centre) && !obstacles.touch(centre, radius);
 }
 
 void Feeder::require_room() const {
@@ -127,19 +68,24 @@ Filled Feeder::batch(const dem::State& state, const std::vector<dem::Wall>& wall
     while (fed_ < owed_) {
         const auto particle = draws.of_feed(number_);
         const Species& species = spec_.species[particle.species];
-        const double reach = particle.radius * species.girth();  // of the sphere around it
+        const auto orientation = draws.orientation(particle.species, number_);
         std::optional<Vec3> place;
         for (std::uint64_t n = 0; n < tries && !place; ++n) {
             const Vec3 x = this->place(draws, number_, n);
-            if (fits(obstacles, x, reach) && !near.occupied(x, reach)) place = x;
+            if (species.shape && spec_.domain.outside(x)) continue;
+            const auto balls = balls_of(spec_, particle, x, orientation);
+            if (std::ranges::all_of(balls, [&](const geometry::Ball& ball) {
+                    return fits(obstacles, ball.centre, ball.radius) && !near.occupied(ball.centre, ball.radius);
+                }))
+                place = x;
         }
         if (!place) break;  // it waits, and so do those behind it
         dem::Sphere sphere;
         sphere.position = *place;
         sphere.radius = particle.radius;
         sphere.velocity = feed().velocity;
-        near.add(*place, reach);
-        added.add(spec_, particle.species, sphere, draws.orientation(particle.species, number_));
+        for (const auto& ball : balls_of(spec_, particle, *place, orientation)) near.add(ball.centre, ball.radius);
+        added.add(spec_, particle.species, sphere, orientation);
         fed_ += species.density(spec_.densities) * particles::sphere_volume(2 * particle.radius);
         ++number_;
     }

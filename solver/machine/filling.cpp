@@ -40,9 +40,7 @@ public:
         const auto particles = draws.in_numbers(fill.count);
         const double largest = widest_in(spec_, fill.mix);
         const Obstacles obstacles(walls_in(spec_, 0, {{0.0}, {}}), spec_.domain, largest, 0);
-        auto wide = particles;
-        for (auto& particle : wide) particle.radius *= spec_.species[particle.species].girth();
-        const auto centres = places_of(spec_, fill, draws, wide, obstacles);
+        const auto centres = places_of(spec_, fill, draws, particles, obstacles);
         for (std::size_t n = 0; n < particles.size(); ++n) {
             dem::Sphere sphere;
             sphere.position = centres[n];
@@ -182,6 +180,19 @@ Draws::Draws(const Spec& spec, const Mix& mix, std::uint64_t seed, std::uint64_t
 
 double Draws::uniform(std::uint64_t purpose, std::uint64_t counter) const {
     return stats::to_unit(stats::bits_at(seed_, number_ * draws_of_one + purpose, counter));
+}
+
+std::vector<geometry::Ball> balls_of(const Spec& spec, const Draws::Particle& particle, const Vec3& centre,
+                                     const geometry::Quaternion& orientation) {
+    using namespace geometry;
+    const Species& species = spec.species[particle.species];
+    if (!species.shape) return {{centre, particle.radius}};
+    const auto turn = product(orientation, species.shape->turn);
+    const double diameter = 2 * particle.radius;
+    std::vector<Ball> balls;
+    for (const Ball& ball : species.shape->balls)
+        balls.push_back({centre + diameter * turned(turn, ball.centre), diameter * ball.radius});
+    return balls;
 }
 
 geometry::Quaternion Draws::orientation(std::size_t species, std::uint64_t n) const {

@@ -59,6 +59,10 @@ private:
     std::uint64_t seed_, number_;
 };
 
+/// Returns the spheres of a particle at a place: one, or the members of a clump with this orientation.
+[[nodiscard]] std::vector<geometry::Ball> balls_of(const Spec& spec, const Draws::Particle& particle,
+                                                   const Vec3& centre, const geometry::Quaternion& orientation);
+
 /// Purposes of Draws::uniform().
 enum : std::uint64_t { size_draw = 0, species_draw, place_draw, velocity_draw, order_draw, draws_of_one };
 /// Stream of the first feed; fillings have the streams before it.

@@ -1,11 +1,13 @@
 // Places of a filling's particles.
 #include "solver/machine/placing.hpp"
 
+#include "solver/machine/neighbourhood.hpp"
 #include "solver/machine/setup.hpp"
 
 #include "solver/particles/packing.hpp"
 #include "solver/particles/random_addition.hpp"
 #include "solver/scenes/kit/sentence.hpp"
+#include "stats/random.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,6 +27,7 @@ constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
 constexpr double most_sites = 2e8;
 constexpr double rain_layer = 1.05, rain_cover = 0.25;                    // largest diameters, share of the area
 constexpr double packed_fraction = 0.62, least_edge = 6, most_edge = 16;  // diameters
+constexpr std::uint64_t tries_by_members = 20000;                         // of one clump
 constexpr std::int64_t most_tried = 20000;  // particles whose places are sought before a case runs
 constexpr double rounding = 1e-9;           // of a radius: a layer one diameter thick holds spheres
 
@@ -160,6 +163,44 @@ std::vector<Vec3> at_random(const Spec& spec, const Fill& fill, const Draws& dra
     return *centres;
 }
 
+/// Clumps at random places, one after the other, without overlap of their members. Each keeps its orientation: it is
+/// the place that is drawn again.
+std::vector<Vec3> at_random_by_members(const Spec& spec, const Fill& fill, const Draws& draws,
+                                       const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
+    const Bounds bounds = bounds_in(spec, fill.in);
+    Neighbourhood near(spec.domain, widest_in(spec, fill.mix));
+    std::vector<Vec3> centres;
+    for (std::uint64_t n = 0; n < particles.size(); ++n) {
+        const auto orientation = draws.orientation(particles[n].species, n);
+        std::vector<geometry::Ball> balls;
+        const auto lies_free = [&](const geometry::Ball& ball) {
+            return fill.in.depth(ball.centre) >= ball.radius * (1 - rounding) &&
+                   !near.occupied(ball.centre, ball.radius) && !obstacles.touch(ball.centre, ball.radius);
+        };
+        const auto place = [&](std::uint64_t attempt) {
+            Vec3 x{};
+            for (std::size_t k = 0; k < 3; ++k)
+                x[k] = bounds.low[k] + (bounds.high[k] - bounds.low[k]) *
+                                           draws.uniform(place_draw, stats::splitmix64(n) + 3 * attempt + k);
+            return x;
+        };
+        std::uint64_t attempt = 0;
+        for (; attempt < tries_by_members; ++attempt) {
+            const Vec3 x = place(attempt);
+            balls = balls_of(spec, particles[n], x, orientation);
+            if (!spec.domain.outside(x) && std::ranges::all_of(balls, lies_free)) break;
+        }
+        require(attempt < tries_by_members,
+                name_of(spec, fill.mix) +
+                    sentence(": %.0f of %.0f particles find a place at random without overlap: make the region larger, "
+                             "or the number smaller",
+                             static_cast<double>(n), static_cast<double>(particles.size())));
+        centres.push_back(place(attempt));
+        for (const auto& ball : balls) near.add(ball.centre, ball.radius);
+    }
+    return centres;
+}
+
 /// As many of the next particles as cover a share of the layer; fewer where the region is narrower there.
 std::vector<Vec3> layer_of(const particles::Room& room, const std::vector<Draws::Particle>& particles, std::size_t next,
                            std::uint64_t seed) {
@@ -244,7 +285,12 @@ std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws,
 }  // namespace
 
 std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& draws,
-                            const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
+                            const std::vector<Draws::Particle>& given, const Obstacles& obstacles) {
+    const bool shaped =
+        std::ranges::any_of(fill.mix, [&](const auto& part) { return spec.species[part.first].shape.has_value(); });
+    if (shaped && fill.as == Fill::As::random) return at_random_by_members(spec, fill, draws, given, obstacles);
+    auto particles = given;  // the spheres around them
+    for (auto& particle : particles) particle.radius *= spec.species[particle.species].girth();
     switch (fill.as) {
         case Fill::As::random:
             return at_random(spec, fill, draws, particles, obstacles);

@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -137,8 +136,6 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string&
     spec.method.precision = std::get<std::string>(inputs.find("precision")->second) == "double"
                                 ? dem::Method::Precision::double_precision
                                 : dem::Method::Precision::mixed;
-    if (std::ranges::any_of(spec.species, [](const machine::Species& s) { return s.shape.has_value(); }))
-        spec.method.precision = dem::Method::Precision::double_precision;
     spec.time_step = input_number(inputs, "time_step");
     const double longest = machine::time_step_of(spec, 1, machine::fastest_of(spec));
     if (spec.time_step > longest)

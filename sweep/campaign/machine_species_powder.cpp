@@ -76,6 +76,7 @@ Json with_powders(Json document, const std::string& root, const FileReader& read
             for (const auto& [key, value] : powder.document->at("material").items())
                 if (key != notes_key) fill(document["materials"][material.get<std::string>()], key, value);
         if (const auto unit = powder.unit()) fill(into, "diameter", *unit);
+        if (powder.document->contains("shape")) fill(into, "shape", powder.document->at("shape"));
         if (powder.sizes && !into.contains("sizes")) {
             into["sizes"] = {{"spread", "file"}, {"file", powder.sizes_name()}};
             made[powder.sizes_name()] = powder.sizes->csv;

@@ -169,6 +169,7 @@ PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
     });
     const bool takes_files = space.scene->find_parameter("size_file") != nullptr &&
                              space.scene->find_parameter("size_distribution") != nullptr;
+    if (powder.document->contains("shape")) use.unused.emplace_back("shape");
     if (powder.sizes && !takes_files) use.unused.emplace_back("sizes beside their d50");
     if (powder.sizes && takes_files) {
         const auto& sizes = *powder.sizes;

@@ -156,7 +156,7 @@ TEST(MachineClumps, LeaveTheDomainAsAWhole) {
 std::string why_refused(const json& machine, const FileTexts& files = {}) {
     try {
         (void)spec_of(machine, {}, files);
-    } catch (const InputError& why) {
+    } catch (const campaign::InputError& why) {
         return why.what();
     } catch (const std::exception& why) {
         return why.what();
