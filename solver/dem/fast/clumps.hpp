@@ -18,12 +18,6 @@
 
 namespace grainsweep::dem::fast {
 
-/// Space in which members are placed.
-struct MemberSpace {
-    const Scale& scale;
-    const Domain& domain;
-};
-
 class Clumps : public BodyColumns {
 public:
     using BodyColumns::BodyColumns;
@@ -35,6 +29,8 @@ public:
     /// Finds the members among the records by their ids, all below `ids`, and writes their numbers to the columns.
     /// Returns whether all are there.
     [[nodiscard]] bool map(Field& field, Columns& columns, std::size_t ids, const Scale& scale);
+    /// Sorts the bodies by the records of their first members, so that neighbours in space are neighbours in memory.
+    void sort(const Field& field, const Columns& columns, std::size_t ids);
     /// Removes the bodies of which members are among the removed spheres, or whose centres are beyond an open face.
     /// Appends the ids of all their members to `removed`. Moves centres by periods into the domain.
     void take_out(const geometry::Domain& domain, std::vector<std::int32_t>& removed);
@@ -58,8 +54,8 @@ public:
     void gather(const Field& field, const Scale& scale);
     /// Steps all bodies by the forces on their members, which are cleared. Adds the extremes of the members' motions to
     /// the tally.
-    void advance(Field& field, const MemberSpace& space, const Vec3& gravity, const Vec3& acceleration,
-                 const Parts& parts, Tally& tally);
+    void advance(Field& field, const Kernels& kernels, const Scale& scale, const Vec3& gravity,
+                 const Vec3& acceleration, const Parts& parts, Tally& tally);
     /// Changes velocities by a share of a step's change, after gather(); spins follow.
     void shift(double share, double step, const Vec3& acceleration);
     /// Writes velocities and spins of all members.
@@ -77,12 +73,13 @@ private:
     struct Units {
         double length, time, inverse_length, inverse_speed, force, inertia;
         Vec3 centre, inverse_unit;
-        std::array<bool, 3> periodic;
-        Units(const Scale& scale, const Domain& domain);
+        explicit Units(const Scale& scale);
     };
 
-    void step(Field& field, const Units& units, const Vec3& gravity, const Vec3& acceleration, std::size_t body,
-              Tally& tally);
+    void step(Field& field, const Kernels& kernels, const Units& units, const Vec3& gravity, const Vec3& acceleration,
+              Range bodies, Tally& tally);
+    void fetch(const Field& field, std::int32_t body) const;
+    void place_members(Field& field, const Units& units, const Vec3& moved, std::size_t body, Tally& tally);
     void set_arms(std::size_t body, const Units& units);
     void write_motion(Field& field, const Units& units, std::size_t body, std::size_t slot) const;
     [[nodiscard]] std::pair<Vec3, Vec3> sums(const Field& field, double force_unit, double length,

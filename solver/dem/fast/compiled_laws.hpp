@@ -2,6 +2,7 @@
 // The files of the instruction paths include this file; it has internal linkage on purpose.
 #pragma once
 
+#include "solver/dem/fast/clump_lanes.hpp"
 #include "solver/dem/fast/search.hpp"
 #include "solver/dem/fast/sweep.hpp"
 #include "solver/dem/fast/wall_contacts.hpp"
@@ -11,8 +12,8 @@ namespace grainsweep::dem::fast {
 namespace {
 
 template <class K, bool several = false>
-constexpr Kernels compiled{width,         sweep<K, several>, advance<K>,         walls<K>,
-                           mark_touching, find_pieces,       search<K::unequal>, refresh<K::unequal>};
+constexpr Kernels compiled{width,       sweep<K, several>,  advance<K>,          walls<K>,   mark_touching,
+                           find_pieces, search<K::unequal>, refresh<K::unequal>, turn_clumps};
 template <class K>
 GRAINSWEEP_LANES const Kernels& holding(const Needs& n) {
     return n.several ? compiled<K, true> : compiled<K>;

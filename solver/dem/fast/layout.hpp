@@ -84,6 +84,15 @@ struct MemberArm {
     float inverse_inertia[6];  ///< of the body in space: xx, xy, xz, yy, yz, zz; 0: contacts are damped by its mass
 };
 
+/// Rotations of several clumps, SI.
+struct alignas(64) TurningClumps {
+    static constexpr int lanes = 8;
+    double momentum[3][lanes], inverse[3][lanes];  ///< angular momentum; of the principal moments
+    double orientation[4][lanes];                  ///< quaternions; before, and after the step
+    double spin[3][lanes];                         ///< out: of the middle of the step
+    double axes[3][3][lanes];                      ///< out: axes of inertia, after the step
+};
+
 /// Constants of a case, in the engine's units.
 struct Constants {
     double unit[3];  ///< length of one position unit
@@ -268,6 +277,8 @@ struct Kernels {
     std::int64_t (*search)(const Field&, float skin);
     /// Makes the inner list from the outer list: pairs with a gap below `skin`, or touching. Returns the padded count.
     std::int32_t (*refresh)(const Field&, float skin);
+    /// Turns clumps for a time, s.
+    void (*turn)(TurningClumps&, double span);
 };
 
 /// Needs of a case, which select the compiled sweep.

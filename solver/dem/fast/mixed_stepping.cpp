@@ -267,7 +267,7 @@ void MixedEngine::map_clumps() {
 
 /// Steps all clumps by the forces on their members.
 void MixedEngine::advance_clumps() {
-    clumps_.advance(field_, {space_.scale, space_.domain}, gravity_, acceleration_, subdomains_.parts(), tally_);
+    clumps_.advance(field_, *kernels_, space_.scale, gravity_, acceleration_, subdomains_.parts(), tally_);
 }
 
 /// Before the next rebuild no particle moves by more than the skin, and one step more (travel_limit).

@@ -455,6 +455,7 @@ void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& spac
     const std::int32_t kept = take_out(f, c, space, removed, parts);
     sort_particles(f, c, space, kept, parts);
     place_fillers(f);
+    if (clumps != nullptr) clumps->sort(f, c, ids_so_far);
     if (clumps != nullptr && !clumps->map(f, c, ids_so_far, space.scale))
         throw std::logic_error("a clump lacks a member");
     find_pairs(f, c, kernels, space, parts);
