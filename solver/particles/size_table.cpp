@@ -18,12 +18,15 @@ constexpr double tolerance = 0.01;  // by which printed shares may miss 1
 
 struct Header {
     std::string_view text;
-    bool by_volume, cumulative;
+    int power;  ///< the shares are of all d^power
+    bool cumulative;
 };
-constexpr std::array<Header, 4> headers = {{{"diameter,number_fraction", false, false},
-                                            {"diameter,volume_fraction", true, false},
-                                            {"diameter,number_below", false, true},
-                                            {"diameter,volume_below", true, true}}};
+constexpr std::array<Header, 6> headers = {{{"diameter,number_fraction", 0, false},
+                                            {"diameter,area_fraction", 2, false},
+                                            {"diameter,volume_fraction", 3, false},
+                                            {"diameter,number_below", 0, true},
+                                            {"diameter,area_below", 2, true},
+                                            {"diameter,volume_below", 3, true}}};
 
 struct Line {
     double diameter = 0, fraction = 0;
@@ -42,8 +45,8 @@ const Header& header_of(std::string_view line) {
     const auto found = std::ranges::find(headers, plain, &Header::text);
     if (found == headers.end())
         refuse_table(1,
-                     "the header must be diameter and one of number_fraction, volume_fraction, number_below and "
-                     "volume_below, with a comma between, not '" +
+                     "the header must be diameter and one of number_fraction, volume_fraction, area_fraction, "
+                     "number_below, volume_below and area_below, with a comma between, not '" +
                          std::string(line.substr(0, 40)) + "'");
     return *found;
 }
@@ -85,6 +88,7 @@ double total_of(const Header& header, const std::vector<Line>& lines) {
 double SizeTable::Piece::diameter(double u) const {
     if (from == to) return from;
     if (even == Even::number) return from + u * (to - from);
+    if (even == Even::area) return std::clamp(1 / (1 / from - u * (1 / from - 1 / to)), from, to);
     const double first = 1 / (from * from), last = 1 / (to * to);
     return std::clamp(1 / std::sqrt(first - u * (first - last)), from, to);
 }
@@ -96,6 +100,7 @@ double SizeTable::Piece::moment(int power) const {
     };
     if (from == to) return std::pow(from, power);
     if (even == Even::number) return integral(power) / (to - from);
+    if (even == Even::area) return integral(power - 2) / integral(-2);
     return integral(power - 3) / integral(-3);
 }
 
@@ -104,7 +109,7 @@ SizeTable::Piece SizeTable::Piece::between(double low, double high) const {
     Piece part{std::max(from, low), std::min(to, high), 0, even};
     if (!(part.from < part.to)) return part;
     const auto particles = [this](double a, double b) {
-        return even == Even::number ? b - a : 1 / (a * a) - 1 / (b * b);
+        return even == Even::number ? b - a : even == Even::area ? 1 / a - 1 / b : 1 / (a * a) - 1 / (b * b);
     };
     part.share = share * particles(part.from, part.to) / particles(from, to);
     return part;
@@ -128,7 +133,7 @@ SizeTable SizeTable::read(std::string_view csv) {
     if (std::abs(total - 1) > tolerance) refuse_table(": the shares add up to " + shortest_text(total) + ", not to 1");
 
     SizeTable table;
-    const Even even = header->by_volume ? Even::volume : Even::number;
+    const Even even = header->power == 3 ? Even::volume : header->power == 2 ? Even::area : Even::number;
     for (std::size_t k = header->cumulative ? 1 : 0; k < lines.size(); ++k) {
         const Line& before = lines[header->cumulative ? k - 1 : k];
         const double share = header->cumulative ? lines[k].fraction - before.fraction : lines[k].fraction;
@@ -138,7 +143,7 @@ SizeTable SizeTable::read(std::string_view csv) {
     const double unit = lines.back().diameter;  // keeps cubes of micrometres well within range
     for (Piece& piece : table.pieces_) {
         const Piece scaled{piece.from / unit, piece.to / unit, 1, even};
-        if (header->by_volume) piece.share /= scaled.moment(3);
+        if (header->power > 0) piece.share /= scaled.moment(header->power);
         sum += piece.share;
     }
     for (Piece& piece : table.pieces_) piece.share /= sum;
@@ -207,9 +212,10 @@ std::string SizeTable::text() const {
         return std::string(digits.data());
     };
     const bool classes = pieces_.front().from == pieces_.front().to;
-    const bool by_volume = pieces_.front().even == Even::volume;
-    const int power = by_volume ? 3 : 0;
-    std::string csv = std::string("diameter,") + (by_volume ? "volume_" : "number_") + (classes ? "fraction" : "below");
+    const Even even = pieces_.front().even;
+    const int power = even == Even::volume ? 3 : even == Even::area ? 2 : 0;
+    const char* const of = even == Even::volume ? "volume_" : even == Even::area ? "area_" : "number_";
+    std::string csv = std::string("diameter,") + of + (classes ? "fraction" : "below");
     csv += "\n";
     const double all = moment(power);
     if (!classes) csv += number(smallest()) + ",0\n";

@@ -5,8 +5,10 @@
 //     diameter,volume_fraction      their share of the volume
 //     diameter,number_below         share of the particles below this diameter, 0 to 1; uniform in d between two lines
 //     diameter,volume_below         share of the volume below this diameter; uniform in d between two lines
+//     diameter,area_fraction, area_below     likewise of the surface, which is proportional to d^2
 // A class of volume share V and diameter d has a number share proportional to V/d^3. If the volume is uniform in d, the
-// number of particles is proportional to d^-3: with x = d^-2 the inverse is x = x_0 - u (x_0 - x_1).
+// number of particles is proportional to d^-3: with x = d^-2 the inverse is x = x_0 - u (x_0 - x_1). If the surface is
+// uniform in d, with x = 1/d likewise.
 #pragma once
 
 #include <string>
@@ -38,7 +40,7 @@ public:
     [[nodiscard]] std::string text() const;
 
 private:
-    enum class Even { number, volume };  ///< quantity that is uniform in d within a piece
+    enum class Even { number, area, volume };  ///< quantity that is uniform in d within a piece
     struct Piece {
         double from = 0, to = 0;  ///< equal: a class
         double share = 0;         ///< by number

@@ -1,14 +1,18 @@
-// Which column of an export holds sizes and which shares, by the words of their headers.
+// Which column of an export holds sizes and which shares.
 #include "sweep/campaign/powder_export.hpp"
 
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/sieve_series.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <ranges>
+#include <span>
 
 namespace grainsweep::campaign {
 namespace {
@@ -17,139 +21,191 @@ bool has_any(std::string_view text, std::span<const std::string_view> words) {
     return std::ranges::any_of(words, [&](auto word) { return text.find(word) != std::string_view::npos; });
 }
 
-constexpr auto passing_words = std::to_array<std::string_view>(
-    {"passing", "pass", "undersize", "under", "finer", "durchgang", "less than", "below", "tamisat"});
-constexpr auto retained_words = std::to_array<std::string_view>(
-    {"retained", "oversize", "over", "coarser", "rueckstand", "greater than", "above", "refus"});
-constexpr auto sum_words = std::to_array<std::string_view>({"cum", "kum", "summe", "sum ", "total"});
-constexpr auto each_words = std::to_array<std::string_view>({"chan", "frequency", "haeufigkeit", "differential", "each",
-                                                             "class", "interval", " in ", "volume in", "p3", "dq3"});
-constexpr auto share_words =
-    std::to_array<std::string_view>({"%", "volum", "number", "anzahl", "mass", "masse", "weight", "gew", "share",
-                                     "anteil", "fraction", "percent", "vol"});
-constexpr auto size_words = std::to_array<std::string_view>(
-    {"size", "diam", "durchm", "partikel", "groesse", "korn", "aperture", "opening", "maschen", "sieve", "sieb",
-     "lower", "upper", "untere", "obere", "klasse", "bin", "x_", "tamis"});
-constexpr auto volume_words = std::to_array<std::string_view>(
-    {"volum", "vol.", "vol%", "vol-%", "vol ", "mass", "masse", "weight", "wt", "gew", "sieve", "sieb", "tamis"});
-constexpr auto number_words = std::to_array<std::string_view>({"number", "anzahl", "count"});
+constexpr auto around_volume = std::to_array<std::string_view>(
+    {"volum", "vol.", "vol%", "vol-%", "mass", "masse", "weight", "wt", "gew", "sieve", "sieb", "tamis", "einwaage"});
 // Of lines around a table: a "serial number" is none.
-constexpr auto number_lines = std::to_array<std::string_view>(
+constexpr auto around_number = std::to_array<std::string_view>(
     {"by number", "number distribution", "number based", "number-based", "number weighted", "number-weighted",
      "anzahlverteilung", ": number", ";number", ",number", "\tnumber", "; number"});
-constexpr auto sieve_words = std::to_array<std::string_view>({"sieve", "sieb", "mesh", "aperture", "maschen", "tamis"});
-constexpr auto unused_words =
-    std::to_array<std::string_view>({"densit", "dichte", "/um", "per um", "log", "lg", "d(ln", "error", "std"});
+constexpr auto sieve_words = std::to_array<std::string_view>(
+    {"sieve", "sieb", "mesh", "aperture", "opening", "maschen", "tamis", "tamiz", "setacci"});
+using Headings = std::vector<ExportHeading>;
 
-/// "x [µm]" and "Size (um)" -> "um"; empty: none.
-std::string length_in(std::string_view header) {
-    for (const std::string_view unit : {"um", "micron", "mm", "nm"})
-        for (const auto& form : {fmt::format("({}", unit), fmt::format("[{}", unit), fmt::format(" {}", unit),
-                                 fmt::format("/{}", unit), fmt::format("_{}", unit)}) {
-            const auto at = header.find(form);
-            if (at == std::string_view::npos) continue;
-            const auto behind = header.substr(at + form.size());
-            if (behind.empty() || std::string_view(" )],;_s").find(behind.front()) != std::string_view::npos)
-                return unit == "micron" ? "um" : std::string(unit);
-        }
-    return header == "um" || header == "mm" || header == "nm" ? std::string(header) : std::string();
+[[noreturn]] void refuse_columns(const std::string& why) {
+    throw input_error("EXPORT", "", why);
 }
 
-/// The reading of a header.
-struct Heading {
-    std::string plain;
-    bool share = false, size = false, unused = false;
-    std::optional<std::string> as;
-};
-
-Heading heading_of(const std::string& header) {
-    Heading heading;
-    heading.plain = plain_words(header);
-    const auto& plain = heading.plain;
-    // Q3 is the sum of q3, which is a density: the letter's case decides. Q0 and q0 likewise by number.
-    const bool sum_symbol = header.find("Q3") != std::string::npos || header.find("Q0") != std::string::npos;
-    const bool density_symbol = header.find("q3") != std::string::npos || header.find("q0") != std::string::npos;
-    const bool step_symbol = plain.find("p3") != std::string::npos || plain.find("dq3") != std::string::npos ||
-                             header.find("\xCE\x94Q") != std::string::npos;
-    const bool passing = has_any(plain, passing_words), retained = has_any(plain, retained_words);
-    const bool sum = has_any(plain, sum_words) || (sum_symbol && !step_symbol);
-    const bool each = has_any(plain, each_words) || step_symbol;
-    heading.share = passing || retained || sum || step_symbol || density_symbol || has_any(plain, share_words);
-    heading.unused = has_any(plain, unused_words) || (density_symbol && !step_symbol && plain.find('%') == plain.npos);
-    // "Size classes (um)" and "Particle size, volume (um)" are sizes: a length decides.
-    if (!length_in(plain).empty() && plain.find('%') == plain.npos && !heading.unused) heading.share = false;
-    heading.size = !heading.share && (has_any(plain, size_words) || !length_in(plain).empty() || plain == "x" ||
-                                      plain == "d" || plain.starts_with("x ") || plain.starts_with("d "));
-    if (passing)
-        heading.as = "passing";
-    else if (sum)
-        heading.as = retained ? "retained" : "sum";
-    else if (each && !retained)
-        heading.as = "each";
-    return heading;
-}
-
-std::string column_list(const ExportGrid& grid, const std::vector<std::size_t>& columns) {
-    std::string list;
-    for (const auto column : columns)
-        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", column + 1,
-                            grid.headers[column].empty() ? "(no header)" : "'" + grid.headers[column] + "'");
-    return list;
-}
-
-/// A column by its number from 1, or by its header.
+/// A column by its number from 1, by its header, or by a part that no other header has.
 std::size_t chosen_column(const ExportGrid& grid, std::string_view option, const std::string& word) {
-    std::vector<std::size_t> all;
+    std::vector<std::size_t> all, parts;
     for (std::size_t j = 0; j < grid.headers.size(); ++j) {
         all.push_back(j);
-        if (grid.headers[j] == word || std::to_string(j + 1) == word) return j;
+        if (grid.headers[j] == word || std::to_string(grid.numbers[j]) == word) return j;
+        if (plain_words(grid.headers[j]).find(plain_words(word)) != std::string::npos) parts.push_back(j);
     }
-    throw input_error(option, word, fmt::format("must be a column of the table: {}", column_list(grid, all)));
+    if (parts.size() == 1) return parts.front();
+    throw input_error(option, word,
+                      fmt::format("must be {} of the table: {}", parts.empty() ? "a column" : "one column",
+                                  column_list(grid, parts.empty() ? all : parts)));
 }
 
 bool is_filled(const ExportGrid& grid, std::size_t column) {
-    return std::ranges::any_of(
-        grid.rows, [&](const auto& row) { return export_size(row[column], grid.decimal_comma).has_value(); });
+    return std::ranges::any_of(grid.rows, [&](const auto& row) {
+        return export_number(row[column], grid.decimal_comma) || export_size(row[column], grid.decimal_comma);
+    });
 }
 
-std::size_t size_column(const ExportGrid& grid, const std::vector<Heading>& headings, const ExportChoices& choices,
-                        std::optional<std::size_t>& upper) {
-    if (choices.sizes) return chosen_column(grid, "--sizes", *choices.sizes);
+/// Whether cells are sizes by their signs: classes, units, numbers of sieves, a pan.
+bool holds_sizes(const ExportGrid& grid, std::size_t column) {
+    std::size_t signs = 0;
+    for (const auto& row : grid.rows) {
+        const auto size = export_size(row[column], grid.decimal_comma);
+        if (!size) return false;
+        const bool length = !size->unit.empty() && size->unit != "g" && size->unit != "kg" && size->unit != "mg";
+        signs += size->kind != ExportSize::Kind::point || length || size->retained_on ? 1 : 0;
+    }
+    return signs * 2 >= grid.rows.size() && signs > 0;
+}
+
+std::optional<double> number_at(const ExportGrid& grid, std::size_t row, std::size_t column) {
+    const auto number = export_number(grid.rows[row][column], grid.decimal_comma);
+    return number ? std::optional(number->value) : std::nullopt;
+}
+
+/// Whether two columns are the edges of classes: each class begins where the one before ends.
+bool are_edges(const ExportGrid& grid, std::size_t lower, std::size_t upper) {
+    std::size_t joined = 0;
+    for (std::size_t k = 0; k < grid.rows.size(); ++k) {
+        const auto low = number_at(grid, k, lower), high = number_at(grid, k, upper);
+        if (!low || !high || !(*low < *high)) return false;
+        if (k == 0) continue;
+        const auto before_low = *number_at(grid, k - 1, lower), before_high = *number_at(grid, k - 1, upper);
+        const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-6 * std::abs(b); };
+        joined += same(*low, before_high) || same(*high, before_low) ? 1 : 0;
+    }
+    return grid.rows.size() > 1 && joined + 1 == grid.rows.size();
+}
+
+bool counts_up(const ExportGrid& grid, std::size_t column) {
+    for (std::size_t k = 1; k < grid.rows.size(); ++k) {
+        const auto before = number_at(grid, k - 1, column), here = number_at(grid, k, column);
+        if (!before || !here || *here != *before + 1) return false;
+    }
+    const auto first = number_at(grid, 0, column);
+    return first && *first >= 0 && *first <= 1;
+}
+
+/// Columns of sizes; edges of classes and columns with a unit go before others.
+std::vector<std::size_t> size_columns(const ExportGrid& grid, const Headings& headings) {
     std::vector<std::size_t> sizes;
     for (std::size_t j = 0; j < headings.size(); ++j)
-        if (headings[j].size && is_filled(grid, j)) sizes.push_back(j);
-    if (sizes.size() == 1) return sizes.front();
+        if (headings[j].size && !headings[j].ignored && is_filled(grid, j)) sizes.push_back(j);
+    for (std::size_t j = 0; sizes.empty() && j < headings.size(); ++j)
+        if (holds_sizes(grid, j)) sizes.push_back(j);
+    const auto prefer = [&](const auto& wanted) {
+        std::vector<std::size_t> some;
+        std::ranges::copy_if(sizes, std::back_inserter(some), wanted);
+        if (!some.empty()) sizes = std::move(some);
+    };
+    constexpr auto middles =
+        std::to_array<std::string_view>({"mean", "mid", "mittel", "centre", "center", "xm", "moyen", "geom"});
+    if (sizes.size() > 1) prefer([&](auto j) { return !counts_up(grid, j); });
+    if (sizes.size() > 1) prefer([&](auto j) { return !has_any(headings[j].plain, middles); });
+    if (sizes.size() > 1) prefer([&](auto j) { return !headings[j].length.empty() && headings[j].length != "phi"; });
+    if (sizes.size() > 1) prefer([&](auto j) { return !headings[j].sieve_number; });
+    return sizes;
+}
+
+std::optional<std::size_t> upper_of(const ExportGrid& grid, const Headings& headings, std::size_t lower) {
+    if (lower + 1 >= headings.size()) return std::nullopt;
+    const auto& next = headings[lower + 1];
+    if ((grid.headers[lower + 1].empty() || next.size) && are_edges(grid, lower, lower + 1)) return lower + 1;
+    return std::nullopt;
+}
+
+/// Column of sizes; before a chosen column of shares the nearest to its left.
+std::size_t size_column(const ExportGrid& grid, const Headings& headings, const ExportChoices& choices,
+                        std::optional<std::size_t>& upper) {
+    if (choices.sizes) {
+        const auto column = chosen_column(grid, "--sizes", *choices.sizes);
+        upper = upper_of(grid, headings, column);
+        return column;
+    }
+    const auto sizes = size_columns(grid, headings);
+    if (!sizes.empty()) upper = upper_of(grid, headings, sizes.front());
+    if (sizes.size() == 1 || (sizes.size() == 2 && upper == sizes[1])) return sizes.front();
+    upper.reset();
     const auto says = [&](std::size_t column, std::span<const std::string_view> words) {
         return has_any(headings[column].plain, words);
     };
-    constexpr auto low = std::to_array<std::string_view>({"lower", "untere", "from", "von"});
-    constexpr auto high = std::to_array<std::string_view>({"upper", "obere", " to", "bis"});
+    constexpr auto low = std::to_array<std::string_view>({"lower", "untere", "from", "von", "xu", "min"});
+    constexpr auto high = std::to_array<std::string_view>({"upper", "obere", " to", "bis", "xo", "max"});
     if (sizes.size() == 2 && says(sizes[0], low) && says(sizes[1], high)) {
         upper = sizes[1];
         return sizes[0];
+    }
+    if (sizes.size() == 2 && says(sizes[1], low) && says(sizes[0], high)) {
+        upper = sizes[0];
+        return sizes[1];
+    }
+    if (choices.shares && sizes.size() > 1) {
+        const auto share = chosen_column(grid, "--shares", *choices.shares);
+        const auto behind = std::ranges::lower_bound(sizes, share);
+        if (behind != sizes.begin()) return *(behind - 1);
     }
     const bool unnamed = std::ranges::all_of(grid.headers, [](const auto& header) { return header.empty(); });
     if (sizes.empty() && unnamed && grid.headers.size() == 2) return 0;
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j) all.push_back(j);
-    throw input_error("EXPORT", "",
-                      fmt::format("which column holds the sizes is not clear: state it by --sizes, of {}",
-                                  column_list(grid, sizes.empty() ? all : sizes)));
+    refuse_columns(fmt::format("which column holds the sizes is not clear: state it by --sizes, of {}",
+                               column_list(grid, sizes.empty() ? all : sizes)));
 }
 
-std::size_t share_column(const ExportGrid& grid, const std::vector<Heading>& headings, const ExportChoices& choices,
-                         const ExportColumns& found) {
-    if (choices.shares) return chosen_column(grid, "--shares", *choices.shares);
-    std::vector<std::size_t> shares, unused;
+void keep_if_any(std::vector<std::size_t>& columns, const auto& wanted) {
+    std::vector<std::size_t> some;
+    std::ranges::copy_if(columns, std::back_inserter(some), wanted);
+    if (!some.empty()) columns = std::move(some);
+}
+
+/// Columns that may hold the shares; densities are apart.
+std::vector<std::size_t> share_columns(const ExportGrid& grid, const Headings& headings, const ExportColumns& found,
+                                       std::vector<std::size_t>& densities) {
+    std::vector<std::size_t> shares;
     for (std::size_t j = 0; j < headings.size(); ++j) {
-        if (j == found.size || j == found.upper || !is_filled(grid, j)) continue;
-        if (headings[j].unused)
-            unused.push_back(j);
+        if (j == found.size || j == found.upper || headings[j].ignored || !is_filled(grid, j)) continue;
+        const bool percents = headings[j].plain.find('%') != std::string::npos;
+        if ((headings[j].size && !headings[j].share) || (!percents && counts_up(grid, j) && grid.rows.size() > 3))
+            continue;
+        if (headings[j].density)
+            densities.push_back(j);
         else if (headings[j].share || grid.headers[j].empty())
             shares.push_back(j);
     }
+    return shares;
+}
+
+std::size_t share_column(const ExportGrid& grid, const Headings& headings, const ExportChoices& choices,
+                         const ExportColumns& found) {
+    if (choices.shares) return chosen_column(grid, "--shares", *choices.shares);
+    std::vector<std::size_t> densities;
+    auto shares = share_columns(grid, headings, found, densities);
+    if (choices.sample && !grid.sample_chosen) {
+        std::vector<std::size_t> named;
+        for (const auto j : shares)
+            if (plain_words(grid.headers[j]).find(plain_words(*choices.sample)) != std::string::npos)
+                named.push_back(j);
+        if (named.empty())
+            throw input_error("--sample", *choices.sample,
+                              fmt::format("no table, row or column has this name; the columns of shares are {}",
+                                          column_list(grid, shares)));
+        shares = std::move(named);
+    }
+    if (choices.by)
+        keep_if_any(shares, [&](auto j) { return headings[j].by == (*choices.by == "mass" ? "volume" : *choices.by); });
+    else
+        keep_if_any(shares, [&](auto j) { return headings[j].by != "intensity"; });
     // A cumulative column needs no edges of classes: it is taken before others.
-    for (const char* kind : {"passing", "sum", "retained"}) {
+    for (const char* kind : {"passing", "sum", "retained", "each"}) {
         std::vector<std::size_t> of_kind;
         for (const auto j : shares)
             if (headings[j].as == kind) of_kind.push_back(j);
@@ -158,87 +214,151 @@ std::size_t share_column(const ExportGrid& grid, const std::vector<Heading>& hea
         if (!of_kind.empty()) break;
     }
     if (shares.size() == 1) return shares.front();
-    if (shares.empty() && !unused.empty())
-        throw input_error("EXPORT", "",
-                          fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
-                                      column_list(grid, unused)));
+    if (shares.empty() && !densities.empty())
+        refuse_columns(fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
+                                   column_list(grid, densities)));
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j)
         if (j != found.size && is_filled(grid, j)) all.push_back(j);
-    throw input_error("EXPORT", "",
-                      fmt::format("which column holds the shares is not clear: state it by --shares, of {}",
-                                  column_list(grid, shares.empty() ? all : shares)));
+    refuse_columns(fmt::format("which column holds the shares is not clear: state it by --shares, of {}",
+                               column_list(grid, shares.empty() ? all : shares)));
 }
 
-void find_unit(const ExportGrid& grid, const ExportChoices& choices, ExportColumns& columns) {
+/// The series of numbered sieves: by words, else the one that has all of them.
+std::string series_of(const ExportGrid& grid, const ExportColumns& columns, std::string& from) {
+    const std::string words = plain_words(grid.headers[columns.size]) + "\n" + grid.words;
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 8> named = {{{"tyler", "tyler"},
+                                                                                     {"astm", "astm"},
+                                                                                     {"e11", "astm"},
+                                                                                     {"u.s. s", "astm"},
+                                                                                     {"us s", "astm"},
+                                                                                     {"us mesh", "astm"},
+                                                                                     {"bs 410", "british"},
+                                                                                     {"bss", "british"}}};
+    for (const auto& [word, series] : named)
+        if (words.find(word) != std::string::npos) return from = "its words", std::string(series);
+    std::vector<std::string> fitting;
+    std::vector<std::vector<double>> openings;
+    for (std::size_t s = 0; s < sieve_series.size(); ++s) {
+        bool all = true;
+        std::vector<double> of_series;
+        for (const auto& row : grid.rows) {
+            const auto size = export_size(row[columns.size], grid.decimal_comma);
+            if (!size || size->kind == ExportSize::Kind::pan || (!size->unit.empty() && size->unit != "mesh")) continue;
+            for (const double number : {std::abs(size->low), std::abs(size->high)}) {
+                const auto opening = sieve_opening(static_cast<SieveSeries>(s), number);
+                all = all && opening.has_value();
+                of_series.push_back(opening.value_or(0));
+            }
+        }
+        if (all && !of_series.empty()) fitting.emplace_back(sieve_series[s]), openings.push_back(of_series);
+    }
+    from = "its numbers";
+    if (!fitting.empty() && std::ranges::all_of(openings, [&](const auto& other) { return other == openings.front(); }))
+        return fitting.front();
+    if (fitting.empty()) return {};
+    refuse_columns(
+        fmt::format("the numbers of sieves in column {} may be of {}, with other openings: state it by --unit astm, "
+                    "--unit tyler or --unit british",
+                    grid.numbers[columns.size], listed(fitting)));
+}
+
+void find_unit(const ExportGrid& grid, const Headings& headings, const ExportChoices& choices, ExportColumns& columns) {
     if (choices.unit) {
         columns.unit = *choices.unit, columns.unit_from = "--unit";
         return;
     }
-    if (const auto unit = length_in(plain_words(grid.headers[columns.size])); !unit.empty()) {
-        columns.unit = unit, columns.unit_from = "its header";
-        return;
-    }
+    const auto& heading = headings[columns.size];
+    std::string own;
+    bool bare = false;
     for (const auto& row : grid.rows)
         if (const auto size = export_size(row[columns.size], grid.decimal_comma);
-            size && !size->unit.empty() && size->unit != "%") {
-            columns.unit = size->unit.starts_with("micron") ? "um" : size->unit, columns.unit_from = "its cells";
-            return;
+            size && size->kind != ExportSize::Kind::pan) {
+            if (size->unit.empty()) bare = bare || size->low != 0 || size->high != 0;
+            if (!size->unit.empty() && own != "mesh") own = size->unit;
         }
+    if (own == "mesh" || (heading.sieve_number && bare)) {
+        columns.unit = series_of(grid, columns, columns.unit_from);
+        if (!columns.unit.empty()) return;
+    }
+    if (!heading.length.empty()) {
+        columns.unit = heading.length, columns.unit_from = "its header";
+        return;
+    }
+    if (!own.empty()) {
+        columns.unit = own, columns.unit_from = "its cells";
+        return;
+    }
     std::vector<std::string> named;
     for (const std::string_view unit : {"um", "mm", "nm"})
         for (const std::string_view before : {" ", ":", ";", ",", "\t", "(", "["})
             for (const std::string_view behind : {"\n", " ", ";", ",", "\t", ")", "]"})
-                if (grid.around.find(fmt::format("{}{}{}", before, unit, behind)) != std::string::npos &&
+                if (grid.words.find(fmt::format("{}{}{}", before, unit, behind)) != std::string::npos &&
                     (named.empty() || named.back() != unit))
                     named.emplace_back(unit);
     if (named.size() == 1) {
         columns.unit = named.front(), columns.unit_from = "the lines around the table";
         return;
     }
-    throw input_error(
-        "EXPORT", "",
-        fmt::format("the unit of the sizes in column {} is not stated: give it by --unit, as in --unit um",
-                    columns.size + 1));
+    refuse_columns(fmt::format("the unit of the sizes in column {} is not stated: give it by --unit, as in --unit um",
+                               grid.numbers[columns.size]));
 }
 
 /// By volume or number, from the column itself, then from the lines around the table.
-std::optional<std::string> basis_of(const ExportGrid& grid, const ExportColumns& columns) {
-    const std::string& header = grid.headers[columns.share];
-    if (header.find("Q0") != std::string::npos) return "number";
-    if (header.find("Q3") != std::string::npos) return "volume";
-    for (const auto column : {columns.share, columns.size}) {
-        const std::string plain = plain_words(grid.headers[column]);
-        const bool by_number = has_any(plain, number_words), by_volume = has_any(plain, volume_words);
-        if (by_number != by_volume) return by_number ? "number" : "volume";
-        if (by_number) return std::nullopt;
-    }
-    const bool by_number = has_any(grid.around, number_lines), by_volume = has_any(grid.around, volume_words);
+std::optional<std::string> basis_of(const ExportGrid& grid, const Headings& headings, const ExportColumns& columns) {
+    const auto& share = headings[columns.share];
+    if (share.by == "intensity")
+        refuse_columns(
+            fmt::format("column {} is by intensity of scattered light, which is no share of particles: export "
+                        "the distribution by volume",
+                        columns.share_name));
+    if (share.by) return share.by;
+    if (headings[columns.size].by && !headings[columns.size].sieve_number) return headings[columns.size].by;
+    if (columns.sieved) return "volume";
+    const bool by_number = has_any(grid.words, around_number), by_volume = has_any(grid.words, around_volume);
     if (by_number == by_volume) return std::nullopt;
     return by_number ? "number" : "volume";
 }
 
 }  // namespace
 
+std::string column_list(const ExportGrid& grid, const std::vector<std::size_t>& columns) {
+    constexpr std::size_t most_listed = 12;
+    std::string list;
+    for (const auto column : columns | std::views::take(most_listed))
+        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grid.numbers[column],
+                            grid.headers[column].empty() ? "(no header)" : "'" + grid.headers[column] + "'");
+    if (columns.size() > most_listed) list += fmt::format(" and {} more", columns.size() - most_listed);
+    return list;
+}
+
 ExportColumns export_columns(const ExportGrid& grid, const ExportChoices& choices) {
-    std::vector<Heading> headings;
-    for (const auto& header : grid.headers) headings.push_back(heading_of(header));
+    Headings headings;
+    for (const auto& header : grid.headers) headings.push_back(export_heading(header));
     ExportColumns columns;
     columns.size = size_column(grid, headings, choices, columns.upper);
     columns.share = share_column(grid, headings, choices, columns);
     if (columns.size == columns.share)
         throw input_error("--shares", grid.headers[columns.share], "is the column of the sizes");
-    find_unit(grid, choices, columns);
     const auto& heading = headings[columns.share];
     columns.as = heading.as;
-    columns.by = basis_of(grid, columns);
     columns.share_name = column_list(grid, {columns.share});
-    const std::string size_header = headings[columns.size].plain;
     columns.percent =
         heading.plain.find('%') != std::string::npos || heading.plain.find("percent") != std::string::npos;
-    constexpr auto weights = std::to_array<std::string_view>({"(g)", "[g]", "(kg)", "[kg]", " g", "(mg)", "count"});
-    columns.weighed = !columns.percent && (has_any(heading.plain, weights) || heading.plain.ends_with("_g"));
-    columns.sieved = has_any(size_header, sieve_words) || has_any(grid.around, sieve_words) || columns.weighed;
+    constexpr auto weights =
+        std::to_array<std::string_view>({"(g)", "[g]", "(kg)", "[kg]", " g", "(mg)", "count", "(gr)", "[gr]", ", g"});
+    const bool grams = heading.plain.ends_with("_g") || heading.plain == "g" || heading.plain.ends_with("/g");
+    columns.weighed = !columns.percent && heading.as != "passing" && heading.as != "sum" &&
+                      (grams || has_any(heading.plain, weights));
+    const auto& size_header = headings[columns.size].plain;
+    if (has_any(size_header, std::to_array<std::string_view>({"lower", "untere"}))) columns.edge = "lower";
+    if (has_any(size_header, std::to_array<std::string_view>({"upper", "obere"}))) columns.edge = "upper";
+    const bool counted = heading.by == "number";
+    const bool headed = std::ranges::any_of(headings, [](const auto& one) { return has_any(one.plain, sieve_words); });
+    columns.sieved = !counted && (headed || has_any(grid.words, sieve_words) || headings[columns.size].sieve_number ||
+                                  columns.weighed);
+    find_unit(grid, headings, choices, columns);
+    columns.by = basis_of(grid, headings, columns);
     return columns;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using particles::SizeTable;
 
-std::string of_three(const Section& sizes, bool by_volume) {
+std::string of_three(const Section& sizes, int power) {
     for (const char* key : {"d10", "d50", "d90"})
         if (!sizes.find(key))
             throw input_error(sizes.place().path(), "",
@@ -25,11 +25,10 @@ std::string of_three(const Section& sizes, bool by_volume) {
     const double d10 = powder_number(sizes.at("d10"), "m"), d50 = powder_number(sizes.at("d50"), "m"),
                  d90 = powder_number(sizes.at("d90"), "m");
     if (!(d10 < d50 && d50 < d90)) throw input_error(sizes.place().path(), "", "d10, d50 and d90 must rise");
-    return particles::lognormal_table(d50, particles::half_spread(d50, d10), particles::half_spread(d50, d90),
-                                      by_volume);
+    return particles::lognormal_table(d50, particles::half_spread(d50, d10), particles::half_spread(d50, d90), power);
 }
 
-std::string of_lognormal(const Section& law, bool by_volume) {
+std::string of_lognormal(const Section& law, int power) {
     const auto sigma = law.find("sigma"), ratio = law.find("ratio");
     if (sigma.has_value() == ratio.has_value())
         throw input_error(law.place().path(), "", "a lognormal distribution has either \"sigma\" or \"ratio\"");
@@ -37,18 +36,19 @@ std::string of_lognormal(const Section& law, bool by_volume) {
     const double spread = sigma ? powder_number(*sigma, "1") : std::log(powder_number(*ratio, "1"));
     if (!(spread > 0 && spread <= 2))
         (sigma ? *sigma : *ratio).refuse("the standard deviation of ln d must be above 0 and at most 2");
-    return particles::lognormal_table(median, spread, spread, by_volume);
+    return particles::lognormal_table(median, spread, spread, power);
 }
 
-std::string of_rosin_rammler(const Section& law, bool by_volume) {
+std::string of_rosin_rammler(const Section& law, int power) {
     const double d63 = powder_number(law.at("d63"), "m"), n = powder_number(law.at("n"), "1");
     if (!(n >= 0.5 && n <= 50)) law.at("n").refuse("the exponent must be from 0.5 to 50");
-    return particles::rosin_rammler_table(d63, n, by_volume);
+    return particles::rosin_rammler_table(d63, n, power);
 }
 
 std::string csv_of(const Section& sizes, const std::function<std::string(const std::string&)>& read,
                    PowderSizes& into) {
-    const bool by_volume = sizes.word("by", "volume") == "volume";
+    const std::string by = sizes.word("by", "volume");
+    const int power = by == "number" ? 0 : by == "area" ? 2 : 3;  // mass is volume of grains of one density
     if (const auto file = sizes.find("file")) {
         if (const auto basis = sizes.find("by")) basis->refuse("the header of the file states it; leave it out");
         into.file = into.source = file->text();
@@ -58,11 +58,10 @@ std::string csv_of(const Section& sizes, const std::function<std::string(const s
             file->refuse(why.what());
         }
     }
-    if (const auto law = sizes.find("lognormal"))
-        return of_lognormal(Section(*law, powder_keys::lognormal()), by_volume);
+    if (const auto law = sizes.find("lognormal")) return of_lognormal(Section(*law, powder_keys::lognormal()), power);
     if (const auto law = sizes.find("rosin_rammler"))
-        return of_rosin_rammler(Section(*law, powder_keys::rosin_rammler()), by_volume);
-    return of_three(sizes, by_volume);
+        return of_rosin_rammler(Section(*law, powder_keys::rosin_rammler()), power);
+    return of_three(sizes, power);
 }
 
 SizeTable cut_table(const SizeTable& table, const Section& cut, PowderSizes& into) {

@@ -28,7 +28,7 @@ constexpr std::size_t largest_export = 16ULL << 20U;
 
 struct PowderRequest {
     std::string action, file, output;
-    std::string sizes, shares, unit, as, by, edge, smallest, largest;
+    std::string sizes, shares, unit, as, by, edge, smallest, largest, sample;
 };
 
 std::optional<std::string> stated(const std::string& word) {
@@ -57,7 +57,8 @@ int import_export(const PowderRequest& request, Format format) {
     const auto imported = campaign::asked_in(request.file, [&] {
         return campaign::import_sizes(
             bytes, {stated(request.sizes), stated(request.shares), stated(request.unit), stated(request.as),
-                    stated(request.by), stated(request.edge), stated(request.smallest), stated(request.largest)});
+                    stated(request.by), stated(request.edge), stated(request.smallest), stated(request.largest),
+                    stated(request.sample)});
     });
     files::AsideFile file{fs::path(request.output)};
     file.write(imported.csv);
@@ -73,11 +74,13 @@ int import_export(const PowderRequest& request, Format format) {
         report::write(std::cout, Json{{"output", request.output},
                                       {"sentence", imported.sentence},
                                       {"taken", taken},
-                                      {"notes", imported.notes}});
+                                      {"notes", imported.notes},
+                                      {"warnings", imported.warnings}});
     } else {
         report::write(std::cout, table, format);
         for (const auto& note : imported.notes) std::cout << fmt::format("note: {}\n", note);
         std::cout << fmt::format("\n{}: {}\n", request.output, imported.sentence);
+        for (const auto& warning : imported.warnings) std::cout << fmt::format("warning: {}\n", warning);
     }
     return 0;
 }
@@ -88,7 +91,7 @@ void refuse_import_options(const PowderRequest& request) {
          {std::pair{"-o", &request.output}, std::pair{"--unit", &request.unit}, std::pair{"--as", &request.as},
           std::pair{"--by", &request.by}, std::pair{"--edge", &request.edge}, std::pair{"--sizes", &request.sizes},
           std::pair{"--shares", &request.shares}, std::pair{"--smallest", &request.smallest},
-          std::pair{"--largest", &request.largest}})
+          std::pair{"--largest", &request.largest}, std::pair{"--sample", &request.sample}})
         if (!word->empty()) throw campaign::input_error(option, *word, "belongs to powder import");
 }
 
@@ -161,18 +164,23 @@ std::vector<Command> powder_commands() {
         parser.add_option("ACTION", request.action,
                           "import: an instrument's export becomes a file of sizes; show: what a powder file means");
         parser.add_option("FILE", request.file,
-                          "the export of a laser diffraction instrument or of sieves; the powder file");
+                          "the export of a laser diffraction instrument or of sieves, text or .xlsx; the powder file");
         parser.add_option("-o,--output FILE.csv", request.output,
                           "file of sizes to write, for size_file or a powder file");
-        parser.add_option("--unit UNIT", request.unit, "unit of the sizes, where the export does not state it");
+        parser.add_option(
+            "--unit UNIT", request.unit,
+            "unit of the sizes, where the export does not state it; also phi, and sieves by number: astm, "
+            "tyler, british");
         parser.add_option(
             "--as KIND", request.as,
             "what the shares are: passing (below a size), retained (above it, summed) or each (of a class)");
-        parser.add_option("--by BASIS", request.by, "what they are shares of: volume (or mass) or number");
+        parser.add_option("--by BASIS", request.by, "what they are shares of: volume, mass, area or number");
         parser.add_option("--edge EDGE", request.edge,
                           "what a class's size is: its lower or upper edge, or its middle");
         parser.add_option("--sizes COLUMN", request.sizes, "column of the sizes, by header or number from 1");
         parser.add_option("--shares COLUMN", request.shares, "column of the shares");
+        parser.add_option("--sample NAME", request.sample,
+                          "of several samples, tables or sheets: number, name or a part of it");
         parser.add_option("--smallest SIZE", request.smallest, "lower end of what lies below the first size: \"5 um\"");
         parser.add_option("--largest SIZE", request.largest, "upper end of what lies above the last size");
     };

@@ -269,7 +269,7 @@ TEST(PowderExport, RefusesWhatIsNoDistribution) {
 
 TEST(PowderExport, RefusesSizesOfNoPowder) {
     for (const auto* sizes : {"1e302,0\n2e302,50\n4e302,100\n", "1,0\n2,50\n1e9,100\n", "1e-9,0\n2,50\n4,100\n"})
-        EXPECT_THAT(refusal("Size (um),Volume Under %\n" + std::string(sizes)), HasSubstr("from 1 nm to 1 m"));
+        EXPECT_THAT(refusal("Size (um),Volume Under %\n" + std::string(sizes)), HasSubstr("from 10 nm to 100 mm"));
 }
 
 // No export has lines of a hundred thousand numbers, and reading them as all that they might be would take minutes.
