@@ -49,11 +49,39 @@ TEST(SizeTables, GiveSharesQuantilesAndParts) {
 
 TEST(SizeTables, OfLawsHaveTheirPercentiles) {
     const double spread = 0.3;
-    const auto table = SizeTable::read(particles::lognormal_table(34e-6, spread, spread, true));
+    const auto table = SizeTable::read(particles::lognormal_table(34e-6, spread, spread, 3));
     for (const double z : {-1.28155156554, -0.52440051271, 0.0, 0.52440051271, 1.28155156554})
         EXPECT_NEAR(table.share_below(34e-6 * std::exp(spread * z), 3), normal_share(z), 1e-6) << z;
-    const auto coarse = SizeTable::read(particles::rosin_rammler_table(40e-6, 3, true));
+    const auto coarse = SizeTable::read(particles::rosin_rammler_table(40e-6, 3, 3));
     EXPECT_NEAR(coarse.share_below(40e-6 * std::cbrt(std::log(2)), 3), 0.5, 1e-7);
+}
+
+// Hatch and Choate (1929): of a lognormal law by d^r, the law by volume has the same spread about
+// exp((3 - r) sigma^2) times its median.
+TEST(SizeTables, OfLawsByNumberAndAreaKeepTheirVolume) {
+    for (const int power : {0, 2})
+        for (const double ratio : {1.5, 2.0, 2.5}) {
+            const double sigma = std::log(ratio), median = 30e-6 * std::exp((3 - power) * sigma * sigma);
+            const auto table = SizeTable::read(particles::lognormal_table(30e-6, sigma, sigma, power));
+            for (const double z : {-1.28155156554, 0.0, 1.28155156554})
+                EXPECT_NEAR(table.quantile(normal_share(z), 3) / (median * std::exp(sigma * z)), 1, 0.01)
+                    << power << " " << ratio << " " << z;
+            EXPECT_NEAR(table.quantile(0.5, power) / 30e-6, 1, 0.02) << power << " " << ratio;
+        }
+    // Rosin and Rammler with n = 1 by number: the volume below d is the incomplete gamma function of 4.
+    const auto coarse = SizeTable::read(particles::rosin_rammler_table(40e-6, 1, 0));
+    EXPECT_NEAR(coarse.quantile(0.5, 3) / (40e-6 * 3.672060749), 1, 0.01);
+}
+
+TEST(SizeTables, TakeSharesOfTheSurface) {
+    const auto table = SizeTable::read("diameter,area_below\n1e-5,0\n2e-5,0.5\n4e-5,1\n");
+    EXPECT_NEAR(table.quantile(0.5, 2), 2e-5, 1e-12);
+    EXPECT_NEAR(table.share_below(1.5e-5, 2), 0.25, 1e-9);
+    // A surface that is uniform in d has a volume proportional to the integral of d.
+    EXPECT_NEAR(table.share_below(2e-5, 3), 15.0 / (15.0 + 30.0), 1e-9);
+    EXPECT_EQ(SizeTable::read(table.between(1e-5, 3e-5).text()).text(), table.between(1e-5, 3e-5).text());
+    double u = 0.37;
+    EXPECT_NEAR(table.share_below(table.diameter(u), 0), u, 1e-9);
 }
 
 TEST(PowderFiles, TakePercentilesAndCuts) {
