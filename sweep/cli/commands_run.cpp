@@ -277,7 +277,7 @@ void write_beside(const std::filesystem::path& database, const std::string& name
 }
 
 /// For a calibration that has ended: writes the posterior, writes a powder if requested, and adds the verdict.
-void conclude(RunReport& report, bool powder) {
+void conclude(RunReport& report, const RunRequest& request) {
     const store::Store archive(report.database, store::Store::Mode::read);
     const auto records = archive.campaigns();
     const auto record = std::ranges::find(records, report.campaign, &store::CampaignRecord::name);
@@ -285,10 +285,13 @@ void conclude(RunReport& report, bool powder) {
     if (!found || !found->found.posterior) return;
     const auto name = campaign::name_in_file(*record), draws = name + "_posterior.csv";
     write_beside(report.database, draws, study::posterior_csv(found->found));
-    if (powder) {
-        const auto text = study::powder_json(*found, name, draws);
-        if (text.empty()) throw campaign::input_error("--powder", "", "none of the factors is a property of a powder");
-        write_beside(report.database, name + "_powder.json", text);
+    if (request.powder) {
+        const auto result = study::powder_result(*found, draws);
+        if (!result) throw campaign::input_error("--powder", "", "none of the factors is a property of a powder");
+        const auto folder = std::filesystem::absolute(report.database).parent_path();
+        const auto text = campaign::powder_with(request.config, name, *result, folder);
+        if (text.sizes) write_beside(report.database, text.sizes->first, text.sizes->second);
+        write_beside(report.database, name + "_powder.json", text.json);
     }
     if (!found->verdict) return;
     report.ending = fmt::format("{}; {}", found->verdict->sentence, report.ending);
@@ -309,7 +312,7 @@ RunReport run_file(const RunRequest& request) {
             campaign::name_in_file(campaign::identity_of(campaign::read_campaign(request.config, names.front()))) +
             ".db";
     auto report = names.empty() ? run_campaign(asked) : run_in_turn(asked, names);
-    if (report.finished) conclude(report, request.powder);
+    if (report.finished) conclude(report, request);
     return report;
 }
 

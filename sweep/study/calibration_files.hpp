@@ -1,8 +1,10 @@
 // Files that a calibration writes for other campaigns: the draws of its posterior, and a powder.
 #pragma once
 
+#include "sweep/campaign/powder_result.hpp"
 #include "sweep/study/calibration.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,10 +14,9 @@ namespace grainsweep::study {
 /// without a posterior.
 [[nodiscard]] std::string posterior_csv(const designs::Calibration& found);
 
-/// Returns a powder file with the calibrated properties at the draw of highest density, the measurements, and the name
-/// of the posterior's file. Factors that are no property of a powder are left out. Empty if no factor is such a
-/// property, or without a posterior.
-[[nodiscard]] std::string powder_json(const CalibrationReport& report, std::string_view name,
-                                      std::string_view posterior_file);
+/// Returns the calibrated properties at the draw of highest density, and the measurements. Factors that are no property
+/// of a powder are left out. Absent if no factor is such a property, or without a posterior.
+[[nodiscard]] std::optional<campaign::PowderResult> powder_result(const CalibrationReport& report,
+                                                                  std::string_view posterior_file);
 
 }  // namespace grainsweep::study
