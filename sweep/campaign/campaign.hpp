@@ -167,8 +167,9 @@ struct Campaign {
     std::vector<std::string> features;
     Limits limits;
     Execution execution;
-    std::string text;    ///< text of the campaign file
-    std::string powder;  ///< parameters set by its powder file, in a sentence; empty: no powder file
+    std::string text;          ///< text of the campaign file
+    std::string powder;        ///< parameters set by its powder file, in a sentence; empty: no powder file
+    std::string powder_lacks;  ///< warning: sizes or density that the powder file lacks; empty: none
     std::vector<CampaignFile> files;
 
     [[nodiscard]] const SceneInfo& scene() const { return *space.scene; }

@@ -196,6 +196,7 @@ std::string repeated_cases(const Campaign& campaign, const Forecast& forecast) {
 
 std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& forecast) {
     std::vector<std::string> warnings;
+    if (!campaign.powder_lacks.empty()) warnings.push_back(campaign.powder_lacks);
     for (const auto& caution : forecast.cautions) {
         warnings.push_back(fmt::format("{}: {} of {} cases, first at point {}: {}", caution.kind, caution.questions,
                                        forecast.questions, caution.first_point, caution.sentence));

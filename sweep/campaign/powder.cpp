@@ -1,6 +1,7 @@
 #include "sweep/campaign/powder.hpp"
 
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/file_contents.hpp"
@@ -146,6 +147,13 @@ std::string PowderUse::sentence() const {
     return text;
 }
 
+std::string lacks_of(const Powder& powder) {
+    const bool sizes = powder.diameter || powder.sizes;
+    const auto material = top_of(powder).find("material");
+    const bool density = material && Section(*material, powder_keys::material()).find("density");
+    return sizes ? density ? "" : "density" : density ? "sizes" : "sizes and no density";
+}
+
 PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
     PowderUse use;
     std::vector<std::string> ours;
@@ -179,6 +187,16 @@ PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
                                             : fmt::format("file:{}:{}", content_hash(sizes.csv), sizes.file.string())};
         });
     }
+    std::vector<std::string> defaults;
+    for (const char* name : {"diameter", "density"}) {
+        const auto* parameter = space.scene->find_parameter(name);
+        if (parameter == nullptr || is_given(space, name)) continue;
+        const auto* value = std::get_if<double>(&parameter->default_value);
+        if (value != nullptr) defaults.push_back(fmt::format("{} {} {}", name, shortest(*value), parameter->unit));
+    }
+    if (!defaults.empty())
+        use.lacks = fmt::format("powder '{}' has no {}: the scene's own are taken, {}", powder.name, lacks_of(powder),
+                                names_in(defaults));
     for (const auto& name : ours) {  // after all inputs are set: an input without effect on any case keeps its default
         if (!no_effect(space, *space.scene->find_parameter(name)))
             use.set.push_back(name);

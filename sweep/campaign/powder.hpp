@@ -56,6 +56,7 @@ struct Powder {
 /// Parameters that a powder sets in a scene. Parameters that the campaign sets do not change.
 struct PowderUse {
     std::vector<std::string> set, overridden, unused;
+    std::string lacks;  ///< sizes or density that neither the powder nor the campaign gives, with the defaults in use
 
     /// Returns a text such as "sets density, friction; given by the campaign: ...; not used by this scene: ...".
     [[nodiscard]] std::string sentence() const;
@@ -63,6 +64,9 @@ struct PowderUse {
 /// Fixes the parameters that the powder has and the space does not set. A scene without a size file gets only the
 /// diameter. Throws InputError if a value is invalid in the scene.
 [[nodiscard]] PowderUse apply_powder(const Powder& powder, ParameterSpace& space);
+
+/// Returns "sizes and density" and the like: what a powder file lacks of them. Empty: nothing.
+[[nodiscard]] std::string lacks_of(const Powder& powder);
 
 /// Derived numbers of a powder: cohesion under gravity, and cost.
 struct PowderNumbers {

@@ -88,6 +88,7 @@ void use_powder(const Cursor& place, const fs::path& folder, Campaign& campaign)
         place.refuse(
             fmt::format("scene '{}' has no parameter that powder '{}' gives", campaign.scene().shown(), powder.name));
     campaign.powder = fmt::format("{} ({}) {}", powder.name, powder.file.filename().string(), use.sentence());
+    campaign.powder_lacks = use.lacks;
     add_powder_files(place.path(), powder, campaign);
 }
 

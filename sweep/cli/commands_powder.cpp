@@ -137,15 +137,19 @@ int show_powder(const PowderRequest& request, Format format) {
     row("Rayleigh time of the smallest", "s", numbers.rayleigh_time);
     row("time step at 1 m/s", "s", numbers.time_step);
     row("core time of 1,000 particles for 1 s", "s", numbers.seconds);
+    const std::string lacks = campaign::lacks_of(powder);
     if (format == Format::json) {
         Json values = Json::object();
         for (const auto& line : table.rows) values.add(std::get<std::string>(line[0]), report::to_json(line[2]));
-        report::write(std::cout, Json{{"powder", powder.name}, {"values", values}});
+        report::write(std::cout, Json{{"powder", powder.name}, {"values", values}, {"lacks", lacks}});
         return 0;
     }
     if (format == Format::text) std::cout << fmt::format("powder {} ({})\n\n", powder.name, request.file);
     report::write(std::cout, table, format);
     if (format == Format::text && powder.sizes) plot_sizes(*powder.sizes);
+    if (format == Format::text && !lacks.empty())
+        std::cout << fmt::format("\nwarning: it has no {}; a scene takes its own, and so do the numbers above\n",
+                                 lacks);
     return 0;
 }
 

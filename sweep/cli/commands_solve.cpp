@@ -237,6 +237,7 @@ Asked question_of(const SolveRequest& request) {
         request.config, [&] { return store::make_filter(campaign.where, campaign::filter_names(campaign)); });
     if (!filter(inputs))
         std::cerr << "grainsweep: the campaign excludes this point by its 'where': " << campaign.where << '\n';
+    if (!campaign.powder_lacks.empty()) std::cerr << "warning: " << campaign.powder_lacks << '\n';
     const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
     Asked asked{campaign::make_case(campaign.scene(), inputs, seed), campaign.limits.wall_seconds, {}, {}};
     for (const auto& factor : declared.factors) asked.shown_inputs.push_back(factor.name);
