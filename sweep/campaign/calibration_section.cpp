@@ -6,6 +6,7 @@
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
+#include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/designs/calibration.hpp"
 #include "sweep/designs/curve_place.hpp"
@@ -123,9 +124,34 @@ void refuse_row_numbers(const Cursor& file, const CsvRecord& header, std::span<c
                         shown(header[0]), shown(header[1]), shown(header[2])));
 }
 
+/// The unit in brackets that a header ends with: "h (mm)". Empty: there is none, or the brackets hold other words.
+std::string unit_in_head(const std::string& head) {
+    const char close = head.empty() ? ' ' : head.back();
+    if (close != ')' && close != ']') return {};
+    const auto open = head.rfind(close == ')' ? '(' : '[');
+    if (open == std::string::npos) return {};
+    std::string unit(trimmed(std::string_view(head).substr(open + 1, head.size() - open - 2)));
+    if (unit == "\xC2\xB0") unit = "deg";
+    return resembles_united_number("1 " + unit) ? unit : std::string();
+}
+
+/// Converts column k to `unit` where its head states another one. Refuses a unit that does not fit.
+void convert_column(const Cursor& file, const std::string& head, std::size_t k, const std::string& unit,
+                    std::vector<CurveRow>& rows) {
+    const std::string stated = unit_in_head(head);
+    if (stated.empty()) return;
+    for (auto& row : rows) {
+        const auto value = in_si(fmt::format("{} {}", shortest_text(row[k]), stated), unit);
+        if (const auto* why = std::get_if<std::string>(&value))
+            file.refuse(fmt::format("the head {} states a unit that cannot be taken: {}", shown(head), *why));
+        row[k] = std::get<double>(value);
+    }
+}
+
 /// Returns a target for each line "where,value[,error]" below the header.
-std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const designs::MeasuredTarget& alike,
-                                                bool has_error, const std::filesystem::path& folder) {
+std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const ObservableSpec& measured,
+                                                const designs::MeasuredTarget& alike, bool has_error,
+                                                const std::filesystem::path& folder) {
     const std::string text = read_csv_text(file, folder / file.text());
     CsvTable table(text, [&](const std::string& rule) { file.refuse(rule); });
     const auto columns = table.header().size();
@@ -148,6 +174,10 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const design
                         "curve has to say",
                         rows.size(), most_points));
     refuse_row_numbers(file, table.header(), rows);
+    const auto comma = measured.over.rfind(", ");  // "time, s"
+    convert_column(file, table.header()[0], 0, comma == std::string::npos ? "1" : measured.over.substr(comma + 2),
+                   rows);
+    for (std::size_t k = 1; k < columns; ++k) convert_column(file, table.header()[k], k, measured.unit, rows);
     if ((columns == 3) == has_error)
         file.refuse(columns == 3
                         ? "it has a column of errors, and there is an \"error\" as well; give them in one place"
@@ -189,7 +219,7 @@ std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign
         target.level = read_condition(*inputs, campaign.space, calibrated, folder);
     if (scalar) return {target};
     target.curve = curve;
-    return read_curve(*file, target, error.has_value(), folder);
+    return read_curve(*file, measured, target, error.has_value(), folder);
 }
 
 /// How far the simulation may be from the experiment, per observable: to be stated, be it 0.
