@@ -1,5 +1,6 @@
 #include "sweep/campaign/machine_parameters.hpp"
 
+#include "sweep/campaign/case.hpp"
 #include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 #include "sweep/campaign/quantity.hpp"
@@ -10,6 +11,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -219,6 +222,11 @@ std::set<std::string> species_names(const Section& top) {
     return names;
 }
 
+/// A quantity alone, not in an expression.
+bool is_one_quantity(const std::string& text) {
+    return is_quantity(text) && with_si_numbers(text).empty();
+}
+
 /// A quantity in SI units, whichever they are.
 double any_quantity(const Cursor& place) {
     std::string why;
@@ -240,7 +248,7 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
         const Cursor here = (*lets)[name];
         require_name(here, name);
         if (scope.is_let(name)) continue;
-        if (name == "pi" || scope.knows(name) || to_come.contains(name))
+        if (name == "pi" || name == "nan" || scope.knows(name) || to_come.contains(name))
             here.refuse("a parameter or number has this name; take another one");
         open.insert(name);
     }
@@ -250,8 +258,9 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
     names.insert(names.end(), to_come.begin(), to_come.end());
     for (const auto& name : open) {
         const auto& text = lets->json()[name];
-        if (!text.is_string() || is_quantity(text.get_ref<const std::string&>())) continue;
-        const auto parsed = Formula::parse(text.get<std::string>(), names);
+        if (!text.is_string() || is_one_quantity(text.get_ref<const std::string&>())) continue;
+        const std::string plain = with_si_numbers(text.get_ref<const std::string&>());
+        const auto parsed = Formula::parse(plain.empty() ? text.get<std::string>() : plain, names);
         if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
         used[name] = std::get<Formula>(parsed).names();
     }
@@ -266,7 +275,7 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
             (*lets)[*open.begin()].refuse("it depends on itself");
         }
         const Cursor here = (*lets)[*ready];
-        const bool quantity = here.json().is_string() && is_quantity(here.json().get_ref<const std::string&>());
+        const bool quantity = here.json().is_string() && is_one_quantity(here.json().get_ref<const std::string&>());
         scope.set_let(*ready, quantity ? any_quantity(here) : scope.number(here, "1"));
         open.erase(ready);
     }
@@ -296,7 +305,8 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
     for (const auto& [name, value] : place->json().items()) {
         const Cursor here = (*place)[name];
         require_name(here, name);
-        if (name == "pi") here.refuse("'pi' is a number in expressions; take another name");
+        if (name == "pi" || name == "nan")
+            here.refuse(fmt::format("'{}' is a number in expressions; take another name", name));
         if (std::ranges::find(common, name, &ParameterSpec::name) != common.end())
             throw input_error(here.path(), "", "every machine has a parameter of this name; take another one");
         std::string lower = name;
@@ -343,6 +353,53 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
     scope.set("nan", std::numeric_limits<double>::quiet_NaN());
     evaluate_lets(top, species_names(top), scope);
     return scope;
+}
+
+std::string with_si_numbers(std::string_view expression) {
+    const auto is = [&](std::size_t k, auto... kind) {
+        const auto c =
+            k < expression.size() ? static_cast<unsigned char>(expression[k]) : static_cast<unsigned char>(' ');
+        return ((kind(c) != 0) || ...);
+    };
+    const auto letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_' || c >= 0x80 || c == '%'; };
+    const auto digit = [](unsigned char c) { return std::isdigit(c); };
+    const auto point = [](unsigned char c) { return c == '.'; };
+    std::string plain;
+    bool united = false;
+    for (std::size_t at = 0; at < expression.size();) {
+        const bool inside = at > 0 && (is(at - 1, letter, digit, point));
+        double number = 0;
+        const auto* const begin = expression.data() + at;
+        const auto [end, error] = std::from_chars(begin, expression.data() + expression.size(), number);
+        if (inside || !is(at, digit, point) || error != std::errc()) {
+            plain += expression[at++];
+            continue;
+        }
+        const auto digits = static_cast<std::size_t>(end - begin);
+        std::size_t unit = at + digits;
+        while (unit < expression.size() && expression[unit] == ' ') ++unit;
+        std::size_t behind = unit;
+        if (is(unit, letter))
+            while (is(behind, letter, digit) ||
+                   (behind > unit && behind < expression.size() && expression[behind] == '/'))
+                ++behind;
+        std::string why, word(expression.substr(unit, behind - unit));
+        while (!word.empty() && !calculating_unit(word, why))  // "29 mm/hub": the unit ends before a sign of division
+            word.resize(word.rfind('/') == std::string::npos ? 0 : word.rfind('/'));
+        if (word.empty()) {
+            plain += expression.substr(at, digits);
+            at += digits;
+            continue;
+        }
+        const bool alone = expression.find_first_not_of(" \t+-") == at &&
+                           expression.find_first_not_of(" \t", unit + word.size()) == std::string_view::npos;
+        if (alone) return {};
+        const auto si = in_si(fmt::format("{} {}", expression.substr(at, digits), word), *calculating_unit(word, why));
+        plain += fmt::format("({})", shortest(std::get<double>(si)));
+        united = true;
+        at = unit + word.size();
+    }
+    return united ? plain : std::string();
 }
 
 void add_species_numbers(const Section& top, const machine::Spec& spec, MachineScope& scope) {

@@ -7,6 +7,7 @@
 
 #include "solver/machine/spec.hpp"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,9 @@ inline constexpr std::string_view stiffness_parameter = "stiffness_scale";
 /// Refuses circular definitions.
 [[nodiscard]] MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters,
                                          const Inputs& inputs);
+/// Returns the expression with its quantities as numbers in SI units: "29 mm - hub" becomes "(0.029) - hub". Empty: it
+/// has no number with a unit that a machine calculates with, or is nothing but one quantity.
+[[nodiscard]] std::string with_si_numbers(std::string_view expression);
 /// Adds SPECIES_largest, SPECIES_smallest, SPECIES_volume, and the rest of "let".
 void add_species_numbers(const Section& top, const machine::Spec& spec, MachineScope& scope);
 

@@ -1,6 +1,7 @@
 #include "sweep/campaign/machine_scope.hpp"
 
 #include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/quantity.hpp"
 
 #include <fmt/format.h>
@@ -72,15 +73,18 @@ double MachineScope::number(const Cursor& place, std::string_view unit, const In
     if (place.json().is_number()) {
         value = place.json().get<double>();
     } else if (place.json().is_string()) {
-        const std::string given = place.json().get<std::string>();
-        if (is_quantity(given)) {
+        const std::string written = place.json().get<std::string>(), united = with_si_numbers(written);
+        const std::string& given = united.empty() ? written : united;
+        if (united.empty() && is_quantity(given)) {
             const auto read = in_si(given, unit);
             if (const auto* why = std::get_if<std::string>(&read)) place.refuse(*why);
             value = std::get<double>(read);
         } else {
             const auto known = names();
             const auto parsed = Formula::parse(given, known);
-            if (const auto* why = std::get_if<std::string>(&parsed)) refuse_expression(place, given, *why);
+            if (const auto pointed = with_decimal_point(written); !pointed.empty())
+                place.refuse(fmt::format("a decimal point is expected: '{}'", pointed));
+            if (const auto* why = std::get_if<std::string>(&parsed)) refuse_expression(place, written, *why);
             require_unit(place, given, unit);
             value = std::get<Formula>(parsed)([this](std::string_view name) { return numbers_.find(name)->second; });
             if (!std::isfinite(value)) place.refuse("the expression has no finite value here");

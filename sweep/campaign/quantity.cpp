@@ -352,11 +352,25 @@ struct Written {
 
 std::variant<double, std::string> in_si(std::string_view text, std::string_view unit) {
     if (text.size() > longest_quantity) return fmt::format("a quantity has at most {} characters", longest_quantity);
+    if (const auto pointed = with_decimal_point(text); !pointed.empty())
+        return fmt::format("a decimal point is expected: '{}'", pointed);
     const Written written(text);
     if (!written.number || written.error == std::errc::invalid_argument) return "it begins with no number";
     if (written.error != std::errc()) return "the number is beyond double precision";
     if (written.unit.empty() || written.unit == unit) return written.value == 0 ? 0.0 : written.value;
     return with_unit(written.digits, written.value, written.unit, unit);
+}
+
+std::string with_decimal_point(std::string_view text) {
+    const auto digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
+    if (text.find('(') != std::string_view::npos) return {};
+    for (std::size_t k = 1; k < text.size(); ++k)
+        if (text[k] == ',' && digit(k - 1) && digit(k + 1)) {
+            std::string pointed(text);
+            pointed[k] = '.';
+            return pointed;
+        }
+    return {};
 }
 
 std::string_view unit_of_quantity(std::string_view text) {

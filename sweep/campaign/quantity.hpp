@@ -17,6 +17,10 @@ namespace grainsweep::campaign {
 /// - Units: UDUNITS-2, whose database is read at the first unit, and deg, rev and the permille sign.
 [[nodiscard]] std::variant<double, std::string> in_si(std::string_view text, std::string_view unit);
 
+/// Returns the text with a point where a decimal comma stands, for "30,5 mm"; empty: no comma stands between digits, or
+/// brackets do, whose commas separate.
+[[nodiscard]] std::string with_decimal_point(std::string_view text);
+
 /// Returns the unit of a quantity as written, a part of `text`; empty without one or without a number.
 [[nodiscard]] std::string_view unit_of_quantity(std::string_view text);
 

@@ -1,6 +1,8 @@
 #include "sweep/study/condition.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +16,8 @@ namespace grainsweep::study {
 /// Recursive descent over the text; `nodes_` of the condition grow as parts are understood.
 class ConditionReader {
 public:
-    ConditionReader(std::string_view text, std::span<const std::string> names) : text_(text), names_(names) {}
+    ConditionReader(std::string_view text, std::span<const std::string> names, std::span<const std::string> units)
+        : text_(text), names_(names), units_(units) {}
 
     Condition read() {
         any();
@@ -110,19 +113,68 @@ private:
     std::size_t one_comparison() {
         if (++comparisons_ > most_comparisons) refuse(fmt::format("no more than {} comparisons", most_comparisons));
         if (const auto number_first = number()) {
+            const std::string stated = unit();
             const auto kind = sign();
-            return add({.kind = mirrored(kind), .name = name(), .number = *number_first});
+            const Node compared = value();
+            return add({.kind = mirrored(kind),
+                        .name = compared.name,
+                        .over = compared.over,
+                        .number = in_unit_of(compared, *number_first, stated)});
         }
-        const auto compared = name();
+        const Node compared = value();
+        const auto bound = [&](Kind kind) {
+            return add({.kind = kind, .name = compared.name, .over = compared.over, .number = number_for(compared)});
+        };
         if (take("between")) {
-            const double low = wanted_number();
+            const auto lower = bound(Kind::at_least);
             if (!take("and")) refuse("and is expected");
-            const auto lower = add({.kind = Kind::at_least, .name = compared, .number = low});
-            const auto upper = add({.kind = Kind::at_most, .name = compared, .number = wanted_number()});
+            const auto upper = bound(Kind::at_most);
             return add({.kind = Kind::all, .first = lower, .second = upper});
         }
-        const auto kind = sign();
-        return add({.kind = kind, .name = compared, .number = wanted_number()});
+        return bound(sign());
+    }
+
+    /// A name, or a ratio of two.
+    Node value() {
+        Node compared{.name = name()};
+        if (take_sign('/')) compared.over = name();
+        return compared;
+    }
+
+    /// The unit behind a number: up to a comparison, a bracket or a word that joins conditions.
+    std::string unit() {
+        std::string unit;
+        while (true) {
+            skip();
+            const auto rest = text_.substr(at_);
+            const auto end = std::min(rest.find_first_of(" \t\n()<>=!"), rest.size());
+            std::string part(rest.substr(0, end));
+            std::string small = part;
+            std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+            if (part.empty() || small == "and" || small == "or" || small == "not") return unit;
+            unit += (unit.empty() ? "" : " ") + part;
+            at_ += end;
+        }
+    }
+
+    double in_unit_of(const Node& compared, double number, const std::string& stated) {
+        if (stated.empty()) return number;
+        if (compared.over || compared.name >= units_.size())
+            refuse(fmt::format("a number without the unit '{}' is expected", stated));
+        const auto& wanted = units_[compared.name];
+        const auto converted =
+            campaign::in_si(fmt::format("{} {}", shortest_text(number), stated), wanted.empty() ? "1" : wanted);
+        if (const auto* why = std::get_if<std::string>(&converted))
+            throw campaign::input_error(
+                "--where", text_,
+                fmt::format("'{}' is in {}, and {}", names_[compared.name], wanted.empty() ? "1" : wanted, *why));
+        return std::get<double>(converted);
+    }
+
+    double number_for(const Node& compared) {
+        const double number = wanted_number();
+        const std::string stated = unit();
+        return in_unit_of(compared, number, stated);
     }
 
     Kind sign() {
@@ -173,14 +225,15 @@ private:
     }
 
     std::string_view text_;
-    std::span<const std::string> names_;
+    std::span<const std::string> names_, units_;
     std::size_t at_ = 0;
     int depth_ = 0, comparisons_ = 0;
     Condition condition_;
 };
 
-Condition Condition::read(std::string_view text, std::span<const std::string> names) {
-    return ConditionReader(text, names).read();
+Condition Condition::read(std::string_view text, std::span<const std::string> names,
+                          std::span<const std::string> units) {
+    return ConditionReader(text, names, units).read();
 }
 
 std::optional<bool> Condition::decide(std::size_t index, std::span<const double> values) const {
@@ -202,7 +255,7 @@ std::optional<bool> Condition::decide(std::size_t index, std::span<const double>
         default:
             break;
     }
-    const double value = values[node.name];
+    const double value = node.over ? values[node.name] / values[*node.over] : values[node.name];
     if (std::isnan(value)) return std::nullopt;
     if (node.kind == Kind::below) return value < node.number;
     if (node.kind == Kind::at_most) return value <= node.number;
@@ -218,7 +271,9 @@ std::vector<std::size_t> Condition::compared() const {
     std::vector<std::size_t> names;
     for (const auto& node : nodes_) {
         const bool comparison = node.kind != Kind::all && node.kind != Kind::any && node.kind != Kind::none;
-        if (comparison && std::ranges::find(names, node.name) == names.end()) names.push_back(node.name);
+        if (!comparison) continue;
+        for (const auto name : {node.name, node.over.value_or(node.name)})
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
     return names;
 }
@@ -231,6 +286,7 @@ void Condition::collect(std::size_t index, bool negated, std::size_t name, bool&
         collect(node.second, negated, name, from_below, from_above);
         return;
     }
+    if (node.over == name) from_below = from_above = true;  // by the sign of the other
     if (node.name != name) return;
     const bool lower_bound = node.kind == Kind::above || node.kind == Kind::at_least;
     (lower_bound != negated ? from_below : from_above) = true;

@@ -2,7 +2,9 @@
 //
 //   condition  = every { "or" every },   every = single { "and" single }
 //   single     = "not" single | "(" condition ")" | comparison
-//   comparison = NAME op NUMBER | NUMBER op NAME | NAME "between" NUMBER "and" NUMBER,   op: < <= > >=
+//   comparison = value op number | number op value | value "between" number "and" number,   op: < <= > >=
+//   value      = NAME | NAME "/" NAME
+//   number     = NUMBER | NUMBER UNIT    without a unit: in that of the value
 //
 // An undefined value makes a comparison neither true nor false, as NULL does in SQL. The condition holds only if it is
 // true.
@@ -19,9 +21,10 @@ namespace grainsweep::study {
 
 class Condition {
 public:
-    /// Parses a condition of the given names. Throws InputError at --where with the expected words and the nearest
-    /// name.
-    [[nodiscard]] static Condition read(std::string_view text, std::span<const std::string> names);
+    /// Parses a condition of the given names, whose values are in `units` (one per name, or none at all). Throws
+    /// InputError at --where with the expected words and the nearest name, or with a unit that does not fit.
+    [[nodiscard]] static Condition read(std::string_view text, std::span<const std::string> names,
+                                        std::span<const std::string> units = {});
 
     /// Returns whether the condition holds. `values`: one per name; NaN: undefined.
     [[nodiscard]] bool holds(std::span<const double> values) const;
@@ -35,6 +38,7 @@ private:
     struct Node {
         Kind kind = Kind::all;
         std::size_t name = 0;
+        std::optional<std::size_t> over = {};  ///< the name by which the value is divided
         double number = 0;
         std::size_t first = 0, second = 0;  ///< operands: a range of nodes for all and any, `first` for none
     };

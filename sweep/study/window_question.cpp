@@ -61,7 +61,10 @@ WindowQuestion::WindowQuestion(const ModelCases& cases, const WindowRequest& req
       answers_(answers ? std::move(answers) : std::make_shared<const Answers>(cases)) {
     names_ = cases.observable_names();
     for (const auto& name : cases.factor_names()) names_.push_back(name);
-    if (!stated_.condition.empty()) condition_ = Condition::read(stated_.condition, names_);
+    std::vector<std::string> units;
+    for (const auto& observable : cases.observables) units.push_back(observable.unit);
+    for (const auto& factor : cases.factors) units.push_back(factor.unit);
+    if (!stated_.condition.empty()) condition_ = Condition::read(stated_.condition, names_, units);
     if (request.objectives.size() == 2 && request.objectives[0].name == request.objectives[1].name)
         throw campaign::input_error("--minimize", request.objectives[1].name, "is named twice: one goal for each");
     for (const auto& objective : request.objectives) goals_.push_back(goal_of(objective, learned));
