@@ -16,6 +16,8 @@ constexpr std::array rotation_fields = {
     needed(fields::quantity<&Rotation::speed>("speed", "rad/s", "right hand")),
 };
 constexpr std::array translation_fields = {needed(fields::vector<&Translation::velocity>("velocity", "m/s", ""))};
+constexpr std::array conveyance_fields = {
+    needed(fields::vector<&Conveyance::velocity>("velocity", "m/s", "along the surface"))};
 constexpr std::array vibration_fields = {
     needed(fields::vector<&Vibration::amplitude>("amplitude", "m", "")),
     needed(fields::quantity<&Vibration::frequency>("frequency", "Hz", "", no_negative_number)),
@@ -60,6 +62,8 @@ constexpr std::array flight_fields = {
 constexpr std::array motion_rows = {
     fields::alternative<Motion, Rotation>("rotate", "about an axis", rotation_fields),
     fields::alternative<Motion, Translation>("shift", "at a velocity", translation_fields),
+    fields::alternative<Motion, Conveyance>("convey", "the surface moves, and the wall stays: a belt",
+                                            conveyance_fields),
     fields::alternative<Motion, Vibration>("vibrate", "to and fro", vibration_fields),
     fields::alternative<Motion, Press>("press", "a force acts, and the powder resists", press_fields),
     fields::alternative<Motion, Drive>("drive", "a torque acts, and the powder resists", drive_fields),
@@ -80,6 +84,9 @@ double pulsation(const Vibration& v) {
 Vec3 displacement(const Translation& m, double t) {
     return elapsed(m, t) * m.velocity;
 }
+Vec3 displacement(const Conveyance&, double) {
+    return {};
+}
 Vec3 displacement(const Vibration& m, double t) {
     const double sine = std::sin(pulsation(m) * elapsed(m, t) + m.phase) - std::sin(m.phase);
     return sine * m.amplitude;
@@ -98,6 +105,9 @@ Vec3 displacement(const Flight& m, double) {
 }
 
 Vec3 velocity(const Translation& m, double) {
+    return m.velocity;
+}
+Vec3 velocity(const Conveyance& m, double) {
     return m.velocity;
 }
 Vec3 velocity(const Vibration& m, double t) {
@@ -361,6 +371,7 @@ void take_state(Motion& motion, std::span<const Motion> from) {
 bool is_still(const Motion& motion) {
     if (is_free(motion)) return false;
     if (const auto* m = std::get_if<Translation>(&motion)) return m->velocity == Vec3{};
+    if (const auto* m = std::get_if<Conveyance>(&motion)) return m->velocity == Vec3{};
     if (const auto* m = std::get_if<Vibration>(&motion)) return m->amplitude == Vec3{} || m->frequency == 0;
     return std::get<Rotation>(motion).speed == 0;
 }
@@ -372,6 +383,9 @@ bool is_positive(double x) {
 }
 
 std::string flaw_of(const Translation& m) {
+    return finite(m.velocity) ? "" : "a motion must be finite";
+}
+std::string flaw_of(const Conveyance& m) {
     return finite(m.velocity) ? "" : "a motion must be finite";
 }
 std::string flaw_of(const Vibration& m) {

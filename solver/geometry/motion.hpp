@@ -3,6 +3,7 @@
 //
 //     translation   d = v s                                     s = min(max(t, start), end) - start
 //     vibration     d = A (sin(2 pi f s + phase) - sin(phase))  so d = 0 at the start
+//     convey        d = 0: the surface has the velocity v, and the body stays (a belt)
 //     rotation      by the angle w s, right hand, about an axis through a point
 //     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
 //     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
@@ -30,6 +31,12 @@ namespace grainsweep::geometry {
 
 struct Translation {
     Vec3 velocity{};                                                  ///< m/s
+    double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
+};
+
+/// Conveyance: the surface moves along itself, and the body stays.
+struct Conveyance {
+    Vec3 velocity{};                                                  ///< m/s, along the surface
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
 };
 
@@ -88,7 +95,7 @@ struct Flight {
     Vec3 angular_momentum{};                                          ///< about the centre, kg m2/s
 };
 
-using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flight>;
+using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flight, Conveyance>;
 /// Returns the alternatives of a Motion with the fields that a file sets. Centre, inertia and held axes of a flight
 /// have no place in it: the reader derives them from the shape.
 [[nodiscard]] std::span<const Type> motion_types();

@@ -53,6 +53,10 @@ using FileReader = std::function<std::string(const std::string& name)>;
 /// Returns the machine as numbers, for complete inputs and the contents of their files. Throws InputError.
 [[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs, const Files& files = {});
 
+/// Returns the value in the unit with which expressions of a machine calculate: "12.6 rad/s" for 120 rpm. Empty: it is
+/// the unit of the parameter.
+[[nodiscard]] std::string value_in_expressions(const std::string& unit, double value);
+
 /// Returns a description of machines in one line.
 [[nodiscard]] std::string_view machine_summary();
 /// Returns "machine:" and 32 hexadecimal digits.

@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 #include "sweep/campaign/quantity.hpp"
 
@@ -261,7 +262,9 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
         if (!text.is_string() || is_one_quantity(text.get_ref<const std::string&>())) continue;
         const std::string plain = with_si_numbers(text.get_ref<const std::string&>());
         const auto parsed = Formula::parse(plain.empty() ? text.get<std::string>() : plain, names);
-        if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
+        const auto pointed = with_decimal_point(text.get_ref<const std::string&>());
+        if (const auto* why = std::get_if<std::string>(&parsed))
+            (*lets)[name].refuse(pointed.empty() ? *why : fmt::format("the decimal sign is a point: '{}'", pointed));
         used[name] = std::get<Formula>(parsed).names();
     }
     // A definition that needs no open name is next.
@@ -355,6 +358,16 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
     return scope;
 }
 
+std::string value_in_expressions(const std::string& unit, double value) {
+    std::string why;
+    const auto si = unit.empty() || unit == "1" ? std::nullopt : calculating_unit(unit, why);
+    if (!si || *si == unit) return {};
+    const auto converted = in_si(fmt::format("{} {}", shortest(value), unit), *si);
+    const auto* number = std::get_if<double>(&converted);
+    if (number == nullptr || *number == value) return {};
+    return *si == "1" ? fmt::format("{:.4g}", *number) : fmt::format("{:.4g} {}", *number, *si);
+}
+
 std::string with_si_numbers(std::string_view expression) {
     const auto is = [&](std::size_t k, auto... kind) {
         const auto c =
@@ -383,6 +396,9 @@ std::string with_si_numbers(std::string_view expression) {
             while (is(behind, letter, digit) ||
                    (behind > unit && behind < expression.size() && expression[behind] == '/'))
                 ++behind;
+        const bool alone = behind > unit && expression.find_first_not_of(" \t+-") == at &&
+                           expression.find_first_not_of(" \t", behind) == std::string_view::npos;
+        if (alone) return {};
         std::string why, word(expression.substr(unit, behind - unit));
         while (!word.empty() && !calculating_unit(word, why))  // "29 mm/hub": the unit ends before a sign of division
             word.resize(word.rfind('/') == std::string::npos ? 0 : word.rfind('/'));
@@ -391,9 +407,6 @@ std::string with_si_numbers(std::string_view expression) {
             at += digits;
             continue;
         }
-        const bool alone = expression.find_first_not_of(" \t+-") == at &&
-                           expression.find_first_not_of(" \t", unit + word.size()) == std::string_view::npos;
-        if (alone) return {};
         const auto si = in_si(fmt::format("{} {}", expression.substr(at, digits), word), *calculating_unit(word, why));
         plain += fmt::format("({})", shortest(std::get<double>(si)));
         united = true;

@@ -1,6 +1,7 @@
 #include "sweep/campaign/machine_scope.hpp"
 
 #include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/quantity.hpp"
 
@@ -73,7 +74,9 @@ double MachineScope::number(const Cursor& place, std::string_view unit, const In
     if (place.json().is_number()) {
         value = place.json().get<double>();
     } else if (place.json().is_string()) {
-        const std::string written = place.json().get<std::string>(), united = with_si_numbers(written);
+        const bool si = value_in_expressions(std::string(unit), 1).empty();  // bounds of a speed in rpm are in rpm
+        const std::string written = place.json().get<std::string>(),
+                          united = si ? with_si_numbers(written) : std::string();
         const std::string& given = united.empty() ? written : united;
         if (united.empty() && is_quantity(given)) {
             const auto read = in_si(given, unit);
@@ -83,7 +86,7 @@ double MachineScope::number(const Cursor& place, std::string_view unit, const In
             const auto known = names();
             const auto parsed = Formula::parse(given, known);
             if (const auto pointed = with_decimal_point(written); !pointed.empty())
-                place.refuse(fmt::format("a decimal point is expected: '{}'", pointed));
+                place.refuse(fmt::format("the decimal sign is a point: '{}'", pointed));
             if (const auto* why = std::get_if<std::string>(&parsed)) refuse_expression(place, written, *why);
             require_unit(place, given, unit);
             value = std::get<Formula>(parsed)([this](std::string_view name) { return numbers_.find(name)->second; });

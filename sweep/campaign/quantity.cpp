@@ -352,8 +352,6 @@ struct Written {
 
 std::variant<double, std::string> in_si(std::string_view text, std::string_view unit) {
     if (text.size() > longest_quantity) return fmt::format("a quantity has at most {} characters", longest_quantity);
-    if (const auto pointed = with_decimal_point(text); !pointed.empty())
-        return fmt::format("a decimal point is expected: '{}'", pointed);
     const Written written(text);
     if (!written.number || written.error == std::errc::invalid_argument) return "it begins with no number";
     if (written.error != std::errc()) return "the number is beyond double precision";

@@ -3,6 +3,7 @@
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
@@ -86,10 +87,19 @@ void add_rules(store::Table& table, const std::vector<campaign::Factor>& factors
     for (std::size_t j = 0; j < factors.size(); ++j) table.rows[j].emplace_back(factor_rules(factors[j], scene));
 }
 
+/// "12.57 rad/s" of a value in rpm, with which the expressions of a machine calculate; empty elsewhere.
+std::string in_expressions(const Campaign& campaign, const std::string& unit, const Value& value) {
+    const auto* number = std::get_if<double>(&value);
+    if (number == nullptr || !campaign::is_machine(campaign.scene().name)) return {};
+    return campaign::value_in_expressions(unit, *number);
+}
+
 store::Table factors_of(const Campaign& campaign) {
     store::Table table{{"factor", "unit", "low", "high", "scale", "levels"}, {}};
     for (const auto& factor : campaign.space.factors) {
-        const Cell unit = campaign.scene().find_parameter(factor.name)->unit;
+        const auto& stated = campaign.scene().find_parameter(factor.name)->unit;
+        const auto calculated = in_expressions(campaign, stated, 1.0);
+        const Cell unit = calculated.empty() ? stated : fmt::format("{} (1 {} is {})", stated, stated, calculated);
         if (const auto* range = std::get_if<campaign::Between>(&factor.range)) {
             const std::string scale = range->scale == campaign::Scale::log ? "log" : "linear";
             table.rows.push_back({factor.name, unit, range->low, range->high, scale, Cell{}});
@@ -409,7 +419,9 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     for (const auto& [name, value] : campaign::fixed_as_stated(campaign.space)) {
         const auto& unit = scene.find_parameter(name)->unit;
         const bool bare = unit.empty() || unit == "1" || !campaign.space.fixed.contains(name);
-        std::cout << fmt::format("fixed      {} = {}{}\n", name, campaign::to_text(value), bare ? "" : " " + unit);
+        const auto calculated = bare ? std::string() : in_expressions(campaign, unit, value);
+        std::cout << fmt::format("fixed      {} = {}{}{}\n", name, campaign::to_text(value), bare ? "" : " " + unit,
+                                 calculated.empty() ? "" : fmt::format(" ({} in expressions)", calculated));
     }
     std::cout << '\n';
     report::write(std::cout, factors_of(campaign), Format::text);

@@ -151,7 +151,8 @@ private:
             std::string part(rest.substr(0, end));
             std::string small = part;
             std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
-            if (part.empty() || small == "and" || small == "or" || small == "not") return unit;
+            const bool joins = small == "and" || small == "or" || small == "not";
+            if (part.empty() || joins || std::ranges::find(names_, part) != names_.end()) return unit;
             unit += (unit.empty() ? "" : " ") + part;
             at_ += end;
         }

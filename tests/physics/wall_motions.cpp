@@ -193,6 +193,34 @@ TEST(WallMotions, ABeltTakesASphereToTwoSeventhsOfItsSpeed) {
     EXPECT_NEAR(tests::state_of(*engine).velocity[0][0] / 0.2, 2.0 / 7, 1e-3 * 2 / 7);
 }
 
+// A conveyance moves the surface of any wall as a shift moves that of a plane, bit by bit, and the wall stays.
+TEST(WallMotions, AConveyanceMovesTheSurfaceAlone) {
+    const Vec3 velocity{0.2, 0, 0};
+    const auto after = [&](const dem::Wall& wall, int steps) {
+        auto setup = one_sphere({}, {}, {wall});
+        setup.gravity = {0, 0, -gravity};
+        setup.spheres[0].position[2] = radius - resting_overlap(setup);
+        const auto engine = dem::make_engine(setup, {});
+        engine->run(steps);
+        return tests::state_of(*engine);
+    };
+    constexpr int steps = 60000;
+    const auto shifted = after({dem::Plane{}, {dem::Translation{.velocity = velocity}}}, steps);
+    const auto plane = after({dem::Plane{}, {geometry::Conveyance{.velocity = velocity}}}, steps);
+    EXPECT_EQ(plane.position, shifted.position);
+    EXPECT_EQ(plane.velocity, shifted.velocity);
+    // On a finite belt the sphere comes to the same speed, then leaves its end; the belt is still there.
+    const double way = shifted.position[0][0];
+    ASSERT_GT(way, 0.01);
+    const dem::Bar long_belt{-1, 1, -0.01, 0, 1e-3}, short_belt{-1, way / 2, -0.01, 0, 1e-3};
+    const auto carried = after({long_belt, {geometry::Conveyance{.velocity = velocity}}}, steps);
+    EXPECT_NEAR(carried.velocity[0][0] / 0.2, 2.0 / 7, 1e-3 * 2 / 7);
+    EXPECT_NEAR(carried.position[0][0], way, 1e-6);
+    const auto fallen = after({short_belt, {geometry::Conveyance{.velocity = velocity}}}, steps);
+    EXPECT_LT(fallen.position[0][2], 0);
+    EXPECT_TRUE(geometry::is_still(geometry::Conveyance{}));
+}
+
 // What leaves a surface where it is needs no new lists: a sphere above the belt, beside a roller and in a drum.
 TEST(WallMotions, ListsFollowTheSurfaceOnly) {
     const dem::Plane floor{{0, 0, -0.0205}, {0, 0, 1}};

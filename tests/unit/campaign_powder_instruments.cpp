@@ -90,6 +90,12 @@ std::string with_commas(std::string text) {
     return text;
 }
 
+std::string utf16_of(const std::string& text) {
+    std::string bytes;
+    for (const char c : text) bytes += c, bytes += '\0';
+    return bytes;
+}
+
 std::string little(std::size_t value, int bytes) {
     std::string text;
     for (int k = 0; k < bytes; ++k) text += static_cast<char>(value >> 8 * k & 0xFFU);
@@ -444,10 +450,7 @@ std::vector<Layout> file_exports() {
          {},
          "volume",
          "counts the rows"},
-        {"Utf16WithoutMark",
-         std::string("S\0i\0z\0e\0 \0u\0m\0;\0V\0o\0l\0 \0U\0n\0d\0e\0r\0 "
-                     "\0%\0\n\0001\0000\0;\0000\0\n\0006\0000\0;\0005\0000\0\n\0009\0009\0;\0001\0000\0000\0\n\0",
-                     110)},
+        {"Utf16WithoutMark", utf16_of("Size um;Vol Under %\n10;0\n60;50\n99;100\n")},
         {"MarksOfThousands", "Size (nm);Volumen kumulativ (%)\n8.000,5;0\n60.000,0;50\n444.100,0;100\n"},
         {"TableOverTwoPages", "Size (um);Vol Under %\n10;0\n60;50\n\n100;80\n444;100\n"},
         {"RestBelowIsNoSize",

@@ -3,6 +3,7 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_parameters.hpp"
 #include "tests/support/machines.hpp"
 
 #include <gtest/gtest.h>
@@ -60,6 +61,22 @@ TEST(MachineChoices, AWordChoosesSizesAndAFileBringsThem) {
     EXPECT_EQ(spec.warnings[0].kind, "fine");
     EXPECT_EQ(spec.warnings[0].sentence, "file has 1 mm");
     EXPECT_THROW((void)campaign::machine_spec(*machine, inputs), campaign::InputError) << "contents are not given";
+}
+
+// A number with a unit is an SI number in an expression, as it is alone.
+TEST(MachineChoices, ExpressionsTakeQuantities) {
+    const auto plain = [](std::string_view text) { return campaign::with_si_numbers(text); };
+    EXPECT_EQ(plain("29 mm - hub"), "(0.029) - hub");
+    EXPECT_EQ(plain("0.5*(high + 3 mm)/2 s"), "0.5*(high + (0.003))/(2)");
+    EXPECT_EQ(plain("2 mm/hub + 60 rpm"), "(0.002)/hub + (6.283185307179586)");
+    EXPECT_EQ(plain("3 mm/s*t"), "(0.003)*t");
+    EXPECT_EQ(plain("29 mm"), "");
+    EXPECT_EQ(plain("-29 mm"), "");
+    EXPECT_EQ(plain("2*hub + 1e-3"), "");
+    EXPECT_EQ(plain("x2 + y3"), "");
+    EXPECT_EQ(campaign::value_in_expressions("rpm", 120), "12.57 rad/s");
+    EXPECT_EQ(campaign::value_in_expressions("Hz", 25), "");
+    EXPECT_EQ(campaign::value_in_expressions("mm", 3), "0.003 m");
 }
 
 TEST(MachineChoices, ParametersSayWhenTheyMatter) {

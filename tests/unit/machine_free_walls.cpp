@@ -139,7 +139,7 @@ TEST(MachineFreeWalls, HaveOneSentenceWhereTheyAreWrong) {
               std::string::npos);
     EXPECT_NE(refusal("/walls/lid/motion/0/drive", R"({"axis": [0, 0, 1], "torque": 1, "inertia": 1,
                                                        "speed_at_most": 1})")
-                  .find(R"(a motion is one of "rotate", "shift", "vibrate", "press", "drive" and "free")"),
+                  .find(R"(a motion is one of "rotate", "shift", "convey", "vibrate", "press", "drive" and "free")"),
               std::string::npos);
     const auto refusal_of_free = [&](const char* value) {
         return refusal("/walls/lid/motion/0", (std::string(R"({"free": )") + value + "}").c_str());

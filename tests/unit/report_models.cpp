@@ -46,6 +46,35 @@ std::string refusal(const Ask& ask) {
     return "accepted";
 }
 
+const std::vector<std::string> units = {"kg/s", "1", "m"};
+
+TEST(Conditions, TakeUnitsAndRatios) {
+    const auto united = [](std::string_view text, std::vector<double> values) {
+        return Condition::read(text, names, units).holds(values);
+    };
+    EXPECT_TRUE(united("mfr >= 0.4 g/s and gap < 3 mm", {0.0004, 0, 0.0029}));
+    EXPECT_FALSE(united("mfr >= 0.4 g/s and gap < 3 mm", {0.00039, 0, 0.0029}));
+    EXPECT_TRUE(united("(0.4 g/s <= mfr) or gap between 2 mm and 30 um", {0.0004, 0, 0}));
+    EXPECT_TRUE(united("not rough < 5 %", {0, 0.06, 0}));
+    EXPECT_TRUE(united("mfr/gap > 2 and rough < 1", {3, 0.5, 1}));
+    EXPECT_FALSE(united("mfr/gap > 2", {3, 0.5, none}));
+    EXPECT_FALSE(united("mfr / gap > 2", {0, 0.5, 0}));
+    const auto ratio = Condition::read("mfr/gap > 2", names, units);
+    EXPECT_THAT(ratio.compared(), ElementsAre(0U, 2U));
+    EXPECT_EQ(ratio.direction(0), 1);
+    EXPECT_EQ(ratio.direction(2), 0);
+    const auto refused = [](std::string_view text) {
+        try {
+            (void)Condition::read(text, names, units);
+        } catch (const campaign::InputError& wrong) {
+            return std::string(wrong.what());
+        }
+        return std::string("accepted");
+    };
+    EXPECT_THAT(refused("mfr > 3 mm"), HasSubstr("'mfr' is in kg/s, and 'mm' does not fit 'kg/s'"));
+    EXPECT_THAT(refused("mfr/gap > 3 mm"), HasSubstr("a number without the unit 'mm' is expected"));
+}
+
 std::string refused_condition(std::string_view text) {
     return refusal([&] { return Condition::read(text, names); });
 }
@@ -93,7 +122,7 @@ TEST(WindowCondition, KnowsWhatItComparesAndWhichWay) {
 TEST(WindowCondition, RefusesTheRestInOneSentence) {
     EXPECT_THAT(refused_condition("roughh < 1"),
                 testing::AllOf(HasSubstr("--where"), HasSubstr("Did you mean 'rough'")));
-    EXPECT_THAT(refused_condition("mfr / gap > 1"), HasSubstr("<, <=, > or >= is expected at '/ gap > 1'"));
+    EXPECT_THAT(refused_condition("mfr * gap > 1"), HasSubstr("<, <=, > or >= is expected at '* gap > 1'"));
     EXPECT_THAT(refused_condition("mfr = 1"), HasSubstr("<, <=, > or >= is expected"));
     EXPECT_THAT(refused_condition("mfr > gap"), HasSubstr("a number is expected at 'gap'"));
     EXPECT_THAT(refused_condition("(mfr > 1"), HasSubstr("a closing bracket is expected at its end"));

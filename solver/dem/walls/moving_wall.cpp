@@ -78,6 +78,7 @@ std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motio
         if (const auto* t = std::get_if<Translation>(&motions[k])) moves[k] = !stays(t->velocity);
         if (const auto* v = std::get_if<Vibration>(&motions[k])) moves[k] = !stays(v->amplitude);
         if (const auto* p = std::get_if<Press>(&motions[k])) moves[k] = !stays(p->along);
+        if (std::holds_alternative<geometry::Conveyance>(motions[k])) moves[k] = false;
         if (moves[k]) kept.push_back(motions[k]);
     }
     return kept;
@@ -292,6 +293,7 @@ double MovingWall::bound_of_speed_at(std::span<const Motion> motions, double tim
         if (std::visit([time](const auto& m) { return time < m.start || time >= m.end; }, motion)) continue;
         const auto* r = std::get_if<Rotation>(&motion);
         const auto* t = std::get_if<Translation>(&motion);
+        const auto* c = std::get_if<geometry::Conveyance>(&motion);
         const auto* v = std::get_if<Vibration>(&motion);
         const auto* p = std::get_if<Press>(&motion);
         const auto* d = std::get_if<Drive>(&motion);
@@ -299,6 +301,7 @@ double MovingWall::bound_of_speed_at(std::span<const Motion> motions, double tim
         for (std::size_t k = 0; k < 3; ++k) {
             if (p != nullptr) shifts[k] += p->fastest * std::abs(p->along[k]);
             if (t != nullptr) shifts[k] += std::abs(t->velocity[k]);
+            if (c != nullptr) shifts[k] += std::abs(c->velocity[k]);
             if (v != nullptr) shifts[k] += std::abs(2 * std::numbers::pi * v->frequency * v->amplitude[k]);
         }
         if (r != nullptr)
