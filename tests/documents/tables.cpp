@@ -136,7 +136,7 @@ bool has_own_page(const std::string& name) {
 
 /// The page of docs/scenes with the section of a machine that has no page of its own.
 std::string page_of_section(const std::string& name) {
-    for (const char* page : {"machines.md", "laboratory.md", "laboratory_bulk.md"})
+    for (const char* page : {"machines.md", "conveying.md", "laboratory.md", "laboratory_bulk.md"})
         if (std::filesystem::exists(source(std::string("docs/scenes/") + page)))
             if (read_page(std::string("docs/scenes/") + page).text.find("\n## " + name + "\n") != std::string::npos)
                 return page;

@@ -142,16 +142,16 @@ mill() {
         -o "$pictures/mill_power.png"
 }
 
-# Every installed machine as it is drawn, without the controls of the page; the chute, which starts empty, and the recoater,
-# which shows its work only later, in a case.
+# Every installed machine as it is drawn, without the controls of the page; machines that fill or
+# work only later are shown in a case.
 machines() {
     local name
     for name in $("$program" machines --format csv | tail -n +2 | cut -d, -f1); do
-        if [ "$name" = chute ] || [ "$name" = recoater ]; then
-            "$program" solve "$here/configs/machine_$name.json" --watch "$name.html" --frames 20
-        else
-            "$program" draw "$name" -o "$name.html"
-        fi
+        case $name in
+            chute | recoater | belt | vibrating_conveyor | vane_feeder | screen)  # they are filled while they run
+                "$program" solve "$here/configs/machine_$name.json" --watch "$name.html" --frames 20 ;;
+            *) "$program" draw "$name" -o "$name.html" ;;
+        esac
         sed -i 's#</head>#<style>header, .watch-bar, .watch-choices, .watch-legends {display: none !important}</style></head>#' "$name.html"
         shoot "$name.html#t=0.6" "machine_$name" 640 480 0.6
     done
