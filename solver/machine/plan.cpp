@@ -211,6 +211,41 @@ void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
+/// Volume of all particles at the start and of all that are fed, m3.
+double volume_of_powder(const Spec& spec) {
+    double volume = 0;
+    for (const auto& fill : spec.fills) {
+        if (const auto* region = std::get_if<Fill>(&fill))
+            volume += static_cast<double>(region->count) * mean_volume(spec, region->mix);
+        if (const auto* placed = std::get_if<std::vector<Placed>>(&fill))
+            for (const Placed& one : *placed) volume += spec.species[one.species].mean_volume();
+    }
+    for (const Feed& feed : spec.feeds)
+        volume += feed.rate * duration_of(spec, feed.during) * mean_volume(spec, feed.mix) / mean_mass(spec, feed.mix);
+    return volume;
+}
+
+/// Warns of walls that are far larger than the powder, as an STL file in mm that is read in m.
+void warn_of_scale(const Spec& spec, std::vector<Warning>& warnings) {
+    constexpr double far_larger = 300, many_diameters = 3000;
+    double largest = 0;
+    for (const Species& species : spec.species) largest = std::max(largest, species.largest());
+    const double bed = std::cbrt(volume_of_powder(spec));
+    for (const MachineWall& wall : spec.walls) {
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto extent = std::visit([k](const auto& shape) { return shape.extent(k); }, wall.shape);
+            if (extent.bounded()) longest = std::max(longest, extent.high - extent.low);
+        }
+        if (bed > 0 && longest > far_larger * bed && longest > many_diameters * largest)
+            warnings.push_back(
+                {"a wall far larger than the powder",
+                 wall.name + sentence(" is %.3g m long, and the powder would fill a cube of %.2g m: an STL "
+                                      "file in mm needs \"scale\": \"1 mm\"",
+                                      longest, bed)});
+    }
+}
+
 /// Warns of phases that wait for rest or for the end of a flow while walls move or particles are fed.
 void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
     for (std::size_t p = 0; p < spec.phases.size(); ++p) {
@@ -347,6 +382,7 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     warn_of_falling(spec, warnings);
     warn_of_feeds(spec, warnings);
     warn_of_walls(spec, warnings);
+    warn_of_scale(spec, warnings);
     warn_of_phases(spec, warnings);
     warn_of_frames(spec, warnings);
     std::set<std::string> kinds;

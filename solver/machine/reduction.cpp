@@ -42,6 +42,12 @@ double greatest_of(std::span<const Sample> samples) {
     return samples.empty() ? unknown : std::ranges::max_element(samples, {}, &Sample::value)->value;
 }
 
+double greatest_magnitude_of(std::span<const Sample> samples) {
+    double greatest = samples.empty() ? unknown : 0;
+    for (const Sample& sample : samples) greatest = std::max(greatest, std::abs(sample.value));
+    return greatest;
+}
+
 /// Least squares over time.
 double slope_of(std::span<const Sample> samples) {
     if (samples.size() < 2) return unknown;
@@ -117,6 +123,8 @@ constexpr std::array all_reductions = {
     ReductionInfo{"sd", "standard deviation over the frames", Shape::scalar, deviation_of},
     ReductionInfo{"min", "least value over the frames", Shape::scalar, least_of},
     ReductionInfo{"max", "largest value over the frames", Shape::scalar, greatest_of},
+    ReductionInfo{"largest_magnitude", "largest magnitude over the frames, whichever its sign", Shape::scalar,
+                  greatest_magnitude_of},
     ReductionInfo{
         "change", "value at the last frame less that at the first", Shape::scalar, change_of, nullptr, {}, true},
     ReductionInfo{"slope", "least-squares slope over time, with a standard error from the rates between frames",

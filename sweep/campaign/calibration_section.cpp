@@ -175,8 +175,10 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const Observ
                         rows.size(), most_points));
     refuse_row_numbers(file, table.header(), rows);
     const auto comma = measured.over.rfind(", ");  // "time, s"
-    convert_column(file, table.header()[0], 0, comma == std::string::npos ? "1" : measured.over.substr(comma + 2),
-                   rows);
+    const std::string along = comma != std::string::npos        ? measured.over.substr(comma + 2)
+                              : measured.shape == Shape::series ? "s"
+                                                                : "1";
+    convert_column(file, table.header()[0], 0, along, rows);
     for (std::size_t k = 1; k < columns; ++k) convert_column(file, table.header()[k], k, measured.unit, rows);
     if ((columns == 3) == has_error)
         file.refuse(columns == 3

@@ -117,7 +117,7 @@ TEST(CalibrateCampaign, SaysWhatTheTargetsCannotGive) {
 TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
     const Folder folder;
     // y_series is y times the time, y = x1 + 15 halves.
-    folder.write("curve.csv", "time (s),y,sd\n0.25,1.95,0.02\n0.77772,6.066216,0.02\n");
+    folder.write("curve.csv", "time (ms),y (%),sd (%)\n250,195,2\n777.72,606.6216,2\n");
     auto asked = json::parse(R"({"campaign": "along", "scene": "rehearsal",
       "factors": [{"name": "x1", "between": [0, 1]}], "fixed": {"behaviour": "huge"},
       "calibration": {"targets": [{"observable": "y_series", "file": "curve.csv"}], "discrepancy": {"y_series": 0.01},
@@ -134,6 +134,8 @@ TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
         folder.write("curve.csv", file);
         return refusal(folder, asked);
     };
+    EXPECT_THAT(refused("time (mm),y,sd\n1,1,1\n2,2,1\n"), HasSubstr("'mm' does not fit 's'"));
+    EXPECT_THAT(refused("time (s),y (mm),sd\n1,1,1\n2,2,1\n"), HasSubstr("the head \"y (mm)\" states a unit"));
     EXPECT_THAT(refused("time\n1\n"), HasSubstr("its header has 1 columns"));
     EXPECT_THAT(refused("time,y\n0.1,1\n0.2,2\n"), HasSubstr("its lines have no error"));
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.1,2,1\n"), HasSubstr("record 3: places along the curve must grow"));

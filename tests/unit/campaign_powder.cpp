@@ -1,5 +1,6 @@
 // Powder files: sizes of laws, percentiles and files, cuts, numbers of a powder.
 #include "sweep/campaign/powder.hpp"
+#include "sweep/campaign/powder_result.hpp"
 
 #include "solver/particles/size_laws.hpp"
 #include "solver/particles/size_table.hpp"
@@ -10,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <string>
@@ -158,6 +160,51 @@ TEST(FileContents, StandBeforeTheFileAtTheirPath) {
     EXPECT_EQ(std::get<Files>(files).at("size_file"), "made by the program");
     const auto none = campaign::files_named({{"tool", std::string("file:0123456789abcdef0123456789abcdef:/nowhere")}});
     EXPECT_EQ(std::get<std::string>(none), "tool: cannot read /nowhere");
+}
+
+// The file of a calibration is the powder with which it ran, what the campaign fixes, and the result over both.
+TEST(PowderResults, AreWholePowders) {
+    const Folder folder;
+    folder.write("sizes.csv", "diameter,volume_below\n1e-3,0\n2e-3,1\n");
+    folder.write("sand.json", R"({"powder": "sand", "notes": "lot 12", "material": {"density": "2650 kg/m3"},
+        "sizes": {"file": "sizes.csv"}, "contacts": {"restitution": 0.5, "friction": 0.3},
+        "measured": [{"what": "bulk density", "value": "1500 kg/m3"}]})");
+    folder.write("p.csv", "friction\n0.4\n");
+    const campaign::PowderResult result{{{"friction", 0.4}}, {{"angle", "deg", 33, 1}}, "p.csv"};
+    const auto written = [&](const char* campaign_text, const std::filesystem::path& into) {
+        const auto config = folder.write("c.json", campaign_text);
+        const auto text = campaign::powder_with(config, "fit", result, into);
+        folder.write("fit_powder.json", text.json);
+        return text;
+    };
+    const auto beside =
+        written(R"({"campaign": "c", "powder": "sand.json", "fixed": {"wall_friction": "20 %"}})", folder.path());
+    EXPECT_FALSE(beside.sizes);
+    const auto powder = campaign::read_powder(folder.path() / "fit_powder.json");
+    ASSERT_TRUE(powder.sizes);
+    EXPECT_EQ(campaign::lacks_of(powder), "");
+    const auto& document = *powder.document;
+    EXPECT_EQ(document["material"]["density"], "2650 kg/m3");
+    EXPECT_EQ(document["contacts"]["friction"], 0.4);
+    EXPECT_EQ(document["contacts"]["restitution"], 0.5);
+    EXPECT_EQ(document["contacts"]["wall_friction"], "20 %");
+    EXPECT_EQ(document["measured"].size(), 2U);
+    EXPECT_THAT(document["notes"].get<std::string>(),
+                testing::AllOf(HasSubstr("sand.json (lot 12)"), HasSubstr("friction at the setting of highest density"),
+                               HasSubstr("wall_friction from the campaign c.json")));
+    const auto apart = written(R"({"campaign": "c", "powder": "sand.json"})", folder.path() / "elsewhere");
+    ASSERT_TRUE(apart.sizes);
+    EXPECT_EQ(apart.sizes->first, "fit_sizes.csv");
+    EXPECT_THAT(apart.json, HasSubstr("\"file\": \"fit_sizes.csv\""));
+    // Without a powder file: the campaign's own numbers; what is missing stays missing.
+    (void)written(R"({"campaign": "c", "fixed": {"diameter": "3 mm", "friction": "2*x"}})", folder.path());
+    const auto bare = campaign::read_powder(folder.path() / "fit_powder.json");
+    EXPECT_EQ(bare.diameter, 0.003);
+    EXPECT_EQ(campaign::lacks_of(bare), "density");
+    EXPECT_EQ((*bare.document)["contacts"]["friction"], 0.4);
+    // The powder of a species.
+    (void)written(R"({"campaign": "c", "machine": {"species": {"a": {"powder": "sand.json"}}}})", folder.path());
+    EXPECT_TRUE(campaign::read_powder(folder.path() / "fit_powder.json").sizes);
 }
 
 }  // namespace grainsweep::tests::campaign_powder_test

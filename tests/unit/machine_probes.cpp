@@ -154,6 +154,9 @@ TEST(MachineProbes, LaceyIsZeroApartAndAboveOneInPerfectOrder) {
     EXPECT_FALSE(std::isnan(apart.look("lacey", with("of", of({0, 1}), "cell", 0.01, "least", 0.26))));
     EXPECT_TRUE(std::isnan(apart.look("lacey", with("of", of({0, 1}), "cell", 0.01, "least", 0.27))));
     EXPECT_NEAR(8 * v / 1e-6, 0.268, 1e-3);
+    EXPECT_TRUE(std::isnan(ordered.look("lacey", with("of", of({0, 1}), "cell", 1.0, "least", 0.0)))) << "one cell";
+    EXPECT_TRUE(std::isnan(ordered.look("lacey", with("of", of({0, 1}), "cell", 0.005, "least", 0.0))))
+        << "one grain a cell";
     EXPECT_TRUE(
         std::isnan(apart.look("lacey", with("of", of({0, 1}), "cell", 0.01, "in", box({0, 0, 0}, {0.02, 1, 1})))))
         << "one species alone";

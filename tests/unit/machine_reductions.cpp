@@ -28,6 +28,8 @@ TEST(MachineReductions, AreTheFiguresOfTheValues) {
     EXPECT_DOUBLE_EQ(reduced("last", four), 2);
     EXPECT_DOUBLE_EQ(reduced("min", four), -1);
     EXPECT_DOUBLE_EQ(reduced("max", four), 4);
+    EXPECT_DOUBLE_EQ(reduced("largest_magnitude", four), 4);
+    EXPECT_DOUBLE_EQ(reduced("largest_magnitude", samples({{0, 3}, {1, -7}})), 7);
     EXPECT_DOUBLE_EQ(reduced("sd", four), std::sqrt((1.0 + 9 + 4 + 0) / 4));
     EXPECT_DOUBLE_EQ(reduced("integral", four), 1 + 1.5 + 6);
     // Mean time 1.75: sum (t - 1.75)(x - 2) = -1.75 + 2.25 + 0.5 + 0, sum (t - 1.75)^2 = 8.75.

@@ -6,7 +6,8 @@
 //     s^2 = sum V_c (p_c - P)^2/sum V_c      s0^2 = P (1 - P)      sr^2 = P (1 - P) (P v_B + (1 - P) v_A)/mean V_c
 //     M = (s0^2 - s^2)/(s0^2 - sr^2),        v_s = sum v^2/sum v over the spheres of a species
 //
-// over the cells that hold at least a fifth of their volume. 0: apart, 1: mixed as by chance.
+// over the cells that hold at least a fifth of their volume. 0: apart, 1: mixed as by chance. Undefined for fewer than
+// two cells, and where cells have fewer than two grains on average.
 #include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
@@ -16,6 +17,9 @@
 
 namespace grainsweep::machine::probes {
 namespace {
+
+/// By chance alone cells of two grains scatter by half of what separate powders do; cells of one are always apart.
+constexpr double most_by_chance = 0.5;
 
 struct LaceyCell {
     double first = 0, all = 0;
@@ -64,10 +68,11 @@ private:
             variance += cell.all * off * off;
             ++count;
         }
-        if (count == 0) return undefined;
+        if (count < 2) return undefined;  // one cell has the shares of the bed
         const double apart = share * (1 - share);
         const double mixed =
             apart * (share * squares[1] / volume[1] + (1 - share) * squares[0] / volume[0]) / (solid / count);
+        if (!(mixed < most_by_chance * apart)) return undefined;
         return (apart - variance / solid) / (apart - mixed);
     }
 
