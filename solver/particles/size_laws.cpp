@@ -29,7 +29,7 @@ double standard_share(double z) {
     return boost::math::erfc(-z / std::numbers::sqrt2) / 2;
 }
 
-std::string line_of(double diameter, double below) {
+std::string table_line(double diameter, double below) {
     std::array<char, 64> line{};  // nine digits: the same text whatever the last bits of exp and log are
     std::snprintf(line.data(), line.size(), "%.9g,%.9g\n", diameter, below);
     return line.data();
@@ -44,7 +44,7 @@ struct Law {
 std::string table_by_volume(const Law& law) {
     std::string csv = "diameter,volume_below\n";
     for (std::size_t k = 0; k < line_shares.size(); ++k)
-        csv += line_of(law.quantile(line_shares[k]), k == 0 ? 0 : k + 1 == line_shares.size() ? 1 : line_shares[k]);
+        csv += table_line(law.quantile(line_shares[k]), k == 0 ? 0 : k + 1 == line_shares.size() ? 1 : line_shares[k]);
     return csv;
 }
 
@@ -71,14 +71,14 @@ std::string table_up_to_all_volume(const Law& law) {
     std::ranges::sort(sizes);
     const double last = volume_quantile(law, line_shares.back(), first);
     constexpr double apart = 1.01;  // closer sizes give no more
-    std::string csv = "diameter,volume_below\n" + line_of(first, 0);
+    std::string csv = "diameter,volume_below\n" + table_line(first, 0);
     double before = first;
     for (const double size : sizes)
         if (size > apart * before && apart * size < last) {
-            csv += line_of(size, law.volume_below(size));
+            csv += table_line(size, law.volume_below(size));
             before = size;
         }
-    return csv + line_of(last, 1);
+    return csv + table_line(last, 1);
 }
 
 }  // namespace

@@ -144,6 +144,11 @@ void read_walls(const Section& top, MachineReading& reading) {
                 if (const auto motions = section.find("motion"))
                     for (const auto& one : motions->elements())
                         for_every_one(Section(one, machine_keys::motion()), reading, [&](std::int64_t, std::int64_t) {
+                            if (one.json().is_object() && one.json().contains("follow")) {
+                                for (auto& piece : read_follow(Section(one, machine_keys::motion()), reading))
+                                    wall.motions.push_back(std::move(piece));
+                                return;
+                            }
                             bool acts = true;
                             auto motion = read_motion(one, reading, wall, acts);
                             if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));

@@ -237,10 +237,26 @@ std::vector<Field> with_alternatives(std::span<const Type> types, std::string_vi
 
 }  // namespace
 
+std::span<const Field> follow() {
+    static constexpr auto keys = std::to_array<Field>({
+        {"times", MachineKey::array, "rising times from the start of the run, or from \"from\", s"},
+        {"positions", MachineKey::array, "where the wall is at each time, a vector from where it is drawn, m"},
+        {"angles", MachineKey::array, "or how far it has turned at each time, right hand, rad"},
+        {"position", MachineKey::vector, "or three expressions of the time t, m"},
+        {"angle", MachineKey::quantity, "or an expression of the time t, rad"},
+        {"every", MachineKey::quantity, "with an expression: time from value to value, s"},
+        {"until", MachineKey::quantity, "with an expression: the last time, s"},
+        {"axis", MachineKey::direction, "of angles"},
+        {"through", MachineKey::vector, "of angles: a point on the axis, m", "[0, 0, 0]"},
+    });
+    return keys;
+}
+
 std::span<const Field> motion() {
     static const auto keys = with_alternatives(
         geometry::motion_types(), {},
         {
+            holding({"follow", MachineKey::object, "a table of times, or an expression of the time"}, follow()),
             {"from", MachineKey::quantity,
              "a phase, at whose beginning it starts, or a time, s; default: at the start"},
             {"to", MachineKey::quantity, "a phase, at whose end it ends, or a time, s; default: never"},
@@ -404,6 +420,7 @@ std::span<const Type> all() {
             {"A motion of a wall", "", motion()},
         };
         all.insert(all.end(), motions().begin(), motions().end());
+        all.push_back({"follow", "", follow()});
         const Type others[] = {
             {"A filling", "", fill_keys, fields::initial<Fill>},
             {"A sphere of a filling", "", sphere_keys, fields::initial<dem::Sphere>},

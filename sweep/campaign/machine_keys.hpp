@@ -19,6 +19,7 @@ namespace grainsweep::campaign::machine_keys {
 [[nodiscard]] std::span<const Field> grain_shape();
 [[nodiscard]] std::span<const Field> wall();
 [[nodiscard]] std::span<const Field> motion();
+[[nodiscard]] std::span<const Field> follow();
 [[nodiscard]] std::span<const Field> fill();
 [[nodiscard]] std::span<const Field> sphere();
 [[nodiscard]] std::span<const Field> feed();

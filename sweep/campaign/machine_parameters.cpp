@@ -377,8 +377,10 @@ std::string with_si_numbers(std::string_view expression) {
     const auto letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_' || c >= 0x80 || c == '%'; };
     const auto digit = [](unsigned char c) { return std::isdigit(c); };
     const auto point = [](unsigned char c) { return c == '.'; };
-    std::string plain;
+    std::string plain, none;
     bool united = false;
+    if (const auto unit = unit_of_quantity(expression); !unit.empty() && calculating_unit(std::string(unit), none))
+        return {};  // one quantity, also of a unit with blanks
     for (std::size_t at = 0; at < expression.size();) {
         const bool inside = at > 0 && (is(at - 1, letter, digit, point));
         double number = 0;

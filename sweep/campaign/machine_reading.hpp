@@ -60,6 +60,8 @@ void refuse_rolling_shapes(const Section& top, const MachineReading& reading);
 /// case.
 [[nodiscard]] machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading,
                                               const machine::MachineWall& wall, bool& present);
+/// Reads a motion with "follow" as motions of constant velocity.
+[[nodiscard]] std::vector<machine::WallMotion> read_follow(const Section& motion, const MachineReading& reading);
 /// Reads the phases of "during"; empty: all.
 [[nodiscard]] machine::Phases read_during(const Section& section, const MachineReading& reading);
 /// Returns the index of a measurement of one value, by its name.

@@ -190,7 +190,7 @@ std::string meaning_words(const Meaning& meaning, const Curved& curved) {
 }
 
 /// One sentence with all percentiles that differ.
-std::vector<std::string> warnings_of(const ExportConversion& conversion, const Curved& curved) {
+std::vector<std::string> differences_of(const ExportConversion& conversion, const Curved& curved) {
     const auto wrong = conversion.contradictions(curved.curve);
     if (wrong.empty()) return {};
     std::vector<std::string> stated, given;
@@ -237,7 +237,7 @@ ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices)
     const auto& curve = curved.curve;
     result.notes.insert(result.notes.end(), curved.notes.begin(), curved.notes.end());
     require_sizes_of_grains(curve, columns.unit);
-    result.warnings = warnings_of(conversion, curved);
+    result.warnings = differences_of(conversion, curved);
 
     result.csv = fmt::format("diameter,{}_below\n", meaning.by);
     for (std::size_t k = 0; k < curve.sizes.size(); ++k)

@@ -174,7 +174,7 @@ std::vector<std::string> shared_strings(const std::string& xml) {
 }
 
 /// Row and column from 0 of a reference such as "B12"; absent: no reference.
-std::optional<std::pair<std::size_t, std::size_t>> place_of(std::string_view reference) {
+std::optional<std::pair<std::size_t, std::size_t>> cell_place(std::string_view reference) {
     std::size_t column = 0, row = 0, k = 0;
     for (; k < reference.size() && reference[k] >= 'A' && reference[k] <= 'Z' && k < 4; ++k)
         column = column * 26 + static_cast<std::size_t>(reference[k] - 'A' + 1);
@@ -195,7 +195,7 @@ class SheetCells {
 public:
     void begin(const XmlTag& tag) {
         kind_ = attribute(tag, "t");
-        if (const auto place = place_of(attribute(tag, "r"))) {
+        if (const auto place = cell_place(attribute(tag, "r"))) {
             row_ = place->first, column_ = place->second;
         } else {
             ++column_;
