@@ -211,12 +211,12 @@ TEST(WallMotions, AConveyanceMovesTheSurfaceAlone) {
     EXPECT_EQ(plane.velocity, shifted.velocity);
     // On a finite belt the sphere comes to the same speed, then leaves its end; the belt is still there.
     const double way = shifted.position[0][0];
-    ASSERT_GT(way, 0.01);
-    const dem::Bar long_belt{-1, 1, -0.01, 0, 1e-3}, short_belt{-1, way / 2, -0.01, 0, 1e-3};
+    ASSERT_GT(way, radius);
+    const dem::Bar long_belt{1, 2, -0.01, 0, 1e-3}, short_belt{way / 2 + 1e-3, 1, -0.01, 0, 1e-3};
     const auto carried = after({long_belt, {geometry::Conveyance{.velocity = velocity}}}, steps);
     EXPECT_NEAR(carried.velocity[0][0] / 0.2, 2.0 / 7, 1e-3 * 2 / 7);
     EXPECT_NEAR(carried.position[0][0], way, 1e-6);
-    const auto fallen = after({short_belt, {geometry::Conveyance{.velocity = velocity}}}, steps);
+    const auto fallen = after({short_belt, {geometry::Conveyance{.velocity = velocity}}}, 10 * steps);
     EXPECT_LT(fallen.position[0][2], 0);
     EXPECT_TRUE(geometry::is_still(geometry::Conveyance{}));
 }

@@ -88,48 +88,49 @@ TEST(MachineChoices, WallsFollowTheTime) {
     auto document = box();
     document["walls"]["floor"]["motion"] = json::parse(R"([{"follow": {"times": [0, "10 ms", 0.03], "positions":
         [[0, 0, 0], [0, 0, "1 mm"], ["2 mm", 0, 0]]}, "from": 0.1}])");
-    document["walls"]["lid"] = json::parse(R"({"disc": {"centre": [0, 0, 0.1], "radius": 0.01}, "motion": [{"follow":
+    document["walls"]["lid"] =
+        json::parse(R"json({"disc": {"centre": [0, 0, 0.1], "radius": 0.01}, "motion": [{"follow":
         {"angle": "2*pi*t^2", "axis": [0, 0, 1], "every": "1 ms", "until": 0.5}}, {"follow":
         {"position": ["1 mm*sin(40*t)", 0, 0], "every": 1e-3, "until": 0.2
 }
 }]
-})");
+})json");
     const auto machine = machine_of(document);
-const auto spec = campaign::machine_spec(*machine, inputs_of(*machine));
-const auto pose = [&](const char* name, double time) {
-    for (const auto& wall : spec.walls)
-        if (wall.name == name) {
-            std::vector<geometry::Motion> motions;
-            for (const auto& one : wall.motions) motions.push_back(one.motion);
-            return geometry::pose_at(motions, time);
+    const auto spec = campaign::machine_spec(*machine, inputs_of(*machine));
+    const auto pose = [&](const char* name, double time) {
+        for (const auto& wall : spec.walls)
+            if (wall.name == name) {
+                std::vector<geometry::Motion> motions;
+                for (const auto& one : wall.motions) motions.push_back(one.motion);
+                return geometry::pose_at(motions, time);
+            }
+        return geometry::Pose{};
+    };
+    EXPECT_NEAR(pose("floor", 0.05).shift[2], 0, 1e-15);
+    EXPECT_NEAR(pose("floor", 0.105).shift[2], 0.0005, 1e-12);
+    EXPECT_NEAR(pose("floor", 0.11).shift[2], 0.001, 1e-12);
+    EXPECT_NEAR(pose("floor", 1).shift[0], 0.002, 1e-12);
+    EXPECT_NEAR(pose("floor", 1).shift[2], 0, 1e-12);
+    EXPECT_NEAR(pose("lid", 0.1).shift[0], 0.001 * std::sin(4.0), 1e-9);
+    EXPECT_NEAR(pose("lid", 0.5).rows[0][0], std::cos(2 * 3.14159265358979 * 0.25), 1e-9);
+    const auto refused = [&](const char* follow) {
+        document["walls"]["floor"]["motion"] = json::array({{{"follow", json::parse(follow)}}});
+        try {
+            (void)machine_of(document);
+        } catch (const campaign::InputError& wrong) {
+            return std::string(wrong.what());
         }
-    return geometry::Pose{};
-};
-EXPECT_NEAR(pose("floor", 0.05).shift[2], 0, 1e-15);
-EXPECT_NEAR(pose("floor", 0.105).shift[2], 0.0005, 1e-12);
-EXPECT_NEAR(pose("floor", 0.11).shift[2], 0.001, 1e-12);
-EXPECT_NEAR(pose("floor", 1).shift[0], 0.002, 1e-12);
-EXPECT_NEAR(pose("floor", 1).shift[2], 0, 1e-12);
-EXPECT_NEAR(pose("lid", 0.1).shift[0], 0.001 * std::sin(4.0), 1e-9);
-EXPECT_NEAR(pose("lid", 0.5).rows[0][0], std::cos(2 * 3.14159265358979 * 0.25), 1e-9);
-const auto refused = [&](const char* follow) {
-    document["walls"]["floor"]["motion"] = json::array({{{"follow", json::parse(follow)}}});
-    try {
-        (void)machine_of(document);
-    } catch (const campaign::InputError& wrong) {
-        return std::string(wrong.what());
-    }
-    return std::string("accepted");
-};
-const auto says = [&](const char* follow, const char* rule) {
-    EXPECT_NE(refused(follow).find(rule), std::string::npos) << refused(follow);
-};
-says(R"({"times": [0, 1, 1], "angles": [0, 1, 2], "axis": [0, 0, 1]})", "times must rise");
-says(R"({"times": [0, 1], "angles": [0], "axis": [0, 0, 1]})", "as many as \"times\": 2");
-says(R"({"times": [0, 1]})", "\"positions\" or \"angles\"");
-says(R"({"angle": "t", "every": 1e-6, "until": 1, "axis": [0, 0, 1]})", "at most 2000 are possible");
-says(R"({"angle": "t", "every": 0.1, "until": 1})", "'axis' is missing");
-says(R"({"position": ["1/t", 0, 0], "every": 0.1, "until": 1})", "no finite value");
+        return std::string("accepted");
+    };
+    const auto says = [&](const char* follow, const char* rule) {
+        EXPECT_NE(refused(follow).find(rule), std::string::npos) << refused(follow);
+    };
+    says(R"({"times": [0, 1, 1], "angles": [0, 1, 2], "axis": [0, 0, 1]})", "times must rise");
+    says(R"({"times": [0, 1], "angles": [0], "axis": [0, 0, 1]})", "as many as \"times\": 2");
+    says(R"({"times": [0, 1]})", "\"positions\" or \"angles\"");
+    says(R"({"angle": "t", "every": 1e-6, "until": 1, "axis": [0, 0, 1]})", "at most 2000 are possible");
+    says(R"({"angle": "t", "every": 0.1, "until": 1})", "'axis' is missing");
+    says(R"({"position": ["1/t", 0, 0], "every": 0.1, "until": 1})", "no finite value");
 }
 
 TEST(MachineChoices, ParametersSayWhenTheyMatter) {
