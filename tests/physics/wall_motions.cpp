@@ -217,7 +217,7 @@ TEST(WallMotions, AConveyanceMovesTheSurfaceAlone) {
     EXPECT_NEAR(carried.velocity[0][0] / 0.2, 2.0 / 7, 1e-3 * 2 / 7);
     EXPECT_NEAR(carried.position[0][0], way, 1e-6);
     const auto fallen = after({short_belt, {geometry::Conveyance{.velocity = velocity}}}, 10 * steps);
-    EXPECT_LT(fallen.position[0][2], 0);
+    EXPECT_TRUE(fallen.position.empty() || fallen.position[0][2] < 0) << "it left the domain, or falls";
     EXPECT_TRUE(geometry::is_still(geometry::Conveyance{}));
 }
 
