@@ -11,11 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 #include <regex>
 
 namespace grainsweep::campaign {
 namespace {
 
+constexpr std::size_t most_lines = 1000;    // of a head
 constexpr std::size_t longest_words = 400;  // of a line with percentiles; others are data
 
 struct Label {
@@ -99,7 +101,7 @@ std::vector<double> readings_of(const std::string& piece, const std::string& uni
 class Finder {
 public:
     Finder(const ExportGrid& grid, std::string unit) : unit_(std::move(unit)) {
-        for (const auto& line : grid.around)
+        for (const auto& line : grid.around | std::views::take(most_lines))
             if (line.size() <= longest_words) lines_.push_back(pieces_of(line, grid.separator)), raw_.push_back(line);
     }
 
