@@ -82,13 +82,22 @@ struct ProgramFacts {
     bool operator==(const ProgramFacts&) const = default;
 };
 
+/// Origin of a result that was computed elsewhere (`grainsweep import`).
+struct ImportedLine {
+    std::string file;       ///< name, without its folder
+    std::string hash;       ///< of the file's contents
+    std::int64_t line = 0;  ///< in the file; its header is line 1
+    bool operator==(const ImportedLine&) const = default;
+};
+
 struct CaseResult {
     Attempt attempt;
     Outcome outcome = Outcome::completed;
     std::string message;  ///< reason, if it is not completed
     Observations observations;
     Cost cost;
-    std::optional<ProgramFacts> program = {};  ///< empty: the scene is of the solver
+    std::optional<ProgramFacts> program = {};   ///< empty: the scene is of the solver
+    std::optional<ImportedLine> imported = {};  ///< empty: computed by a run
 };
 
 /// Returns the result of an attempt without an answer. `seconds`: measured by the main program; the cost is unknown.

@@ -7,7 +7,7 @@
 
 namespace grainsweep::campaign {
 
-CsvRecord take_csv_record(std::string_view& rest) {
+CsvRecord take_csv_record(std::string_view& rest, char separator) {
     CsvRecord record(1);
     bool quoted = false;
     std::size_t k = 0;
@@ -17,7 +17,7 @@ CsvRecord take_csv_record(std::string_view& rest) {
             record.back() += rest[++k];
         } else if (c == '"') {
             quoted = !quoted;
-        } else if (!quoted && c == ',') {
+        } else if (!quoted && c == separator) {
             record.emplace_back();
         } else if (!quoted && c == '\n') {
             break;

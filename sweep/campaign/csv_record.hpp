@@ -10,7 +10,7 @@ namespace grainsweep::campaign {
 /// Record of cells, without blanks around them.
 using CsvRecord = std::vector<std::string>;
 
-/// Takes one record from `rest`, which advances behind its line end. Quoted cells may contain commas and line ends.
-[[nodiscard]] CsvRecord take_csv_record(std::string_view& rest);
+/// Takes one record from `rest`, which advances behind its line end. Quoted cells may contain separators and line ends.
+[[nodiscard]] CsvRecord take_csv_record(std::string_view& rest, char separator = ',');
 
 }  // namespace grainsweep::campaign

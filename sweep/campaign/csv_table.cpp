@@ -19,9 +19,17 @@ bool is_number(std::string_view cell) {
            (begins && digits && cell.find_first_not_of("+-.0123456789eEdD") == std::string::npos);
 }
 
+char separator_in(std::string_view text) {
+    const auto header = text.substr(0, text.find('\n', std::min(text.find_first_not_of("\r\n"), text.size())));
+    for (const char mark : {'\t', ';'})
+        if (header.find(mark) != std::string_view::npos) return mark;
+    return ',';
+}
+
 }  // namespace
 
-CsvTable::CsvTable(std::string_view text, Refuse refuse) : rest_(text), refuse_(std::move(refuse)) {
+CsvTable::CsvTable(std::string_view text, Refuse refuse, std::optional<char> separator)
+    : rest_(text), refuse_(std::move(refuse)), separator_(separator.value_or(separator_in(text))) {
     if (rest_.starts_with("\xFF\xFE") || rest_.starts_with("\xFE\xFF"))
         refuse_("the file must be UTF-8 text, not UTF-16");
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
@@ -32,7 +40,7 @@ CsvTable::CsvTable(std::string_view text, Refuse refuse) : rest_(text), refuse_(
 std::optional<CsvRecord> CsvTable::take() {
     while (!rest_.empty()) {
         ++number_;
-        auto record = take_csv_record(rest_);
+        auto record = take_csv_record(rest_, separator_);
         if (record != CsvRecord{""}) return record;
     }
     return std::nullopt;

@@ -18,8 +18,9 @@ public:
     /// Function that throws the refusal of a rule.
     using Refuse = std::function<void(const std::string& rule)>;
 
-    /// `text` must outlive the table.
-    CsvTable(std::string_view text, Refuse refuse);
+    /// `text` must outlive the table. `separator`: of the columns; empty: the first of tabulator, semicolon and comma
+    /// that the header has.
+    CsvTable(std::string_view text, Refuse refuse, std::optional<char> separator = ',');
     [[nodiscard]] const CsvRecord& header() const { return header_; }
     /// Returns the next record, as long as the header; empty after the last one.
     [[nodiscard]] std::optional<CsvRecord> next();
@@ -32,6 +33,7 @@ private:
 
     std::string_view rest_;
     Refuse refuse_;
+    char separator_ = ',';
     std::size_t number_ = 0;
     CsvRecord header_;
 };

@@ -56,6 +56,7 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> plan_commands();       // plan
 [[nodiscard]] std::vector<Command> run_commands();        // run, calibrate, worker, host
 [[nodiscard]] std::vector<Command> spool_commands();      // work, collect
+[[nodiscard]] std::vector<Command> import_commands();     // import
 [[nodiscard]] std::vector<Command> archive_commands();    // status, explain, replay, query, dump
 [[nodiscard]] std::vector<Command> verify_commands();     // verify
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report

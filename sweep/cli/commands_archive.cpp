@@ -72,6 +72,8 @@ std::string with_unit(const std::string& column, const Cell& cell) {
     if (count != nullptr && column == "replicates")
         return *count == 1 ? "" : counted(*count, "case") + " at each point";
     if (count != nullptr && column == "finished") return counted(*count, "case");
+    if (count != nullptr && column == "imported")
+        return *count == 0 ? "" : counted(*count, "case") + ", computed elsewhere";
     if (count != nullptr && column == "stopped_at") return fmt::format("converged after {}", counted(*count, "point"));
     if (number != nullptr && column == "rate")
         return fmt::format("{} cases/s in the last run",
@@ -252,6 +254,11 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
             "settled: the result of attempt {} is kept, because later attempts gave none; `run "
             "--again {}` reruns it",
             stands->attempt.number, to_string(stands->outcome));
+    if (stands && stands->imported && campaign::settles(stands->outcome))
+        return fmt::format(
+            "settled: it was computed elsewhere and imported from '{}', line {}; its seed is not the one of that "
+            "computation; `run --again {}` computes it here if a design has it",
+            stands->imported->file, stands->imported->line, to_string(stands->outcome));
     const std::string passed_by = out_of_reach(places);
     const auto next_run = [&](const std::string& does) {
         if (!impossible.empty()) return fmt::format("this program does not run it: it {}", impossible);

@@ -89,7 +89,9 @@ struct Subject {
 template <class FoundBy, class Study>
 std::vector<Document> study_each(const Store& store, const Subject& subject, FoundBy found_by, Study answer) {
     std::vector<Document> documents;
-    const auto records = study::find_campaigns(store, subject.campaign);
+    auto records = study::find_campaigns(store, subject.campaign);
+    // Cases that were computed elsewhere are no sample of the ranges.
+    if (subject.campaign.empty()) std::erase_if(records, [](const auto& one) { return one.imported_into.has_value(); });
     for (std::size_t i = 0; i < records.size(); ++i) {
         const auto responses = study::read_responses(store, records[i]);
         const bool measures = responses.measures(subject.observable);

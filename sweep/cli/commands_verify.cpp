@@ -18,7 +18,11 @@ std::string contents_of(const Store& archive) {
     const auto count = [&](const char* table) {
         return std::get<std::int64_t>(archive.query(fmt::format("SELECT count(*) FROM {}", table)).rows.at(0).at(0));
     };
-    return fmt::format("{} cases, {} attempts, {} measured values", count("sim_case"), count("attempt"),
+    std::int64_t imported = 0;
+    const auto status = archive.status();
+    for (const auto& row : status.rows) imported += std::get<std::int64_t>(row.back());
+    return fmt::format("{} cases{}, {} attempts, {} measured values", count("sim_case"),
+                       imported > 0 ? fmt::format(" ({} of them computed elsewhere)", imported) : "", count("attempt"),
                        count("observation"));
 }
 

@@ -44,6 +44,7 @@ public:
         if (request.count("points_per_wave") < least)
             throw std::invalid_argument("a response model of " + std::to_string(d_) +
                                         " factors needs waves of at least " + std::to_string(least) + " points");
+        add_further();
     }
 
     Calibration run() {
@@ -63,6 +64,26 @@ public:
     }
 
 private:
+    /// Begins the settings with those that were computed elsewhere. A target under another condition has no answer
+    /// there.
+    void add_further() {
+        const std::size_t d = request_.dimensions();
+        if (!request_.shared.empty()) return;
+        for (std::size_t i = 0; (i + 1) * d <= request_.further.coordinates.size(); ++i) {
+            const auto point = std::span(request_.further.coordinates).subspan(i * d, d);
+            for (const auto j : layout_.calibrated) result_.settings.push_back(point[j]);
+            for (std::size_t t = 0; t < result_.targets.size(); ++t) {
+                const auto known = request_.further.answers.find(result_.targets[t].answers_key());
+                const bool fits = std::ranges::all_of(layout_.stated, [&](std::size_t j) {
+                    const auto level = result_.targets[t].level.find(request_.factors[j].name);
+                    const auto here = static_cast<std::size_t>(point[j] * static_cast<double>(request_.levels[j]));
+                    return here == (level == result_.targets[t].level.end() ? 0 : level->second);
+                });
+                values_[t].push_back(fits && known != request_.further.answers.end() ? known->second[i] : none);
+            }
+            ++result_.further;
+        }
+    }
     /// Requests the settings under every condition. Returns false if an answer is still missing.
     bool ask(const std::vector<double>& settings) {
         const std::size_t rows = settings.size() / d_;
@@ -121,7 +142,7 @@ private:
         std::vector<bool> unanswered(result_.settings.size() / d_, false);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             for (std::size_t i = 0; i < rows; ++i) values_[t].push_back(*answer(t, i));
-            for (std::size_t i = 0; i < values_[t].size(); ++i)
+            for (std::size_t i = result_.further; i < values_[t].size(); ++i)
                 unanswered[i] = unanswered[i] || !std::isfinite(values_[t][i]);
         }
         auto fits = stats::fit_responses({result_.settings, d_}, values_);
@@ -143,14 +164,14 @@ private:
     void learn_failures(const std::vector<bool>& unanswered) {
         std::vector<double> settings;
         std::vector<bool> failed;
-        for (std::size_t i = 0; i < unanswered.size(); ++i) {
+        for (std::size_t i = result_.further; i < unanswered.size(); ++i) {
             const auto setting = std::span(result_.settings).subspan(i * d_, d_);
             if (!admitted(setting)) continue;
             settings.insert(settings.end(), setting.begin(), setting.end());
             failed.push_back(unanswered[i]);
         }
         auto& wave = result_.waves.back();
-        wave.excluded = unanswered.size() - failed.size();
+        wave.excluded = unanswered.size() - result_.further - failed.size();
         wave.cases = failed.size() * layout_.runs;
         wave.failed = static_cast<std::size_t>(std::ranges::count(failed, true));
         result_.answering = failed.empty() ? AnsweringSettings() : AnsweringSettings({settings, d_}, failed);

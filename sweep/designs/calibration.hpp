@@ -61,6 +61,7 @@ struct Calibration {
     std::optional<stats::PosteriorShape> shape;               ///< shape of the posterior
     double least_implausibility = std::numeric_limits<double>::quiet_NaN();  ///< smallest value found
     std::vector<double> settings;            ///< settings of the completed waves, rows of d in [0, 1]
+    std::size_t further = 0;                 ///< of these the first, which were computed elsewhere
     std::vector<double> checked;             ///< settings of the predictive check, rows of d in [0, 1]
     std::vector<std::vector<double>> check;  ///< answers of each target there, in their order; NaN: none
     bool checks_known = false;               ///< every run of the predictive check is settled

@@ -66,6 +66,12 @@ struct FactorRange {
 
 struct PointSet;
 
+/// Answers that belong to no point of the design, because they were computed elsewhere.
+struct FurtherAnswers {
+    std::vector<double> coordinates;                                  ///< in the unit cube, points x dimensions
+    std::map<std::string, std::vector<double>, std::less<>> answers;  ///< by observable; NaN: none
+};
+
 struct DesignRequest {
     std::vector<std::size_t> levels;                          ///< per factor: number of its levels; 0: continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
@@ -77,8 +83,9 @@ struct DesignRequest {
     /// Answers of the points so far, by observable and number; empty: the point is not settled; NaN: no answer. Used
     /// only by growing designs.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};
-    /// Whether the campaign's `where` clause accepts a point of the unit cube; empty: every point, or unknown. Used only
-    /// by growing designs.
+    FurtherAnswers further = {};  ///< used only by designs that calibrate
+    /// Whether the campaign's `where` clause accepts a point of the unit cube; empty: every point, or unknown. Used
+    /// only by growing designs.
     std::function<bool(std::span<const double> u)> admits = {};
     /// Points that follow from the answers, if they have already been computed.
     std::shared_ptr<const PointSet> grown = {};

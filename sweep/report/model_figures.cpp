@@ -20,7 +20,7 @@ struct Modelled {
 };
 
 Modelled modelled(const FigureSubject& subject) {
-    auto cases = settled_cases(subject.responses);
+    auto cases = settled_and_imported_cases(subject.responses);
     const auto model = learn_or_refuse(cases, cases.observable(subject.response.name));
     auto pictures = model_pictures(cases, model, admission(subject.store, cases));
     return {std::move(cases), std::move(pictures)};

@@ -237,7 +237,7 @@ Json models_of(const store::Store& store, const Responses& responses, const Page
     const auto* main = responses.main_observable();
     if (names.empty() && main != nullptr && responses.settled <= asked.unasked_cases) names.push_back(main->name);
     if (names.empty() || responses.settled == 0) return list;
-    const auto cases = settled_cases(responses);
+    const auto cases = settled_and_imported_cases(responses);
     if (cases.settings.empty()) return list;
     for (const auto& name : names) {
         const auto found = std::ranges::find(cases.observables, name, &ResponseColumn::name);

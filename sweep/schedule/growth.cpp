@@ -1,11 +1,15 @@
 #include "sweep/schedule/growth.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/campaign/experiments.hpp"
+#include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/stored_request.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -56,12 +60,59 @@ std::function<bool(std::span<const double>)> admission(const store::CampaignReco
     }
 }
 
+/// Returns the coordinate of a factor's value, or of its level, in the unit cube.
+double coordinate_of(const campaign::StatedFactor& factor, const store::Table::Cell& cell) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const auto* real = std::get_if<double>(&cell);
+    const auto* whole = std::get_if<std::int64_t>(&cell);
+    const double value = real != nullptr ? *real : whole != nullptr ? static_cast<double>(*whole) : none;
+    if (factor.distribution) return factor.distribution->cumulative(value);
+    if (factor.between) {
+        const auto& [low, high, scale] = *factor.between;
+        return scale == campaign::Scale::log ? std::log(value / low) / std::log(high / low)
+                                             : (value - low) / (high - low);
+    }
+    for (std::size_t k = 0; k < factor.levels.size(); ++k) {
+        const auto* word = std::get_if<std::string>(&cell);
+        const bool same = word != nullptr ? *word == factor.levels[k] : any_number_in(factor.levels[k]) == value;
+        if (same) return (static_cast<double>(k) + 0.5) / static_cast<double>(factor.levels.size());
+    }
+    return none;
+}
+
+/// Returns the answers that were imported into a campaign and belong to no point of its design.
+designs::FurtherAnswers imported_answers(const store::Store& store, const store::CampaignRecord& record,
+                                         std::span<const std::string> observables) {
+    constexpr std::size_t first_factor = 8;  // of the columns of a view (results_schema/views.sql)
+    designs::FurtherAnswers further;
+    const auto factors = campaign::factors_of(record);
+    for (const auto& other : store.campaigns()) {
+        if (other.imported_into != record.name || other.factors != record.factors || other.fixed != record.fixed)
+            continue;
+        const auto rows = store.query(store.rows_of(other.name) + " ORDER BY point, replicate");
+        for (const auto& row : rows.rows)
+            for (std::size_t j = 0; j < factors.size(); ++j)
+                further.coordinates.push_back(coordinate_of(factors[j], row[first_factor + j]));
+        for (const auto& key : observables) {
+            const auto [name, at] = designs::place_on_curve(key);
+            auto& answers = further.answers[key];
+            if (at)
+                answers.resize(answers.size() + rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
+            else
+                for (const auto& one : store.values(other.name, name)) answers.push_back(one.value);
+        }
+    }
+    return further;
+}
+
 }  // namespace
 
 void learn_answers(designs::DesignRequest& request, const store::Store& store, const store::CampaignRecord& record) {
     const auto& design = designs::design_named(record.design);
     request.answers = known_answers(store, record, design.rests_on(request));
-    if (design.calibrates) request.admits = admission(record);
+    if (!design.calibrates) return;
+    request.admits = admission(record);
+    if (request.shared.empty()) request.further = imported_answers(store, record, design.rests_on(request));
 }
 
 bool grow(campaign::Campaign& campaign, const store::Store& store) {

@@ -156,6 +156,16 @@ void store_machine(Connection& db, const campaign::Campaign& campaign);
 /// Returns a sentence on each damaged machine.
 [[nodiscard]] std::vector<std::string> damaged_machines(const Connection& db);
 
+// imports.cpp
+/// Stores where the result of an attempt comes from.
+void store_import(Connection& db, std::int64_t key, std::int64_t number, const campaign::ImportedLine& line);
+/// Returns the origins of the attempts of a case that were computed elsewhere, by number.
+[[nodiscard]] std::map<std::int64_t, campaign::ImportedLine> imported_lines(const Connection& db, std::int64_t key);
+/// Returns the names of the campaigns into which the cases of others were imported, by the key of the other.
+[[nodiscard]] std::map<std::int64_t, std::string> imported_campaigns(const Connection& db);
+/// Returns a sentence on each damaged origin.
+[[nodiscard]] std::vector<std::string> damaged_imports(const Connection& db);
+
 // files.cpp
 /// Stores the files that a campaign uses and their contents. Throws InputError if one has changed since it was read.
 void store_files(Connection& db, std::int64_t campaign_key, const campaign::Campaign& campaign);

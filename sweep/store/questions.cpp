@@ -85,11 +85,13 @@ bool Store::Impl::keeps_extents() const {
 
 std::vector<CampaignRecord> Store::campaigns() const {
     impl_->require_sound();
+    const auto imported = imported_campaigns(impl_->db);
     std::vector<CampaignRecord> records;
     auto rows = impl_->db.ask(fmt::format(
         "SELECT {}, coalesce((SELECT campaign_text FROM provenance AS v WHERE v.campaign_id = g.campaign_id "
         "ORDER BY provenance_id DESC LIMIT 1), ''), sequences, replicates, stopped_at, convergence_observable, "
-        "convergence_rule, convergence_gates, convergence_tolerance, convergence_block, convergence_stop, {} "
+        "convergence_rule, convergence_gates, convergence_tolerance, convergence_block, convergence_stop, {}, "
+        "campaign_id "
         "FROM campaign AS g ORDER BY campaign_id",
         identity_columns, extent_columns(impl_->keeps_extents())));
     while (rows.next()) {
@@ -104,6 +106,8 @@ std::vector<CampaignRecord> Store::campaigns() const {
         column += 6;
         record.stored = {rows.get<std::int64_t>(column), record.replicates};
         record.asked = {rows.get<std::int64_t>(column + 1), rows.get<std::int64_t>(column + 2)};
+        if (const auto into = imported.find(rows.get<std::int64_t>(column + 3)); into != imported.end())
+            record.imported_into = into->second;
         records.push_back(std::move(record));
     }
     return records;
@@ -213,6 +217,10 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
         const auto attempt = std::ranges::find(attempts, number, &LoggedAttempt::number);
         if (attempt != attempts.end()) attempt->program = std::move(facts);
     }
+    for (auto& [number, line] : imported_lines(impl_->db, *key)) {
+        const auto attempt = std::ranges::find(attempts, number, &LoggedAttempt::number);
+        if (attempt != attempts.end()) attempt->imported = std::move(line);
+    }
     return attempts;
 }
 
@@ -265,6 +273,9 @@ std::optional<campaign::CaseResult> Store::result(std::string_view case_id) cons
                                       impl_->file.string(), result.attempt.number, case_id));
     result.cost.phases = std::move(*seconds);
     result.observations = observations_of(impl_->db, *key);
+    auto lines = imported_lines(impl_->db, *key);
+    if (const auto line = lines.find(result.attempt.number); line != lines.end())
+        result.imported = std::move(line->second);
     return result;
 }
 

@@ -1,16 +1,29 @@
 // How far the campaigns of an archive have come.
 #include "sweep/store/archive.hpp"
+#include "sweep/store/soundness.hpp"
 
 #include <fmt/format.h>
 
 namespace grainsweep::store {
+
+namespace {
+
+/// Number of cases of campaign t whose answer was computed elsewhere.
+std::string imported_cases(const Connection& db) {
+    if (!has_table(db, "attempt_import")) return "0";
+    return "(SELECT count(*) FROM campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key "
+           "JOIN attempt_import AS i ON i.case_key = c.case_key AND i.number = (SELECT max(number) FROM attempt AS a "
+           "WHERE a.case_key = c.case_key AND a.outcome = c.outcome) WHERE p.campaign_id = t.campaign_id)";
+}
+
+}  // namespace
 
 Table Store::status() const {
     Table table;
     table.columns = {"campaign", "scene", "cases"};
     for (const auto outcome : campaign::outcomes) table.columns.emplace_back(campaign::to_string(outcome));
     for (const char* name : {"waiting", "stopped_at", "rate", "time_left", "candidates", "dropped", "points",
-                             "replicates", "finished", "asked_points", "asked_replicates"})
+                             "replicates", "finished", "asked_points", "asked_replicates", "imported"})
         table.columns.emplace_back(name);
 
     // rate: answers per second of the last run; time_left: s, for what is waiting or abandoned, at that rate.
@@ -30,10 +43,11 @@ Table Store::status() const {
         "  WHERE p.campaign_id = g.campaign_id), {} FROM campaign AS g) "
         "SELECT t.name, t.scene, t.cases, t.stopped_at, t.rate, iif(t.stopped_at IS NULL, t.open / t.rate, 0.0), "
         "  e.candidates, e.candidates - e.points, e.points, e.replicates, t.cases - t.open, e.asked_points, "
-        "  e.asked_replicates, n.outcome, n.cases FROM total AS t JOIN extent AS e ON e.campaign_id = t.campaign_id "
+        "  e.asked_replicates, {}, n.outcome, n.cases FROM total AS t JOIN extent AS e ON e.campaign_id = "
+        "t.campaign_id "
         "LEFT JOIN count AS n ON n.campaign_id = t.campaign_id ORDER BY t.campaign_id",
-        extent_columns(impl_->keeps_extents())));
-    constexpr int outcome_column = 13;
+        extent_columns(impl_->keeps_extents()), imported_cases(impl_->db)));
+    constexpr int outcome_column = 14;
     const std::size_t first_outcome = 3;
     const std::size_t waiting = first_outcome + campaign::outcomes.size();
     while (rows.next()) {

@@ -94,10 +94,11 @@ std::int64_t schema_version(const Connection& db, const std::filesystem::path& f
 /// The file may be anybody's. A view in the place of a table could be read without end, a column that is computed could
 /// answer anything.
 void check_tables(const Connection& db, const std::filesystem::path& file) {
-    constexpr std::array tables = {
-        "campaign", "provenance",       "parameter",       "observable",      "sim_case",       "case_input",
-        "attempt",  "observation",      "campaign_case",   "convergence",     "table_checksum", "file_checksum",
-        "program",  "attempt_computer", "program_content", "attempt_program", "machine",        "campaign_file"};
+    constexpr std::array tables = {"campaign",      "provenance",       "parameter",       "observable",
+                                   "sim_case",      "case_input",       "attempt",         "observation",
+                                   "campaign_case", "convergence",      "table_checksum",  "file_checksum",
+                                   "program",       "attempt_computer", "program_content", "attempt_program",
+                                   "machine",       "campaign_file",    "attempt_import",  "campaign_import"};
     constexpr std::size_t of_the_first_version = 10;
     const auto refuse = [&](std::string_view what) {
         throw SystemError(fmt::format("database '{}': not as this program made it: {}", file.string(), what));

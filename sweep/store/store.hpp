@@ -47,6 +47,7 @@ struct LoggedAttempt {
     campaign::Computer computer;  ///< in a database older than these columns: program of the run, without build
     double threads = std::numeric_limits<double>::quiet_NaN();  ///< mean over its computing time; NaN: unknown
     std::optional<campaign::ProgramFacts> program = {};         ///< empty: a scene of the solver
+    std::optional<campaign::ImportedLine> imported = {};        ///< empty: computed by a run
 };
 
 /// Table for commands: column names and cells (NULL, integer, real, text).
@@ -110,6 +111,8 @@ struct CampaignRecord : campaign::Identity {
     Extent asked;   ///< requested by the last run
     std::optional<campaign::Convergence> convergence;
     std::optional<std::int64_t> stopped_at;  ///< it converged and stopped: points with smaller numbers count
+    /// Campaign into which its cases were imported; empty: its cases are of a design.
+    std::optional<std::string> imported_into = {};
 
     /// Returns whether the last run requested only a part of the stored extent.
     [[nodiscard]] bool shrunk() const {
@@ -200,6 +203,8 @@ public:
     void forget_checks(std::string_view campaign);
     /// Stores the points at which the campaign converged and stopped; empty: it continues.
     void stop(std::string_view campaign, std::optional<std::int64_t> points);
+    /// Stores that the cases of a campaign were imported into another one and belong to no design.
+    void mark_imported(std::string_view campaign, std::string_view into);
 
     // Queries. Queries of results check the checksums, once per Store, and throw SystemError with the damage; status,
     // places, attempts and query do not.
@@ -250,6 +255,7 @@ public:
     ///   replicates
     ///   finished    cases with an outcome other than abandoned
     ///   asked_points, asked_replicates   requested by the last run (points: candidates)
+    ///   imported    cases whose answer was computed elsewhere (`grainsweep import`)
     [[nodiscard]] Table status() const;
     /// Returns the statement behind the campaign's view, as this program writes it. The stored view may be anybody's,
     /// and endless.

@@ -120,6 +120,7 @@ std::vector<Damage> Store::verify() const {
             for (auto& what : damaged_programs(db)) found.push_back({"table", "", "", "", std::move(what)});
             for (auto& what : damaged_machines(db)) found.push_back({"table", "", "", "", std::move(what)});
             for (auto& what : damaged_files(db)) found.push_back({"table", "", "", "", std::move(what)});
+            for (auto& what : damaged_imports(db)) found.push_back({"table", "", "", "", std::move(what)});
         },
         found);
     return found;

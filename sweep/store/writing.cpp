@@ -136,6 +136,7 @@ bool Store::finish(const campaign::CaseResult& result) {
     if (!open || !close_attempt(db, *open, result)) return false;  // given up as abandoned, or reported twice
     ++impl_->settled_in_group;
     if (result.program) store_program_facts(db, open->key, open->number, *result.program);
+    if (result.imported) store_import(db, open->key, open->number, *result.imported);
 
     const bool failed = result.outcome == campaign::Outcome::crashed || result.outcome == campaign::Outcome::timed_out;
     if (open->before && campaign::settles(*open->before) && !campaign::settles(result.outcome)) {  // it stands

@@ -159,8 +159,9 @@ std::size_t followed_points(const designs::Calibration& found, const Responses& 
 std::string failures_text(const designs::Calibration& found) {
     const auto& answering = found.answering;
     if (found.waves.back().failed == 0 || !answering.p_value()) return {};
-    const auto count = fmt::format("{} of {} settings have no answer to some target", found.waves.back().failed,
-                                   found.settings.size() / found.factors.size() - found.waves.back().excluded);
+    const auto count =
+        fmt::format("{} of {} settings have no answer to some target", found.waves.back().failed,
+                    found.settings.size() / found.factors.size() - found.further - found.waves.back().excluded);
     const auto p = fmt::format("p = {:.2g}", *answering.p_value());
     if (!answering.decides())
         return fmt::format("{}; there is no evidence that this depends on the factors ({}): it carries no information",
@@ -176,6 +177,9 @@ std::string failures_text(const designs::Calibration& found) {
 /// Returns notes for users who quote the posterior.
 std::vector<std::string> notes_of(const CalibrationReport& report) {
     std::vector<std::string> notes;
+    if (report.found.further > 0)
+        notes.push_back(fmt::format("{} settings that were computed elsewhere are in the models, and in no wave",
+                                    report.found.further));
     const auto& found = report.found;
     for (const auto& target : report.targets) {
         if (!target.refusal.empty() && !std::isinf(target.beyond))

@@ -20,10 +20,6 @@ namespace {
 
 constexpr double rounding_of_shares = 1e-9;
 
-bool asks_the_same(const campaign::Identity& a, const campaign::Identity& b) {
-    return a.scene == b.scene && a.revision == b.revision && a.factors == b.factors && a.fixed == b.fixed;
-}
-
 bool answered(const std::optional<campaign::Outcome>& outcome) {
     return outcome == campaign::Outcome::completed || outcome == campaign::Outcome::skipped;
 }
@@ -180,6 +176,18 @@ ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* r
         for (std::size_t k = 0; k < cases.observables.size(); ++k)
             cases.observables[k].values.push_back(responses.observables[k].values[row]);
         if (rows != nullptr) rows->push_back(row);
+    }
+    return cases;
+}
+
+ModelCases settled_and_imported_cases(const Responses& responses) {
+    auto cases = settled_cases(responses);
+    std::set<std::string> seen(responses.case_ids.begin(), responses.case_ids.end());
+    for (const auto& imported : responses.imported) {
+        const auto before = cases.settings.size();
+        add_model_cases(cases, imported, seen);
+        if (cases.settings.size() > before) cases.further.push_back(imported.campaign.name);
+        cases.sources.resize(cases.settings.size(), cases.further.size());
     }
     return cases;
 }

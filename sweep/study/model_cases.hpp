@@ -55,6 +55,9 @@ struct ModelCases {
 /// row of each case in `responses`.
 [[nodiscard]] ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* rows = nullptr);
 
+/// Returns these cases, and the imported ones that the design does not place. Models are fitted from them.
+[[nodiscard]] ModelCases settled_and_imported_cases(const Responses& responses);
+
 /// Returns a filter: whether the campaign's `where` clause accepts a setting and its shares add to one. Empty if the
 /// campaign has neither, or no case is answered.
 [[nodiscard]] std::function<bool(const Setting&)> admission(const store::Store& store, const ModelCases& cases);

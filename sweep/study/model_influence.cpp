@@ -102,7 +102,9 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
         if (!responses.factors[j].shares.empty()) found.dependent.push_back(cases.factors[j].name);
     found.model = model;
     found.without_value = responses.without_value(response);
-    found.indices = stats::model_indices(*response_model, varied.size(), groups_of(responses, rows),
+    // Imported cases belong to no part of the sample.
+    const auto groups = responses.imported.empty() ? groups_of(responses, rows) : std::vector<std::size_t>{};
+    found.indices = stats::model_indices(*response_model, varied.size(), groups,
                                          model_map(model, cases.factors, varied), roles_of(cases.factors, varied));
     if (found.depends() && found.indices->shapley.empty())
         return refused_indices(
@@ -115,7 +117,7 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
 
 ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response) {
     if (auto reason = reason_against_indices(responses); !reason.empty()) return refused_indices(std::move(reason));
-    const auto cases = settled_cases(responses);
+    const auto cases = settled_and_imported_cases(responses);
     auto learned = learn(cases, cases.observable(response.name));
     if (auto* refused = std::get_if<stats::Refusal>(&learned)) return refused_indices(std::move(refused->sentence));
     return model_influence_of(responses, response, std::get<ObservableModel>(learned));

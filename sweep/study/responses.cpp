@@ -369,6 +369,10 @@ std::vector<store::ConvergenceRow> judged_checks(const store::Store& store, cons
 
 }  // namespace
 
+bool asks_the_same(const campaign::Identity& a, const campaign::Identity& b) {
+    return a.scene == b.scene && a.revision == b.revision && a.factors == b.factors && a.fixed == b.fixed;
+}
+
 Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {
     Responses responses;
     responses.campaign = record;
@@ -411,6 +415,10 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
     find_settled(responses);
     add_joint_shares(responses);
+    if (!record.imported_into)
+        for (const auto& other : store.campaigns())
+            if (other.imported_into == record.name && asks_the_same(other, record))
+                responses.imported.push_back(read_responses(store, other));
     return responses;
 }
 

@@ -66,7 +66,8 @@ struct Responses {
     /// Checks of a campaign with the rule `assisted`, as stored by the run. Their models are not fitted again for
     /// display.
     std::vector<store::ConvergenceRow> judged_checks;
-    std::int64_t candidates = 0;  ///< points of the design, including those that `where` excludes
+    std::vector<Responses> imported;  ///< cases computed elsewhere that the design does not place; for models alone
+    std::int64_t candidates = 0;      ///< points of the design, including those that `where` excludes
     /// Number of rows from which statistics are computed: the prefix in which every case has a final outcome, at most
     /// to the point of convergence. For a lattice or a list: all rows with a final outcome. A case given up after
     /// crashes has a final outcome.
@@ -123,6 +124,9 @@ struct Responses {
 [[nodiscard]] bool repeats(const Responses& responses);
 
 [[nodiscard]] Responses read_responses(const store::Store& store, const store::CampaignRecord& campaign);
+
+/// Returns whether two campaigns differ in their points alone: the same scene, factors and fixed values.
+[[nodiscard]] bool asks_the_same(const campaign::Identity& a, const campaign::Identity& b);
 
 /// Reads one observable without factors and case ids, which is enough for a verdict and much faster.
 [[nodiscard]] Responses read_response(const store::Store& store, const store::CampaignRecord& campaign,

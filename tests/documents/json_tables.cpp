@@ -29,6 +29,7 @@ const Folder& sample_folder() {
             "fixed": {"response": "ishigami", "noise": 0.05},
             "design": {"kind": "halton", "scramble": "random", "sequences": 8, "points": 128},
             "convergence": {"observable": "y", "tolerance": 0.05, "stop": false}})");
+        folder.write("old.csv", "x1,x2,y\n0.5,0.25,1\n");
         folder.write("powder.json", R"({"powder": "glass", "material": {"density": 2500},
             "sizes": {"d10": "80 um", "d50": "100 um", "d90": "130 um"}})");
         return run_program({"run", "c.json", "--quiet"}, folder.path()).code == 0;
@@ -48,6 +49,7 @@ Words arguments_of(const std::string& command) {
     const std::map<std::string, Words> all = {
         {"plan", {"plan", "c.json"}},
         {"run", {"run", "c.json", "--quiet"}},
+        {"import", {"import", "old.csv", "c.json", "imported.db"}},
         {"status", {"status", "c.db"}},
         {"explain", {"explain", "c.db", first_case()}},
         {"replay", {"replay", "c.db", first_case()}},

@@ -80,6 +80,8 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
 
 void take_back_to_schema(int version, const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    db.execute("DROP TABLE attempt_import; DROP TABLE campaign_import; PRAGMA user_version = 10");  // 11
+    if (version == 10) return;
     db.execute("DROP TABLE campaign_file; PRAGMA user_version = 9");  // 10
     if (version == 9) return;
     db.execute("DROP TABLE machine; PRAGMA user_version = 8");  // 9
