@@ -1,7 +1,7 @@
 // Program as a scene: the section "program" of a campaign file, and the scene for plans, databases and reports. Its
 // name is "program:" and a hash of everything that changes an answer: command, contents of files and templates, names
 // of parameters, observables, protocol, environment and version. The hash does not include units, meanings, cores,
-// limits, kept files, and the places of files.
+// processes, accuracy settings, limits, kept files, and the places of files.
 #pragma once
 
 #include "solver/scenes/scene.hpp"
@@ -69,6 +69,13 @@ struct ProgramParameter {
     [[nodiscard]] bool is_word() const { return bounds.index() == 1; }
 };
 
+/// Accuracy setting: values of the parameters that decide error and cost.
+struct ProgramSetting {
+    std::string name;
+    Inputs inputs;
+    std::optional<double> cost_seconds;  ///< of a case on one core; empty: as the program's
+};
+
 struct Program {
     enum class Protocol { files, lines };
     enum class Keep { failed, all, none };
@@ -83,12 +90,18 @@ struct Program {
     Protocol protocol = Protocol::files;
     std::map<std::string, std::string> environment;
 
-    std::int64_t cores = 1;
+    std::int64_t cores = 1;              ///< of a process; {threads}
+    std::int64_t processes = 1;          ///< that the command starts, such as those of MPI; {processes}
     std::optional<std::int64_t> memory;  ///< bytes of address space
     std::int64_t disk = 1'000'000'000;   ///< most bytes that a case may write into its folder
     Keep keep = Keep::failed;
     double cost_seconds = 1;
     double tolerance = 0;  ///< relative, for a repeated case
+    /// Settings that a campaign may choose, `reference` among them; from the campaign file, no part of the definition.
+    std::vector<ProgramSetting> accuracy = {};
+
+    /// Returns the cores that a case uses.
+    [[nodiscard]] std::int64_t cores_of_a_case() const { return processes * cores; }
 };
 
 /// Returns "program:" and 32 hexadecimal digits.

@@ -42,7 +42,16 @@ std::span<const Field> program_keys() {
          protocol_names},
         {"environment", KeyKind::object,
          "variables set for the program; {threads} and the names of the command are replaced", "{}"},
-        {"cores", KeyKind::whole, "processors that a case uses; {threads}", "1", {1, 4096}},
+        {"cores", KeyKind::whole, "processors that a process of a case uses; {threads}", "1", {1, 4096}},
+        {"processes",
+         KeyKind::whole,
+         "processes that the command of a case starts, such as the ranks of MPI; {processes}; a case uses processes "
+         "times cores processors",
+         "1",
+         {1, 65536}},
+        {"accuracy", KeyKind::object,
+         "settings by name, each with values of parameters that decide error and cost, and about how long a case takes "
+         "on a core (cost_seconds, s); \"reference\" names the one whose results are the standard"},
         {"memory", KeyKind::text,
          "address space that each process of a case may take, \"4 GB\"; B, kB, MB, GB, TB, KiB, MiB, GiB, TiB; without "
          "it no limit"},

@@ -80,6 +80,7 @@ public:
         if (const auto fixed = top.find("fixed"); fixed && fixed->json().is_object())
             for (const auto& [name, value] : fixed->members({})) add(name, value);
         if (const auto calibration = top.find("calibration")) add_conditions(*calibration);
+        if (const auto accuracy = section.find("accuracy")) add_settings(*accuracy);
     }
 
     [[nodiscard]] std::vector<ProgramParameter> parameters() const {
@@ -148,6 +149,15 @@ private:
             if (!inputs.json().is_object()) continue;
             for (const auto& [name, value] : inputs.members({})) add(name, value);
         }
+    }
+
+    /// Parameters that accuracy settings give values to.
+    void add_settings(const Cursor& accuracy) {
+        if (!accuracy.json().is_object()) return;
+        for (const auto& [setting, inputs] : accuracy.members({}))
+            if (inputs.json().is_object())
+                for (const auto& [name, value] : inputs.members({}))
+                    if (name != "cost_seconds") add(name, value);
     }
 
     [[nodiscard]] Told told_of(const std::string& name) const {

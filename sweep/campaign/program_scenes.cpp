@@ -3,6 +3,7 @@
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -38,8 +39,18 @@ SceneInfo scene_of(const Program& program, std::string name) {
     scene.maker = [](const Inputs&, std::uint64_t, Artefacts&, const Files&) -> std::unique_ptr<Scene> {
         throw std::logic_error("a program is no scene of the solver");
     };
-    scene.estimate_cost = [seconds = program.cost_seconds](const Inputs&, const Files&) {
-        return CostEstimate{.seconds = seconds, .particle_steps = 0, .bytes = 0};
+    for (const auto& setting : program.accuracy) scene.accuracy[setting.name] = setting.inputs;
+    scene.estimate_cost = [seconds = program.cost_seconds, settings = program.accuracy](const Inputs& inputs,
+                                                                                        const Files&) {
+        const auto is_chosen = [&](const ProgramSetting& setting) {
+            return std::ranges::all_of(setting.inputs, [&](const auto& one) {
+                const auto found = inputs.find(one.first);
+                return found != inputs.end() && found->second == one.second;
+            });
+        };
+        const auto chosen = std::ranges::find_if(settings, is_chosen);
+        const double own = chosen == settings.end() ? seconds : chosen->cost_seconds.value_or(seconds);
+        return CostEstimate{.seconds = own, .particle_steps = 0, .bytes = 0};
     };
     return scene;
 }

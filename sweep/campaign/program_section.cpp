@@ -57,7 +57,7 @@ void read_version(const Section& section, Program& program) {
 class Names {
 public:
     explicit Names(const Program& program) : lines_(program.protocol == Program::Protocol::lines) {
-        known_ = {"threads"};
+        known_ = {"threads", "processes"};
         if (lines_) return;
         known_.insert(known_.end(), {"seed", "seed31", "seed_prime", "case"});
         for (const auto& parameter : program.parameters) known_.push_back(parameter.name);
@@ -163,6 +163,7 @@ std::shared_ptr<const Program> read_program(const Section& top, const std::files
     program->protocol =
         section.word("protocol", "files") == "lines" ? Program::Protocol::lines : Program::Protocol::files;
     program->parameters = read_program_parameters(top, section);
+    read_program_accuracy(section, *program);
     read_program_observables(section, *program);
     std::vector<std::string> measured;
     for (const auto& observable : program->observables) {
@@ -177,6 +178,10 @@ std::shared_ptr<const Program> read_program(const Section& top, const std::files
     check_names(section, *program);
     check_command_word(section, *program);
     program->cores = section.whole("cores", program->cores);
+    program->processes = section.whole("processes", program->processes);
+    if (const auto processes = section.find("processes");
+        processes && std::ranges::count(program->parameters, "processes", &ProgramParameter::name) > 0)
+        processes->refuse("a parameter has this name: {processes} would have two meanings");
     if (const auto memory = section.find("memory")) program->memory = read_bytes(*memory);
     if (const auto disk = section.find("disk")) program->disk = read_bytes(*disk);
     const auto keep = section.word("keep", "failed");

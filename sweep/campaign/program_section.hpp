@@ -20,6 +20,8 @@ namespace grainsweep::campaign {
 /// the section states of each. A parameter is a number if it has a unit, bounds or "whole", or a number among its
 /// values.
 [[nodiscard]] std::vector<ProgramParameter> read_program_parameters(const Section& top, const Section& section);
+/// Reads "accuracy" into the program, whose parameters are known.
+void read_program_accuracy(const Section& section, Program& program);
 /// Refuses a name of a parameter or an observable that cannot be a column in SQL.
 void check_program_name(const Cursor& place, const std::string& name);
 /// Refuses a name that differs from another one only by upper and lower case.

@@ -103,6 +103,7 @@ Json settings_of(const Program& program) {
                      {"tolerance", program.tolerance},
                      {"version_command", program.version_command},
                      {"version_match", program.version_match}};
+    if (program.processes != 1) settings["processes"] = program.processes;
     settings["executables"] = settings["order"] = Json::array();
     settings["parameters"] = settings["observables"] = Json::object();
     for (const auto& file : program.files)
@@ -180,8 +181,8 @@ void require_harmless(const Program& program) {
         if (const auto* json = std::get_if<FromJson>(&observable.from)) require_within_folder(json->file);
         if (const auto* csv = std::get_if<FromCsv>(&observable.from)) require_within_folder(csv->file);
     }
-    const bool in_range = program.cores >= 1 && program.memory.value_or(1) > 0 && program.disk >= 0 &&
-                          program.cost_seconds >= 0 && program.tolerance >= 0;
+    const bool in_range = program.cores >= 1 && program.processes >= 1 && program.memory.value_or(1) > 0 &&
+                          program.disk >= 0 && program.cost_seconds >= 0 && program.tolerance >= 0;
     if (!in_range) throw std::invalid_argument("a number of its settings is out of range");
 }
 
@@ -221,6 +222,7 @@ Program program_in(std::string_view text) {
         read_parameters(answer, settings.at("parameters"), program);
         read_observables(answer.at("observables"), settings, program);
         program.cores = settings.at("cores").get<std::int64_t>();
+        program.processes = settings.value("processes", std::int64_t{1});
         if (const auto memory = settings.at("memory").get<std::int64_t>(); memory != 0) program.memory = memory;
         program.disk = settings.at("disk").get<std::int64_t>();
         program.keep = enum_named<Program::Keep>(keep_words, settings.at("keep").get<std::string>());

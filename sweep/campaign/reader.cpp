@@ -182,6 +182,8 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     if (const auto powder = top.find("powder")) use_powder(*powder, folder, campaign);
     const auto accuracy = top.find("accuracy");
     const auto goal = accuracy ? read_accuracy(*accuracy, campaign) : std::nullopt;
+    if (!accuracy && is_program(campaign.scene().name) && campaign.scene().accuracy.contains(AccuracyGoal::measure))
+        campaign.accuracy = AccuracyGoal::measure;  // the parameters of a setting have no default
     resolve_accuracy(space, campaign.accuracy);
     check_relevance(top, space, declared, given);
 

@@ -520,7 +520,8 @@ std::string campaign_schema(int indentation) {
         schema["allOf"].push_back(scene_rule(*scene));
     }
     scenes.push_back(program_word);
-    schema["allOf"].push_back(defined_scene_rule(program_word, false));
+    schema["allOf"].push_back(
+        defined_scene_rule(program_word, {{"oneOf", {{{"type", "string"}}, section(accuracy_keys())}}}));
     scenes.push_back(machine_word);
     schema["allOf"].push_back(defined_scene_rule(
         machine_word, accuracy_schema(OrderedJson::array({"fast", "balanced", "fine", "reference"}), {})));

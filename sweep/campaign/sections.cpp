@@ -3,6 +3,7 @@
 
 #include "stats/levels.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/program.hpp"
 
 #include <fmt/format.h>
 
@@ -102,6 +103,13 @@ AccuracyGoal read_goal(const Cursor& place, const SceneInfo& scene, const std::v
     if (!scene.accuracy.contains(AccuracyGoal::measure))
         place.refuse(
             fmt::format("scene '{}' has no setting '{}' to compare with", scene.shown(), AccuracyGoal::measure));
+    if (const auto program = known_program(scene.name))
+        for (const auto& setting : program->accuracy)
+            if (!setting.cost_seconds)
+                place.refuse(
+                    fmt::format("a goal needs \"cost_seconds\" in program.accuracy.{}: about how long a case "
+                                "takes, s; `grainsweep accuracy` measures it",
+                                setting.name));
     AccuracyGoal goal;
     goal.observable = read_scalar(section.at("observable"), scene);
     goal.gates = read_gates(section, goal.gates);
@@ -129,7 +137,9 @@ std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaig
         return std::nullopt;
     }
     auto goal = read_goal(place, scene, offered);
-    campaign.accuracy = goal.setting.value_or("");
+    // The parameters of a program's setting have no default.
+    const bool has_no_default = is_program(scene.name);
+    campaign.accuracy = goal.setting.value_or(has_no_default ? std::string(AccuracyGoal::measure) : "");
     std::set<std::string> common(campaign.common_random_numbers.begin(), campaign.common_random_numbers.end());
     for (const auto& [setting, inputs] : scene.accuracy)
         for (const auto& [name, value] : inputs) common.insert(name);

@@ -176,8 +176,12 @@ std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& a
                                             accuracy, std::move(fixed), common};
         all.push_back({name, says, campaign::with_other_numerics(campaign.text, other, rows), moved});
     };
+    // The setting that a program names as its reference would be shown twice.
+    const auto differs = [&](const std::string& level) {
+        return scene.accuracy.find(level)->second != reference->second;
+    };
     for (const auto& level : offered)
-        if (level != against) add(fmt::format("{}_{}", campaign.name, level), level, level, {});
+        if (level != against && differs(level)) add(fmt::format("{}_{}", campaign.name, level), level, level, {});
     for (const auto& [name, value] : moves_of(campaign, against))
         add(fmt::format("{}_{}_{}_{}", campaign.name, against, name, name_part(value_words(value))),
             fmt::format("{} with {} = {}", against, name, value_words(value)), against, {{name, value}});

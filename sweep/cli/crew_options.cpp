@@ -35,7 +35,7 @@ unsigned threads_of_a_case(const campaign::Campaign& campaign) {
 std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked) {
     const auto& execution = campaign.execution;
     const auto program = campaign::known_program(campaign.scene().name);
-    const auto of_a_case = program ? static_cast<unsigned>(program->cores) : threads_of_a_case(campaign);
+    const auto of_a_case = program ? static_cast<unsigned>(program->cores_of_a_case()) : threads_of_a_case(campaign);
     const auto configured = execution.hosts ? execution.workers_per_host : execution.workers;
     const std::int64_t number = asked ? *asked : configured.value_or(0);  // 0 asks for all
     const std::size_t each =

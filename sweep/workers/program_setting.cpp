@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <stdexcept>
@@ -37,6 +38,8 @@ std::optional<std::string> value_named(std::string_view name, std::string_view f
     constexpr std::uint64_t most_of_31_bits = 0x7FFFFFFE;
     if (name == "threads") return formatted(static_cast<std::uint64_t>(program.cores), format);
     const bool own = !format.empty() && !campaign::NumberFormat::parse(format);
+    const bool varied = question != nullptr && question->inputs.contains(name);  // a parameter that is older than this
+    if (name == "processes" && !varied) return formatted(static_cast<std::uint64_t>(program.processes), format);
     if (question == nullptr && own) return std::nullopt;
     if (question == nullptr) throw std::logic_error("a program that stays alive has no case");
     if (const auto input = question->inputs.find(name); input != question->inputs.end())
@@ -47,6 +50,23 @@ std::optional<std::string> value_named(std::string_view name, std::string_view f
     if (name == "case") return question->id;
     if (own) return std::nullopt;
     throw SystemError(fmt::format("the case has no '{}'", name));
+}
+
+/// Adds variables by which the ranks of a case run on the node of its worker, on any of its cores. What the user sets
+/// has priority.
+void add_mpi_variables(std::vector<std::string>& environment, const Program& program) {
+    if (program.processes < 2) return;
+    const auto set = [&](const char* name, const char* value) {
+        if (std::getenv(name) == nullptr && !program.environment.contains(name))
+            environment.push_back(fmt::format("{}={}", name, value));
+    };
+    // Open MPI would bind the ranks of all cases of a node to its first cores.
+    set("OMPI_MCA_hwloc_base_binding_policy", "none");
+    set("PRTE_MCA_hwloc_default_binding_policy", "none");
+    if (std::getenv("SLURM_STEP_ID") == nullptr) return;
+    // Within a step of srun, mpirun would wait for a step of its own, and the step of this worker has its cores.
+    for (const char* name : {"OMPI_MCA_plm", "OMPI_MCA_ras", "PRTE_MCA_plm", "PRTE_MCA_ras"}) set(name, "^slurm");
+    for (const char* name : {"HYDRA_BOOTSTRAP", "I_MPI_HYDRA_BOOTSTRAP"}) set(name, "fork");  // MPICH, Intel
 }
 
 fs::path place_of(std::string_view scene, const fs::path& cases) {
@@ -88,6 +108,7 @@ std::vector<std::string> program_environment(const Program& program, const campa
     std::vector<std::string> environment;
     for (const auto& [name, text] : program.environment)
         environment.push_back(fmt::format("{}={}", name, campaign::filled_command(text, value)));
+    add_mpi_variables(environment, program);
     return environment;
 }
 

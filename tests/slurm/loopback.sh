@@ -3,7 +3,7 @@
 # run without Slurm.
 #   tests/slurm/loopback.sh GRAINSWEEP SCENARIO
 # SCENARIO: calm, host_killed, node_killed, spreading (a node killed under a real campaign), cancelled, requeued,
-# controller, walltime, array
+# controller, walltime, array, mpi (a case is a program of MPI)
 # The cluster is made by `slurm-loopback` (start DIR, stop DIR, env DIR, kill-node DIR NODE, kill-ctld DIR, start-ctld
 # DIR), named by the environment variable SLURM_LOOPBACK or found on the search path. Exit code 77 where it, or Slurm
 # itself, is not installed.
@@ -221,6 +221,26 @@ walltime)
     scancel "$job"
     [ "$(query "SELECT count(*) FROM attempt WHERE outcome = 'abandoned'")" = 1 ]
     cd ..
+    ;;
+mpi)
+    # Three nodes of two cores: a host on each, which runs one case of two ranks at a time. mpirun inside a step must
+    # not look for the allocation: it starts its ranks on its own node.
+    command -v mpicc mpirun >/dev/null || skip "there is no MPI (mpicc, mpirun)"
+    mpicc -o ranks "$(dirname "$(realpath "$0")")/ranks.c"
+    cat >c.json <<JSON
+{"campaign": "c", "scene": "program",
+ "program": {"command": ["mpirun", "-np", "{processes}", "./ranks", "{x}"], "files": ["ranks"], "processes": 2,
+  "environment": {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"},
+  "parameters": {"x": {"unit": "1"}},
+  "observables": {"sum": {"from": {"output": "sum = (.*)"}}, "ranks": {"from": {"output": "ranks = (.*)"}}}},
+ "factors": [{"name": "x", "between": [0, 1]}], "design": {"kind": "halton", "points": 24},
+ "execution": {"hosts": 3, "launcher": $srun_host}}
+JSON
+    job=$(in_three_nodes)
+    settled_in 180 "$job"
+    [ "$(query "SELECT count(*) FROM c WHERE ranks = 2 AND abs(sum - 2 * x) < 1e-12")" = 24 ]
+    [ "$(query "SELECT count(DISTINCT host) FROM attempt JOIN attempt_computer USING (computer_id)")" -ge 1 ]
+    expect_no_crash
     ;;
 array)
     campaign c 96 0.5 '{"workers": 2}' >c.json

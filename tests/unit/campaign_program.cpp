@@ -202,6 +202,70 @@ TEST(ProgramSection, RefusesWithOneSentence) {
 }
 
 /// SQL has one name for `a` and `A`. Suffixes distinguish a factor from an observable of the same name.
+json file_with_settings() {
+    auto file = sound_file();
+    file["program"]["command"].push_back("{cells}");
+    file["program"]["parameters"]["cells"] = {{"unit", "1"}, {"whole", true}, {"bounds", {1, 1000}}};
+    file["program"]["accuracy"] = {{"coarse", {{"cells", 10}, {"cost_seconds", 0.5}}},
+                                   {"fine", {{"cells", 80}, {"cost_seconds", 20}}},
+                                   {"reference", "fine"}};
+    return file;
+}
+
+TEST(ProgramAccuracy, SettingsGiveValuesAndCosts) {
+    const Beside beside;
+    auto file = file_with_settings();
+    const auto by_default = parse_campaign(file.dump(), beside.path());
+    EXPECT_EQ(by_default.space.fixed.at("cells"), Value{80.0}) << "the standard, because a setting has no default";
+    file["accuracy"] = "coarse";
+    const auto coarse = parse_campaign(file.dump(), beside.path());
+    EXPECT_EQ(coarse.space.fixed.at("cells"), Value{10.0});
+    EXPECT_EQ(coarse.scene().name, by_default.scene().name) << "a setting is inputs, not another program";
+    EXPECT_EQ(coarse.scene().estimate_cost({{"cells", 10.0}}, {}).seconds, 0.5);
+    EXPECT_EQ(coarse.scene().estimate_cost({{"cells", 80.0}}, {}).seconds, 20);
+    EXPECT_EQ(coarse.scene().estimate_cost({{"cells", 20.0}}, {}).seconds, 1);
+    file["fixed"]["cells"] = 40;
+    EXPECT_EQ(parse_campaign(file.dump(), beside.path()).space.fixed.at("cells"), Value{40.0});
+}
+
+TEST(ProgramAccuracy, RefusesWithOneSentence) {
+    const Beside beside;
+    ASSERT_EQ(said_of(file_with_settings(), beside), "");
+    struct Refused {
+        json patch;
+        std::string says;
+    };
+    const std::vector<Refused> all = {
+        {{{"program", {{"accuracy", 1}}}}, "$.program.accuracy: got 1; must be an object of settings"},
+        {{{"program", {{"accuracy", {{"coarse", 10}}}}}}, "$.program.accuracy.coarse: got 10; must be an object of"},
+        {{{"program", {{"accuracy", {{"reference", nullptr}}}}}},
+         "key 'reference' is missing: the name of the setting"},
+        {{{"program", {{"accuracy", {{"reference", "fime"}}}}}}, "Did you mean 'fine'?"},
+        {{{"program", {{"accuracy", {{"coarse", {{"cells", nullptr}}}}}}}}, "needs a parameter and its value"},
+        {{{"program", {{"accuracy", {{"coarse", {{"cells", 10.5}}}}}}}}, "'cells' is a whole number"},
+        {{{"program", {{"accuracy", {{"coarse", {{"cells", 5000}}}}}}}}, "'cells' must be a number from 1 to 1000"},
+        {{{"program", {{"accuracy", {{"coarse", {{"step", 1}}}}}}}}, "$.program.accuracy.fine"},
+        {{{"program", {{"accuracy", {{"coarse", {{"cost_seconds", 0}}}}}}}}, "a number above 0"},
+        {{{"program", {{"processes", 0}}}}, "$.program.processes: got 0; must be a whole number from 1"},
+        {{{"program", {{"processes", "two"}}}}, "$.program.processes"},
+        {{{"program", {{"processes", 2}}}, {"fixed", {{"processes", 4}}}}, "{processes} would have two meanings"},
+        {{{"program", {{"acuracy", 1}}}}, "Did you mean 'accuracy'?"},
+        {{{"accuracy", "medium"}}, "$.accuracy: got \"medium\"; must be one of"},
+    };
+    for (const auto& [patch, says] : all) {
+        json file = file_with_settings();
+        file.merge_patch(patch);
+        const auto said = said_of(file, beside);
+        EXPECT_NE(said.find(says), std::string::npos) << patch << "\n  " << said;
+        EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    }
+    json goal = file_with_settings();
+    goal["program"]["accuracy"]["coarse"].erase("cost_seconds");
+    goal["accuracy"] = {{"observable", "angle"}};
+    EXPECT_NE(said_of(goal, beside).find("a goal needs \"cost_seconds\" in program.accuracy.coarse"),
+              std::string::npos);
+}
+
 TEST(ProgramSection, NamesThatDifferByCaseAreOne) {
     const Beside beside;
     const auto said = [&](const json& patch) {
