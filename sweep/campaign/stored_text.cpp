@@ -86,11 +86,14 @@ void append_conditions(Json& factors, const Json& calibration) {
 Remarks remarks_in(std::string_view campaign_file) {
     const Json document = document_in(campaign_file);
     if (!document.is_object()) return {};
-    Remarks remarks{notes_in(document), std::nullopt, features_in(document), noise_in(document), goal_in(document)};
+    Remarks remarks{notes_in(document), std::nullopt,      features_in(document),
+                    noise_in(document), goal_in(document), std::nullopt};
     const auto limits = document.find("limits");
     if (limits == document.end() || !limits->is_object()) return remarks;
     const auto attempts = limits->find("attempts");
     if (attempts != limits->end() && attempts->is_number()) remarks.attempts = attempts->get<std::int64_t>();
+    const auto seconds = limits->find("wall_seconds");
+    if (seconds != limits->end() && seconds->is_number() && *seconds > 0) remarks.wall_seconds = seconds->get<double>();
     return remarks;
 }
 

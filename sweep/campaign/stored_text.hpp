@@ -21,6 +21,7 @@ struct Remarks {
     std::vector<std::string> features;     ///< model.features; empty: not given
     std::vector<std::string> noise;        ///< factors with "role": "noise"
     std::optional<AccuracyGoal> goal;      ///< "accuracy" as an object
+    std::optional<double> wall_seconds;    ///< limits.wall_seconds, if given
 };
 /// Returns the remarks in a campaign file stored by this program or an older one; empty if the text is none.
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);

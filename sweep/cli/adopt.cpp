@@ -117,7 +117,7 @@ Adopted adopted_program(const store::Store& store, const campaign::Campaign& cam
     }
     const auto now = campaign::known_program(campaign.scene().name);
     if (now == nullptr) throw not_adopted(old, "only answers of a program are adopted (\"scene\": \"program\")");
-    Adopted adopted{store.program(record->scene), {}, {}};
+    Adopted adopted{store.program(record->scene), {}, {}, {}};
     if (adopted.program == nullptr) throw not_adopted(old, "this campaign has no program");
     if (record->scene == campaign.scene().name)
         throw not_adopted(old, "its program is this one: equal cases are shared without --adopt");
@@ -143,6 +143,10 @@ AdoptedCounts adopt_answers(store::Store& store, const campaign::Campaign& campa
         const auto old_id = id_under(*adopted.program, campaign, question, cases.place(i).replicate);
         auto taken = taken_from(store, old_id);
         if (!taken) continue;
+        if (adopted.where && !adopted.where(question.inputs)) {
+            ++counts.excluded;
+            continue;
+        }
         auto& result = taken->result;
         std::string origin;
         if (further && result.outcome == campaign::Outcome::completed) {

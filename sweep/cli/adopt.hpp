@@ -24,6 +24,7 @@ struct Adopted {
     std::shared_ptr<const campaign::Program> program;  ///< nullptr: none are
     std::vector<campaign::ProgramChange> changes;      ///< since then
     std::filesystem::path cases;                       ///< folders of its cases, if they were kept
+    campaign::Filter where;                            ///< cases whose answers are taken over; empty: all
 };
 
 /// Returns the program of the campaign `old` in the database. Throws InputError if there is no such campaign, one of
@@ -36,6 +37,7 @@ struct AdoptedCounts {
     std::size_t answers = 0;
     std::size_t read_again = 0;  ///< of these, with observables read from the folders of their cases
     std::size_t without = 0;     ///< answers not taken over, because a further observable is nowhere to be read
+    std::size_t excluded = 0;    ///< answers not taken over, because the condition excludes them
 };
 
 /// Stores the answers of an earlier program to the same inputs as answers of the campaign, unless it has its own. Each

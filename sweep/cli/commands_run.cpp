@@ -366,6 +366,8 @@ void declare_run(Parser& parser, RunArguments& request) {
                       "rerun cases with this outcome, for example unstable or crashed");
     parser.add_option("--adopt CAMPAIGN", request.adopt,
                       "take over the answers of a campaign whose program has changed without a change of its results");
+    parser.add_option("--adopt-where SQL", request.adopt_where,
+                      "with --adopt: take over only the cases whose inputs fulfil this condition, compute the others");
     parser.add_option("--max-cases N", request.max_cases, "finish at most N cases in this run; 0: all")
         ->check(whole_number(0));
     parser

@@ -4,6 +4,7 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
@@ -365,6 +366,7 @@ public:
             return 0;
         });
         if (!request_.adopt.empty()) adopted_ = adopted_program(*store_, campaign_, request_.adopt);
+        if (!request_.adopt_where.empty()) adopted_.where = adopted_cases();
         adopted_.cases = folder_beside(request_.artefacts.empty() ? database_ : artefacts_, of_cases);
         const bool is_new = store_->factor_order(campaign_.name).empty();
         if (is_new) state_absent_version();
@@ -416,10 +418,44 @@ private:
     bool grow() {
         return campaign::asked_in(request_.config, [&] { return schedule::grow(campaign_, *store_); });
     }
+    /// Compiles --adopt-where.
+    [[nodiscard]] campaign::Filter adopted_cases() const {
+        if (request_.adopt.empty())
+            throw campaign::input_error("--adopt-where", request_.adopt_where, "belongs to --adopt");
+        return store::make_condition(request_.adopt_where, campaign::filter_names(campaign_), "--adopt-where").holds;
+    }
+    /// Returns the time limit of the stored campaign; empty: there is none, or no such campaign.
+    [[nodiscard]] std::optional<double> limit_before() const {
+        // A query checks no checksum: damaged cases are repaired when the campaign is enrolled.
+        const auto texts = store_->query(fmt::format(
+            "SELECT campaign_text FROM provenance JOIN campaign USING (campaign_id) WHERE name = '{}' ORDER "
+            "BY provenance_id DESC LIMIT 1",
+            campaign_.name));
+        if (texts.rows.empty()) return campaign_.limits.wall_seconds;
+        const auto* text = std::get_if<std::string>(&texts.rows.front().front());
+        return text == nullptr ? std::nullopt : campaign::remarks_in(*text).wall_seconds;
+    }
+    /// States how many cases ran out of time if the limit is another now.
+    void state_changed_limit(std::optional<double> before) {
+        const auto now = campaign_.limits.wall_seconds;
+        if (now == before || !before) return;
+        std::int64_t over = 0;
+        for (std::size_t i = 0; i < placed_.size(); ++i)
+            over += placed_.is_first(i) && states_[i].outcome == Outcome::timed_out;
+        if (over == 0) return;
+        line_->note(
+            fmt::format("note: limits.wall_seconds was {:.6g} and is {}; {} cases timed out under the old limit{}",
+                        *before, now ? fmt::format("{:.6g}", *now) : "none", over,
+                        request_.again == Outcome::timed_out
+                            ? ""
+                            : "; `run --again timed_out` gives those without attempts left new ones"));
+    }
     void enrol(bool first) {
+        const auto limit = first ? limit_before() : campaign_.limits.wall_seconds;
         states_ = campaign::asked_in(request_.config,
                                      [&] { return store_->enrol(campaign_, placed_, provenance(), entered_first); });
         for (const auto& note : store_->notes()) line_->note(note);
+        if (first) state_changed_limit(limit);
         if (adopted_.program != nullptr) adopt();
         if (!request_.spool.empty())
             collected_ =
@@ -452,6 +488,8 @@ private:
                 fmt::format(", {} of them with further observables from the folders of their cases", counts.read_again);
         if (counts.without > 0)
             more += fmt::format("; {} cases without such a folder are computed again", counts.without);
+        if (counts.excluded > 0)
+            more += fmt::format("; {} cases that --adopt-where excludes are computed again", counts.excluded);
         line_->note(fmt::format("note: {} answers of '{}' are adopted{}", counts.answers, request_.adopt, more));
         states_ = store_->enrol(campaign_, placed_, provenance(), entered_first);
     }

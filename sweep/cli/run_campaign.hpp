@@ -26,6 +26,7 @@ struct RunRequest {
     std::optional<std::int64_t> max_cases;            ///< settle at most so many cases
     std::optional<std::int64_t> points;               ///< points of the design, instead of the number in the file
     std::string adopt;  ///< campaign of an earlier version of the program whose answers are taken over; empty: none
+    std::string adopt_where;  ///< SQL condition over the inputs of the cases that are taken over; empty: all
     /// Folder shared by the tasks of `work`. If not empty, no case is computed: the folder defines the campaign, and
     /// its answers are imported into the database.
     std::filesystem::path spool;
