@@ -272,6 +272,15 @@ std::vector<const ResponseColumn*> shown_observables(const Responses& responses)
     return shown;
 }
 
+/// Notes of the campaign file, and the number of cases that were computed elsewhere.
+std::string notes_of(const store::Store& store, const store::CampaignRecord& record) {
+    auto notes = campaign::remarks_in(record.text).notes;
+    if (const auto imported = store.imported_cases(record.name); imported > 0)
+        notes +=
+            fmt::format("{}{} of the cases were computed elsewhere and imported.", notes.empty() ? "" : "\n", imported);
+    return notes;
+}
+
 /// `measured`: names of scalars; the names of this campaign's scalars are added.
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
                  const PageModels& models, std::vector<std::string>& measured) {
@@ -286,7 +295,7 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
     const auto named_count = [](const auto& counted) { return std::array<Json, 2>{counted.first, counted.second}; };
     return Json{{"name", record.name},
                 {"database", database},
-                {"notes", campaign::remarks_in(record.text).notes},
+                {"notes", notes_of(store, record)},
                 {"scene", shown_scene(record.scene)},
                 {"revision", record.revision},
                 {"summary", scene == nullptr ? "" : scene->summary},

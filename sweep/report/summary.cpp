@@ -172,6 +172,8 @@ Document closing_summary(const store::Store& store, const std::string& campaign,
     Document shown;
     shown.say(fmt::format("{}: {} cases of {}: {}", campaign, responses.rows(), shown_scene(responses.campaign.scene),
                           outcome_line(responses)));
+    if (const auto imported = store.imported_cases(campaign); imported > 0)
+        shown.say(fmt::format("{} of the cases were computed elsewhere and imported", imported));
     if (!responses.campaign.condition.empty()) shown.say("where: " + points_line(responses));
     if (const auto brackets = brackets_of(store, responses.campaign)) {
         shown.say(brackets_line(*brackets)).say().show(brackets_table(*brackets));

@@ -163,6 +163,8 @@ void store_import(Connection& db, std::int64_t key, std::int64_t number, const c
 [[nodiscard]] std::map<std::int64_t, campaign::ImportedLine> imported_lines(const Connection& db, std::int64_t key);
 /// Returns the names of the campaigns into which the cases of others were imported, by the key of the other.
 [[nodiscard]] std::map<std::int64_t, std::string> imported_campaigns(const Connection& db);
+/// Returns an SQL expression: how many cases of a campaign, whose key is an expression, were computed elsewhere.
+[[nodiscard]] std::string count_of_imports(const Connection& db, std::string_view campaign);
 /// Returns a sentence on each damaged origin.
 [[nodiscard]] std::vector<std::string> damaged_imports(const Connection& db);
 

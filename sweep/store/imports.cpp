@@ -61,6 +61,23 @@ std::vector<std::string> damaged_imports(const Connection& db) {
     return damaged;
 }
 
+std::string count_of_imports(const Connection& db, std::string_view campaign) {
+    if (!has_table(db, table_of_imports)) return "0";
+    return fmt::format(
+        "(SELECT count(*) FROM campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key JOIN attempt_import AS "
+        "i "
+        "ON i.case_key = c.case_key AND i.number = (SELECT max(number) FROM attempt AS a WHERE a.case_key = c.case_key "
+        "AND a.outcome = c.outcome) WHERE p.campaign_id = {})",
+        campaign);
+}
+
+std::int64_t Store::imported_cases(std::string_view campaign) const {
+    return impl_->db
+        .value<std::int64_t>(fmt::format("SELECT {} WHERE ?1 > 0", count_of_imports(impl_->db, "?1")),
+                             impl_->campaign_key(campaign))
+        .value_or(0);
+}
+
 void Store::mark_imported(std::string_view campaign, std::string_view into) {
     impl_->require_group();
     impl_->db.run("INSERT INTO campaign_import (campaign_id, of_campaign) VALUES (?, ?) ON CONFLICT DO NOTHING",

@@ -1,22 +1,9 @@
 // How far the campaigns of an archive have come.
 #include "sweep/store/archive.hpp"
-#include "sweep/store/soundness.hpp"
 
 #include <fmt/format.h>
 
 namespace grainsweep::store {
-
-namespace {
-
-/// Number of cases of campaign t whose answer was computed elsewhere.
-std::string imported_cases(const Connection& db) {
-    if (!has_table(db, "attempt_import")) return "0";
-    return "(SELECT count(*) FROM campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key "
-           "JOIN attempt_import AS i ON i.case_key = c.case_key AND i.number = (SELECT max(number) FROM attempt AS a "
-           "WHERE a.case_key = c.case_key AND a.outcome = c.outcome) WHERE p.campaign_id = t.campaign_id)";
-}
-
-}  // namespace
 
 Table Store::status() const {
     Table table;
@@ -46,7 +33,7 @@ Table Store::status() const {
         "  e.asked_replicates, {}, n.outcome, n.cases FROM total AS t JOIN extent AS e ON e.campaign_id = "
         "t.campaign_id "
         "LEFT JOIN count AS n ON n.campaign_id = t.campaign_id ORDER BY t.campaign_id",
-        extent_columns(impl_->keeps_extents()), imported_cases(impl_->db)));
+        extent_columns(impl_->keeps_extents()), count_of_imports(impl_->db, "t.campaign_id")));
     constexpr int outcome_column = 14;
     const std::size_t first_outcome = 3;
     const std::size_t waiting = first_outcome + campaign::outcomes.size();

@@ -257,6 +257,8 @@ public:
     ///   asked_points, asked_replicates   requested by the last run (points: candidates)
     ///   imported    cases whose answer was computed elsewhere (`grainsweep import`)
     [[nodiscard]] Table status() const;
+    /// Returns the number of cases at places of the campaign whose answer was computed elsewhere.
+    [[nodiscard]] std::int64_t imported_cases(std::string_view campaign) const;
     /// Returns the statement behind the campaign's view, as this program writes it. The stored view may be anybody's,
     /// and endless.
     [[nodiscard]] std::string rows_of(std::string_view campaign) const;

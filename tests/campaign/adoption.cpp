@@ -203,4 +203,32 @@ TEST_F(Adoption, IsForProgramsOnly) {
     expect_refused(program({"run", "r.json", "--adopt", "r"}), "only answers of a program are adopted");
 }
 
+TEST_F(Adoption, TakesAPartByACondition) {
+    ASSERT_EQ(run_script(folder, script("first"), named("p", 6)).code, 0);
+    const std::vector<std::string> options = {"-j", "2", "--db", "p.db", "--adopt", "p", "--adopt-where", "x < 0.5"};
+    const auto ended = run_script(folder, script("second"), named("q", 6), options);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const auto above = rows_of(folder, "SELECT count(*) AS n FROM p WHERE x >= 0.5")[0]["n"].get<int>();
+    EXPECT_THAT(ended.err, HasSubstr(std::to_string(6 - above) + " answers of 'p' are adopted; " +
+                                     std::to_string(above) + " cases that --adopt-where excludes are computed again"));
+    EXPECT_EQ(runs(), 6 + above);
+    expect_refused(program({"run", "c.json", "--db", "p.db", "--adopt-where", "x < 0.5"}), "belongs to --adopt");
+    expect_refused(program({"run", "c.json", "--db", "p.db", "--adopt", "p", "--adopt-where", "z < 0.5"}),
+                   "--adopt-where");
+}
+
+TEST_F(Adoption, AnotherTimeLimitStatesWhatTimedOut) {
+    auto campaign = named("p", 4);
+    campaign["limits"] = {{"wall_seconds", 1}, {"attempts", 1}};
+    const auto slow = script("slow") + "awk -v x=\"$1\" 'BEGIN { exit !(x > 0.6) }' && sleep 60\ntrue\n";
+    ASSERT_EQ(run_script(folder, slow, campaign).code, 1);
+    const auto late = rows_of(folder, "SELECT count(*) AS n FROM p WHERE outcome = 'timed_out'")[0]["n"].get<int>();
+    ASSERT_GT(late, 0);
+    campaign["limits"]["wall_seconds"] = 30;
+    const auto ended = run_script(folder, slow, campaign);
+    EXPECT_THAT(ended.err, HasSubstr("limits.wall_seconds was 1 and is 30; " + std::to_string(late) +
+                                     " cases timed out under the old limit"));
+    EXPECT_THAT(run_script(folder, slow, campaign).err, Not(HasSubstr("under the old limit"))) << "once";
+}
+
 }  // namespace grainsweep::tests::adoption_test

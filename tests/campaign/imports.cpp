@@ -85,7 +85,9 @@ TEST_F(Imports, StandBesideTheDesignForModelsAlone) {
 
 TEST_F(Imports, SettleThePointsOfTheDesign) {
     ASSERT_EQ(imported("x,y,outcome\n0.5,1,completed\n0.25,0.5,completed\n0.75,,unstable\n0.9,,crashed\n").code, 0);
-    EXPECT_EQ(program({"run", "c.json", "--db", "p.db", "-j", "2"}).code, 1) << "one case is unstable";
+    const auto ended = program({"run", "c.json", "--db", "p.db", "-j", "2"});
+    EXPECT_EQ(ended.code, 1) << "one case is unstable";
+    EXPECT_THAT(ended.out, HasSubstr("3 of the cases were computed elsewhere and imported"));
     EXPECT_EQ(runs(), 5) << "three points of the first eight have answers";
     const auto rows = rows_of(folder, "SELECT outcome, count(*) AS n FROM p GROUP BY 1 ORDER BY 1");
     EXPECT_EQ(rows[0]["n"], 7);
