@@ -184,6 +184,22 @@ std::vector<std::size_t> share_columns(const ExportGrid& grid, const Headings& h
     return shares;
 }
 
+/// Whether two columns hold the same shares, as weights and percents do.
+bool are_alike(const ExportGrid& grid, std::size_t a, std::size_t b) {
+    constexpr double rounding = 0.01;  // of the sum
+    double sum_a = 0, sum_b = 0;
+    for (std::size_t k = 0; k < grid.rows.size(); ++k) {
+        sum_a += number_at(grid, k, a).value_or(0);
+        sum_b += number_at(grid, k, b).value_or(0);
+    }
+    if (!(sum_a > 0 && sum_b > 0)) return false;
+    for (std::size_t k = 0; k < grid.rows.size(); ++k)
+        if (!(std::abs(number_at(grid, k, a).value_or(0) / sum_a - number_at(grid, k, b).value_or(0) / sum_b) <
+              rounding))
+            return false;
+    return true;
+}
+
 std::size_t share_column(const ExportGrid& grid, const Headings& headings, const ExportChoices& choices,
                          const ExportColumns& found) {
     if (choices.shares) return chosen_column(grid, "--shares", *choices.shares);
@@ -214,6 +230,11 @@ std::size_t share_column(const ExportGrid& grid, const Headings& headings, const
         if (!of_kind.empty()) break;
     }
     if (shares.size() == 1) return shares.front();
+    if (shares.size() > 1 && std::ranges::all_of(shares, [&](auto j) {
+            const auto &a = headings[shares.front()].by, &b = headings[j].by;
+            return (!a || !b || a == b) && are_alike(grid, shares.front(), j);
+        }))
+        return shares.back();
     if (shares.empty() && !densities.empty())
         refuse_columns(fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
                                    column_list(grid, densities)));

@@ -115,9 +115,10 @@ std::size_t filled(const Cells& cells) {
 /// Names of samples in a line above headers that repeat: each stands until the next.
 void add_names(const Cells& names, std::vector<std::string>& headers) {
     std::string name;
+    const auto plain = headers;
     for (std::size_t j = 0; j < headers.size(); ++j) {
         if (j < names.size() && !names[j].empty()) name = names[j];
-        const bool repeats = std::ranges::count(headers, headers[j]) > 1;
+        const bool repeats = std::ranges::count(plain, plain[j]) > 1;
         if (!name.empty() && !headers[j].empty() && repeats) headers[j] = name + ": " + headers[j];
     }
 }
@@ -211,7 +212,16 @@ std::size_t read_headers(const Lines& lines, const Block& block, std::vector<std
         const Cells names = cells_of_line(lines[from - 1], block.separator);
         if (filled(names) >= 2 && names.size() <= block.width && names.front().empty()) {
             add_names(names, headers);
-            --from;
+            return from - 1;
+        }
+        for (std::size_t k = from; k-- > 0;) {  // "Sample Name,S1,S2" at the top of a report
+            Cells above = cells_of_line(lines[k], block.separator);
+            const std::string word = plain_words(above.front());
+            const bool samples = word.starts_with("sample") || word.starts_with("probe") || word.starts_with("record");
+            if (!samples || filled(above) < 2 || above.size() > block.width) continue;
+            above.front().clear();
+            add_names(above, headers);
+            break;
         }
     }
     return from;
