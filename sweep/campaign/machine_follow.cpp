@@ -16,6 +16,7 @@ using geometry::operator-;
 using machine::Vec3;
 
 constexpr std::size_t most_pieces = 2000;  // a step looks at each of them
+constexpr std::size_t most_turns = 200;    // of angles: each turns the next
 
 /// Places or angles at times; angles are along x.
 struct Course {
@@ -23,6 +24,11 @@ struct Course {
     std::vector<Vec3> places;   ///< m, or rad
     bool turns = false;
 };
+
+Cursor needed_key(const Section& follow, std::string_view key) {
+    if (const auto place = follow.find(key)) return *place;
+    throw input_error(follow.place().path(), "", fmt::format("key '{}' is missing", key));
+}
 
 Course course_of_table(const Section& follow, const MachineScope& scope) {
     Course course;
@@ -51,11 +57,12 @@ Course course_of_expression(const Section& follow, const MachineScope& outer) {
     if (outer.knows("t"))
         (angle ? *angle : *position)
             .refuse("'t' is the time here; give the parameter or \"let\" of this name another one");
-    const double every = outer.number(follow.at("every"), "s", positive_number);
-    const double until = outer.number(follow.at("until"), "s", positive_number);
+    const double every = outer.number(needed_key(follow, "every"), "s", positive_number);
+    const double until = outer.number(needed_key(follow, "until"), "s", positive_number);
     const double pieces = std::ceil(until / every * (1 - 1e-12));
-    if (!(pieces <= static_cast<double>(most_pieces)))
-        follow.at("every").refuse(fmt::format("makes {:.4g} pieces, and at most {} are possible", pieces, most_pieces));
+    const std::size_t most = angle ? most_turns : most_pieces;
+    if (!(pieces <= static_cast<double>(most)))
+        follow.at("every").refuse(fmt::format("makes {:.4g} pieces, and at most {} are possible", pieces, most));
     Course course;
     course.turns = angle.has_value();
     MachineScope scope = outer;
@@ -82,12 +89,12 @@ std::vector<machine::WallMotion> read_follow(const Section& motion, const Machin
     const auto from = motion.find("from");
     const double start = from ? scope.number(*from, "s", no_negative_number) : 0;
     const Course course = follow.find("times") ? course_of_table(follow, scope) : course_of_expression(follow, scope);
-    if (course.times.size() > most_pieces + 1)
-        follow.place().refuse(fmt::format("at most {} times are possible", most_pieces + 1));
+    const std::size_t most = course.turns ? most_turns : most_pieces;
+    if (course.times.size() > most + 1) follow.place().refuse(fmt::format("at most {} times are possible", most + 1));
     if (!course.turns)
         for (const char* key : {"axis", "through"})
             if (const auto place = follow.find(key)) place->refuse("belongs to angles");
-    const Vec3 axis = course.turns ? scope.direction(follow.at("axis")) : Vec3{};
+    const Vec3 axis = course.turns ? scope.direction(needed_key(follow, "axis")) : Vec3{};
     const Vec3 through = scope.vector(follow, "through", "m");
     std::vector<machine::WallMotion> motions;
     for (std::size_t k = 1; k < course.times.size(); ++k) {
