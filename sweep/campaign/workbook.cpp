@@ -281,11 +281,15 @@ std::vector<WorkbookSheet> workbook_sheets(std::string_view bytes) {
     const auto paths = sheet_paths(archive.file("xl/_rels/workbook.xml.rels"));
     std::vector<WorkbookSheet> sheets;
     const std::string workbook = archive.file("xl/workbook.xml");
+    std::size_t number = 0;  // of a sheet, from 1
     for (XmlTags tags(workbook); const auto tag = tags.next();) {
         if (tag->name != "sheet" || tag->closes) continue;
-        const auto path = paths.find(attribute(*tag, "r:id"));
-        if (path == paths.end() || !archive.has(path->second)) continue;
-        std::string text = sheet_text(archive.file(path->second), strings);
+        ++number;
+        const auto named = paths.find(attribute(*tag, "r:id"));
+        const std::string path =
+            named != paths.end() ? named->second : fmt::format("xl/worksheets/sheet{}.xml", number);
+        if (!archive.has(path)) continue;
+        std::string text = sheet_text(archive.file(path), strings);
         if (text.find_first_not_of("\t\n") != std::string::npos)
             sheets.push_back({attribute(*tag, "name"), std::move(text)});
     }
