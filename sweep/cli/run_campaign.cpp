@@ -369,7 +369,7 @@ public:
         if (!request_.adopt_where.empty()) adopted_.where = adopted_cases();
         adopted_.cases = folder_beside(request_.artefacts.empty() ? database_ : artefacts_, of_cases);
         const bool is_new = store_->factor_order(campaign_.name).empty();
-        if (is_new) state_absent_version();
+        if (is_new && !request_.goes_on) state_absent_version();
         if (campaign::reorder_factors(campaign_, store_->factor_order(campaign_.name))) {
             line_->note(fmt::format("note: the factors of '{}' keep their stored order: {}", campaign_.name,
                                     campaign::factor_list(campaign_.space)));

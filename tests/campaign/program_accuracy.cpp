@@ -31,7 +31,7 @@ json cells_campaign() {
                                 {"fine", {{"cells", 64}, {"cost_seconds", 1}}},
                                 {"reference", "fine"}}}});
     campaign["factors"][0]["between"] = {0, 3};
-    campaign["design"] = {{"kind", "halton"}, {"sequences", 4}, {"points", 400}};
+    campaign["design"] = {{"kind", "halton"}, {"sequences", 8}, {"points", 400}};
     return campaign;
 }
 
@@ -47,15 +47,17 @@ struct ProgramAccuracy : testing::Test {
 
 TEST_F(ProgramAccuracy, AGoalIsMetByPairsOfOnePoint) {
     auto campaign = cells_campaign();
-    campaign["accuracy"] = {{"observable", "y"}, {"gates", {"mean"}}, {"tolerance", 0.05}};
+    campaign["accuracy"] = {{"observable", "y"}, {"gates", {"mean"}}, {"tolerance", 0.02}};
     const auto ended = run_script(folder, midpoints, campaign, {"-j", "2", "--quiet", "--format", "json"});
     ASSERT_EQ(ended.code, 0) << ended.err;
     EXPECT_EQ(json::parse(ended.out)["converged"], true) << ended.out;
     const auto found = answer({"converge", "p.db", "--campaign", "p"}).at(0).at("corrected");
     EXPECT_EQ(found["setting"], "coarse");
-    // The mean of (exp(x) - 1) / x over x from 0 to 3.
-    constexpr double exact = 2.7567;
-    EXPECT_NEAR(found["statistics"]["mean"]["value"], exact, 0.05 * exact);
+    // The mean of (exp(x) - 1) / x over x from 0 to 3; twice the 95 % half-width, because the seed is one of many.
+    constexpr double exact = 2.7527;
+    const auto& mean = found["statistics"]["mean"];
+    EXPECT_NEAR(mean["value"].get<double>(), exact, 2 * mean["error"].get<double>());
+    EXPECT_LE(mean["error"].get<double>(), 0.02 * exact);
     const auto pairs = rows_of(folder,
                                "SELECT count(*) AS pairs, sum(r.seed = p.seed) AS common, sum(r.y > p.y) AS above FROM "
                                "p JOIN p_reference AS r USING (point)")[0];
