@@ -9,6 +9,7 @@
 # itself, is not installed.
 set -euo pipefail
 grainsweep=$(realpath "$1")
+sources=$(dirname "$(realpath "$0")")
 scenario=$2
 loopback=${SLURM_LOOPBACK:-$(command -v slurm-loopback || true)}
 export PATH=$PATH:/usr/sbin:/sbin
@@ -226,7 +227,7 @@ mpi)
     # Three nodes of two cores: a host on each, which runs one case of two ranks at a time. mpirun inside a step must
     # not look for the allocation: it starts its ranks on its own node.
     command -v mpicc mpirun >/dev/null || skip "there is no MPI (mpicc, mpirun)"
-    mpicc -o ranks "$(dirname "$(realpath "$0")")/ranks.c"
+    mpicc -o ranks "$sources/ranks.c"
     cat >c.json <<JSON
 {"campaign": "c", "scene": "program",
  "program": {"command": ["mpirun", "-np", "{processes}", "./ranks", "{x}"], "files": ["ranks"], "processes": 2,
