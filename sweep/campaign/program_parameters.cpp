@@ -153,7 +153,7 @@ private:
 
     /// Parameters that accuracy settings give values to.
     void add_settings(const Cursor& accuracy) {
-        if (!accuracy.json().is_object()) return;
+        if (!accuracy.json().is_object()) accuracy.refuse("must be an object of settings and the parameters of each");
         for (const auto& [setting, inputs] : accuracy.members({}))
             if (inputs.json().is_object())
                 for (const auto& [name, value] : inputs.members({}))

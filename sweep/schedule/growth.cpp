@@ -1,6 +1,5 @@
 #include "sweep/schedule/growth.hpp"
 
-#include "solver/plain_text.hpp"
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/input_error.hpp"
@@ -74,7 +73,7 @@ double coordinate_of(const campaign::StatedFactor& factor, const store::Table::C
     }
     for (std::size_t k = 0; k < factor.levels.size(); ++k) {
         const auto* word = std::get_if<std::string>(&cell);
-        const bool same = word != nullptr ? *word == factor.levels[k] : any_number_in(factor.levels[k]) == value;
+        const bool same = word != nullptr ? *word == factor.levels[k] : campaign::shortest(value) == factor.levels[k];
         if (same) return (static_cast<double>(k) + 0.5) / static_cast<double>(factor.levels.size());
     }
     return none;

@@ -1,13 +1,10 @@
 // Accuracy settings of a program: pairs of cases with the same points and seeds, corrected means, and the error of each
-// setting. Programs of MPI, whose ranks count against the cores.
-#include "tests/support/places.hpp"
+// setting. Processes of a case count against the cores.
 #include "tests/support/program_campaigns.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -85,28 +82,19 @@ TEST_F(ProgramAccuracy, ASettingIsChosenByItsName) {
     EXPECT_GT(bias, -0.5);
 }
 
-TEST_F(ProgramAccuracy, RanksOfMpiCountAgainstTheCores) {
-    if (std::system("command -v mpicc mpirun > /dev/null") != 0) GTEST_SKIP() << "there is no MPI (mpicc, mpirun)";
-    ASSERT_EQ(
-        Process({"/bin/sh", "-c", "mpicc -o ranks '" + source("tests/slurm/ranks.c").string() + "'"}, folder.path())
-            .wait()
-            .code,
-        0);
-    auto campaign = script_campaign(3);
-    campaign["program"] = {
-        {"command", {"mpirun", "--oversubscribe", "-np", "{processes}", "./ranks", "{x}"}},
-        {"files", {"ranks"}},
-        {"processes", 3},
-        {"environment", {{"OMPI_ALLOW_RUN_AS_ROOT", "1"}, {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"}}},
-        {"parameters", {{"x", {{"unit", "1"}}}}},
-        {"observables",
-         {{"sum", {{"from", {{"output", "sum = (.*)"}}}}}, {"ranks", {{"from", {{"output", "ranks = (.*)"}}}}}}}};
-    folder.write("c.json", campaign.dump());
-    const auto ended = run_program({"run", "c.json", "--quiet"}, folder.path());
-    ASSERT_EQ(ended.code, 0) << ended.err;
-    const auto rows = rows_of(folder, "SELECT ranks, abs(sum - 3 * x) < 1e-12 AS right FROM p");
-    ASSERT_EQ(rows.size(), 3U);
-    for (const auto& row : rows) EXPECT_EQ(row, (json{{"ranks", 3}, {"right", 1}}));
+TEST_F(ProgramAccuracy, ProcessesCountAgainstTheCores) {
+    auto campaign = script_campaign(3, {{"command", {"sh", "script.sh", "{x}", "{processes}", "{threads}"}},
+                                        {"processes", 4096},
+                                        {"cores", 2},
+                                        {"environment", {{"ALONE", (folder / "alone").string()}}}});
+    campaign["limits"]["attempts"] = 1;
+    // A case fails beside another one. Without -j there is one worker, because no machine has cores for two such cases.
+    const auto alone =
+        "mkdir \"$ALONE\" || exit 1\nsleep 0.2\necho \"{\\\"y\\\": $(($2 * $3))}\" > out.json\n"
+        "rmdir \"$ALONE\"\n";
+    const auto ended = run_script(folder, alone, campaign, {"--quiet"});
+    EXPECT_EQ(ended.code, 0) << ended.out;
+    EXPECT_EQ(rows_of(folder, "SELECT DISTINCT y FROM p")[0]["y"], 8192);
 }
 
 }  // namespace grainsweep::tests::program_accuracy_test

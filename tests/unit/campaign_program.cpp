@@ -250,7 +250,7 @@ TEST(ProgramAccuracy, RefusesWithOneSentence) {
         {{{"program", {{"processes", "two"}}}}, "$.program.processes"},
         {{{"program", {{"processes", 2}}}, {"fixed", {{"processes", 4}}}}, "{processes} would have two meanings"},
         {{{"program", {{"acuracy", 1}}}}, "Did you mean 'accuracy'?"},
-        {{{"accuracy", "medium"}}, "$.accuracy: got \"medium\"; must be one of"},
+        {{{"accuracy", "medium"}}, "$.accuracy: got \"medium\"; must be 'coarse', 'fine' or"},
     };
     for (const auto& [patch, says] : all) {
         json file = file_with_settings();
