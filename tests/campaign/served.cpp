@@ -262,7 +262,8 @@ TEST_F(ServedCampaign, AnEndlessViewStopsNothing) {
            "DROP VIEW a; CREATE VIEW a AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 "
            "FROM n) SELECT i AS point FROM n");
     LiveServer server(folder, "a.db");
-    EXPECT_EQ(Json::parse(server.get("/data").body)["campaigns"][0]["rows"], 3);
+    EventReader reader(server.events());
+    EXPECT_TRUE(reader.until([&] { return Json::parse(server.get("/data").body)["campaigns"][0]["rows"] == 3; }));
     for (const auto* command : {"converge", "sensitivity", "status"})
         EXPECT_EQ(run_program({command, "a.db"}, folder.path()).code, 0) << command;
     EXPECT_EQ(run_program({"report", "a.db", "-o", "a.html"}, folder.path()).code, 0);
