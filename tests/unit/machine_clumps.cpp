@@ -23,7 +23,7 @@ json pour(const json& shape) {
       "domain": {"low": [0, 0, -0.01], "high": [0.04, 0.04, 0.1], "sides": ["periodic", "periodic", "open"]},
       "walls": {"floor": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}},
       "fill": [{"species": "rice", "count": 30, "in": {"box": {"low": [0, 0, 0.001], "high": [0.04, 0.04, 0.09]}}}],
-      "phases": [{"name": "settle", "for": "0.02 s", "frames": 4}],
+      "phases": [{"name": "settle", "for": "0.02 s", "frames": 1}],
       "measure": {
         "count": {"count": {}, "as": "last"}, "mass": {"mass": {}, "as": "last"},
         "translation": {"kinetic_energy": {}, "as": "last"}, "rotation": {"rotational_energy": {}, "as": "last"},
@@ -31,7 +31,7 @@ json pour(const json& shape) {
         "order": {"nematic_order": {}, "as": "last"}, "top": {"height": {"share": 1}, "as": "last"},
         "centres": {"height": {"share": 1, "of_sphere": "centre"}, "as": "last"},
         "partners": {"coordination": {}, "as": "last"}, "contacts": {"contacts": {}, "as": "last"},
-        "solid": {"point_fraction": {"in": {"box": {"low": [0, 0, 0], "high": [0.04, 0.04, 0.1]}}, "points": 20000},
+        "solid": {"point_fraction": {"in": {"box": {"low": [0, 0, 0], "high": [0.04, 0.04, 0.1]}}, "points": 200000},
                   "as": "first"},
         "pressed": {"stress": {"in": {"box": {"low": [0, 0, 0], "high": [0.04, 0.04, 0.02]}}}, "as": "last"},
         "gone": {"discharged_number": {}, "as": "last"}}
