@@ -23,8 +23,8 @@ struct ImportArguments : ImportRequest {
 };
 
 std::string said(const ImportReport& report, const std::string& file) {
-    std::string text =
-        fmt::format("{}: {} cases imported into '{}'", file, report.placed + report.others, report.campaign);
+    const auto all = report.placed + report.others;
+    std::string text = fmt::format("{}: {} case{} imported into '{}'", file, all, all == 1 ? "" : "s", report.campaign);
     if (report.placed > 0 || report.others > 0) text += fmt::format(": {} of its design", report.placed);
     if (report.others > 0)
         text +=
