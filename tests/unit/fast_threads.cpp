@@ -153,6 +153,18 @@ dem::Setup in_a_drum_of_triangles(double spread) {
     return s;
 }
 
+/// Two kinds, of which the second is denser and rougher.
+dem::Setup of_two_kinds(double spread) {
+    dem::Setup s = tests::boxed_lattice(5, 0.5, spread, 8);
+    dem::Material rough = s.material;
+    rough.friction = 0.8;
+    rough.restitution = 0.3;
+    s.kinds = {{s.material.density, 3 * s.material.density}, {s.material, rough, rough}};
+    for (std::size_t i = 0; i < s.spheres.size(); ++i) s.spheres[i].kind = i % 3 == 0 ? 1 : 0;
+    for (dem::Wall& wall : s.walls) wall.materials = {s.material, rough};
+    return s;
+}
+
 /// A cloud that flies apart, fast, out of an open box: lists are made anew all the time, with fewer particles each.
 dem::Setup flying_apart(double spread) {
     dem::Setup s = tests::thrown_lattice(6, 3.0, spread, 2);
@@ -184,6 +196,7 @@ std::vector<Case> cases() {
     for (const double spread : {0.0, 0.4}) {
         const std::string sizes = spread > 0 ? ", many sizes" : "";
         all.push_back({"two floors" + sizes, on_two_floors(spread), 300});
+        all.push_back({"two kinds" + sizes, of_two_kinds(spread), 500});
         all.push_back({"a drum of triangles" + sizes, in_a_drum_of_triangles(spread), 500});
         all.push_back({"flying apart" + sizes, flying_apart(spread), 400});
     }
@@ -299,14 +312,17 @@ TEST(FastThreads, CheckpointsPassBetweenNumbersOfThreads) {
 }
 
 TEST(FastThreads, TheirNumberMayChangeInTheMiddle) {
-    const dem::Setup setup = tests::boxed_lattice(5, 0.5, 0.2, 7);
     const auto path = paths().back();
-    const auto alone = make_mixed_engine(setup, path), changing = make_mixed_engine(setup, path, 0, 0, small_parts(1));
-    for (const int threads : {1, 2, 7, 1, 3, 0, 2}) {
-        changing->set_threads(threads);
-        alone->run(47);
-        changing->run(47);
-        ASSERT_TRUE(bytes_of(*alone) == bytes_of(*changing)) << threads << " threads";
+    for (const dem::Setup& setup : {tests::boxed_lattice(5, 0.5, 0.2, 7), of_two_kinds(0), of_two_kinds(0.2)}) {
+        const auto alone = make_mixed_engine(setup, path);
+        const auto changing = make_mixed_engine(setup, path, 0, 0, small_parts(1));
+        for (const int threads : {1, 2, 7, 1, 3, 0, 2, 4, 5, 2}) {
+            changing->set_threads(threads);
+            alone->run(47);
+            changing->run(47);
+            ASSERT_TRUE(bytes_of(*alone) == bytes_of(*changing))
+                << threads << " threads, " << setup.kinds.densities.size() << " kinds";
+        }
     }
 }
 

@@ -188,11 +188,19 @@ void Subdomains::place_copies(Field& whole, Columns& columns) {
     if (columns.member.capacity() > 0) columns.member.hold(next + spare);
     columns.forces.hold(next + spare);
     columns.bind(whole);
-    for (const auto& subdomain : subdomains_)
+    for (const auto& subdomain : subdomains_) {
         for (std::int32_t k = 0; k < 2; ++k) {
             whole.records[subdomain->filler + k] = whole.records[whole.filler + k];
             if (whole.member != nullptr) whole.member[subdomain->filler + k] = -1;
         }
+        // What a partner keeps until the next cuts: lists may be taken over without new inner ones.
+        std::int32_t copy = subdomain->filler + 2;
+        for (const std::int32_t partner : subdomain->partner) {
+            whole.kind[copy] = whole.kind[partner];
+            if (whole.member != nullptr) whole.member[copy] = whole.member[partner];
+            ++copy;
+        }
+    }
 }
 
 /// The outer list of a subdomain, which of its pairs touch, and their histories.

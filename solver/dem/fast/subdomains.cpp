@@ -79,14 +79,10 @@ std::int32_t Subdomain::touching_in(std::int32_t from, std::int32_t count, std::
     return touching;
 }
 
-void Subdomain::copy_partners(Record* records, std::uint8_t* kind, std::int32_t* member, bool all) const {
+void Subdomain::copy_partners(Record* records, bool all) const {
     Record* const copy = records + filler + 2;
     if (all)
-        for (std::size_t k = 0; k < partner.size(); ++k) {
-            copy[k] = records[partner[k]];
-            kind[static_cast<std::size_t>(filler) + 2 + k] = kind[partner[k]];
-            if (member != nullptr) member[static_cast<std::size_t>(filler) + 2 + k] = member[partner[k]];
-        }
+        for (std::size_t k = 0; k < partner.size(); ++k) copy[k] = records[partner[k]];
     else
         for (std::size_t k = 0; k < met.size(); ++k) copy[met[k]] = records[met_here[k]];
 }
@@ -218,8 +214,7 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_o
     const bool received = goes_on && !renewal;
     if (!received)
         pool_->run([&](int part) {
-            subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, whole.kind, whole.member,
-                                                                       renewal.has_value());
+            subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, renewal.has_value());
         });
     pool_->run_timed([&](int part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
