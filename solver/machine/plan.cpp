@@ -23,6 +23,7 @@ using kit::sentence;
 constexpr double early = 0.5;  // of a phase that may end before its time
 // s per particle and step with a probe at every step, by precision, and with another one.
 constexpr double at_steps_mixed = 2.8e-7, at_steps_double = 1.6e-7, another = 1.3e-8;
+constexpr double member_of_clump = 4.4;                // cost of a step of its sphere (20,000 in mixed precision)
 constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
 constexpr double softest = 0.1;                        // overlap over diameter
 constexpr double most_loose = 0.35;                    // solid fraction of particles placed at random
@@ -33,8 +34,9 @@ constexpr double steps_per_period = 20;  // of a vibration
 // mean contact, and by that of the fastest one (measured at 20 and 60 kPa: 4.5 and 4.4, 2.5 and 2.6).
 constexpr double pressed_fraction = 0.6, pressed_contacts = 6, over_mean = 4.5, over_fastest = 2.5;
 
-double spheres_of(const Species& species) {
-    return species.shape ? static_cast<double>(species.shape->balls.size()) : 1;
+/// Returns the cost of a step of a particle divided by a sphere's.
+double cost_of(const Species& species) {
+    return species.shape ? member_of_clump * static_cast<double>(species.shape->balls.size()) : 1;
 }
 
 double mean_mass(const Spec& spec, const Mix& mix) {
@@ -50,11 +52,11 @@ double mean_volume(const Spec& spec, const Mix& mix) {
     return volume;
 }
 
-/// Returns the mean number of spheres of a particle.
-double spheres_in(const Spec& spec, const Mix& mix) {
-    double spheres = 0;
-    for (const auto& [species, share] : mix) spheres += share * spheres_of(spec.species[species]);
-    return spheres;
+/// Returns the same of a mean particle.
+double cost_in(const Spec& spec, const Mix& mix) {
+    double cost = 0;
+    for (const auto& [species, share] : mix) cost += share * cost_of(spec.species[species]);
+    return cost;
 }
 
 double duration_of(const Spec& spec, const Phases& during) {
@@ -64,14 +66,14 @@ double duration_of(const Spec& spec, const Phases& during) {
     return seconds;
 }
 
+/// Returns the number of spheres that would cost as much as the particles at the start.
 double spheres_at_start(const Spec& spec) {
     double count = 0;
     for (const auto& fill : spec.fills) {
         if (const auto* region = std::get_if<Fill>(&fill))
-            count += static_cast<double>(region->count) * spheres_in(spec, region->mix);
+            count += static_cast<double>(region->count) * cost_in(spec, region->mix);
         else
-            for (const Placed& one : std::get<std::vector<Placed>>(fill))
-                count += spheres_of(spec.species[one.species]);
+            for (const Placed& one : std::get<std::vector<Placed>>(fill)) count += cost_of(spec.species[one.species]);
     }
     return count;
 }
@@ -358,7 +360,7 @@ CostEstimate cost_of(const Spec& spec) {
     for (const Feed& feed : spec.feeds) {
         // A fed particle stays for half of the time, in the mean.
         const double fed =
-            feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix) * spheres_in(spec, feed.mix);
+            feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix) * cost_in(spec, feed.mix);
         work += fed * duration_of(spec, feed.during) / 2;
         most += fed;
     }
