@@ -71,7 +71,7 @@ particles::CoverRequest cover_of(const Section& section, const MachineReading& r
 }
 
 /// Returns the shape that one of the keys describes; empty: a sphere, of aspect ratio 1.
-std::optional<GrainShape> described(const Section& section, const MachineReading& reading) {
+std::optional<GrainShape> described_shape(const Section& section, const MachineReading& reading) {
     const auto ratio = section.find("aspect_ratio"), spheres = section.find("spheres"), stl = section.find("stl");
     if ((ratio ? 1 : 0) + (stl || spheres ? 1 : 0) != 1)
         throw input_error(section.place().path(), "", "a shape has one of \"aspect_ratio\", \"spheres\" and \"stl\"");
@@ -111,7 +111,7 @@ geometry::Inertia inertia_of(const Cursor& place, const MachineReading& reading)
 
 void read_grain_shape(const Cursor& place, const MachineReading& reading, machine::Species& species) {
     const Section section(place, machine_keys::grain_shape());
-    auto shape = described(section, reading);
+    auto shape = described_shape(section, reading);
     constexpr std::array<std::string_view, 3> of_mass = {"mass", "inertia", "centre"};
     if (!shape) return;
     // Spheres in metres have a size of their own.

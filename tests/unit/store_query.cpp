@@ -320,8 +320,9 @@ TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
     EXPECT_EQ(
         refusal("SELECT * FROM frist"),
         "SQL: no such table: frist; there are first, convergence_history, inputs, series, attempt, "
-        "attempt_computer, attempt_program, campaign, campaign_case, campaign_file, case_input, convergence, "
-        "file_checksum, machine, observable, observation, parameter, program, program_content, provenance, sim_case, "
+        "attempt_computer, attempt_import, attempt_program, campaign, campaign_case, campaign_file, campaign_import, "
+        "case_input, convergence, file_checksum, machine, observable, observation, parameter, program, "
+        "program_content, provenance, sim_case, "
         "table_checksum. Did "
         "you mean 'first'?");
     EXPECT_EQ(refusal("SELECT stdev(y) FROM first"), "SQL: no such function: stdev. Did you mean 'stddev'?");
