@@ -138,10 +138,10 @@ TEST_F(StoreQuery, TheFixedViewsHaveTheColumnsOfTheContract) {
     const auto tables = store.query("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name");
     std::vector<std::string> names;
     for (const auto& row : tables.rows) names.push_back(text_of(row[0]));
-    EXPECT_THAT(names, ElementsAre("attempt", "attempt_computer", "attempt_program", "campaign", "campaign_case",
-                                   "campaign_file", "case_input", "convergence", "file_checksum", "machine",
-                                   "observable", "observation", "parameter", "program", "program_content", "provenance",
-                                   "sim_case", "table_checksum"));
+    EXPECT_THAT(names, ElementsAre("attempt", "attempt_computer", "attempt_import", "attempt_program", "campaign",
+                                   "campaign_case", "campaign_file", "campaign_import", "case_input", "convergence",
+                                   "file_checksum", "machine", "observable", "observation", "parameter", "program",
+                                   "program_content", "provenance", "sim_case", "table_checksum"));
     const auto by = store.query(
         "SELECT version, \"commit\", compiler, flags, instruction_path, processor, host, start, "
         "campaign_text, campaign_hash FROM provenance");
