@@ -17,6 +17,11 @@ struct Solid {
 
 /// Tensor of inertia: xx, xy, xz, yy, yz, zz, where xy is minus the product of inertia.
 using Inertia = std::array<double, 6>;
+/// Adds weight a a^T, in the order of Inertia.
+inline void add_square(Inertia& to, const Vec3& a, double weight) {
+    for (std::size_t i = 0, c = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j) to[c++] += weight * (a[i] * a[j]);
+}
 
 /// Returns the body with these properties; `inertia`: about the centre, divided by the density. A tensor without
 /// products of inertia has the axes x, y and z in this order.

@@ -86,13 +86,8 @@ void take_mass(GrainShape& shape, const OwnMass& own, double diameter, double de
     if (own.inertia) {
         inertia = *own.inertia;
     } else {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto& e = solid.axes[k];
-            const double moment = solid.inertia[k] * mass / solid.volume;
-            const geometry::Inertia square = {e[0] * e[0], e[0] * e[1], e[0] * e[2],
-                                              e[1] * e[1], e[1] * e[2], e[2] * e[2]};
-            for (std::size_t c = 0; c < 6; ++c) inertia[c] += moment * square[c];
-        }
+        for (std::size_t k = 0; k < 3; ++k)
+            geometry::add_square(inertia, solid.axes[k], solid.inertia[k] * mass / solid.volume);
     }
     if (const auto flaw = particles::flaw_of(balls, solid, density, mass, inertia, centre); !flaw.empty())
         throw std::invalid_argument(flaw);

@@ -137,9 +137,7 @@ void take_mass(Clump& clump, double mass, const Vec3& inertia) {
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 axis{};
             axis[k] = 1;
-            const Vec3 a = cross(ball.centre, axis);
-            const Inertia square = {a[0] * a[0], a[0] * a[1], a[0] * a[2], a[1] * a[1], a[1] * a[2], a[2] * a[2]};
-            for (std::size_t c = 0; c < 6; ++c) added[c] += square[c] / inertia[k];
+            add_square(added, cross(ball.centre, axis), 1 / inertia[k]);
         }
         const double most = std::ranges::max(solid_of(0, {}, added).inertia);
         const double felt = 1 / (1 / mass + most), own = std::numbers::pi / 6 * std::pow(2 * ball.radius, 3);

@@ -1,6 +1,7 @@
 #include "solver/dem/fast/clumps.hpp"
 
 #include "solver/dem/fast/residual.hpp"
+#include "solver/geometry/solid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -153,13 +154,8 @@ void Clumps::shift(double share, double step, const Vec3& acceleration) {
 void Clumps::set_arms(std::size_t b, const Units& units) {
     // I^-1 of the mass unit: added to 1/m in the engine's units.
     const double unit = shape_of(b).damping == DampingMass::body ? 0 : units.inertia;
-    std::array<double, 6> inverse{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& e = axes[b][k];
-        const double w = unit * inverse_inertia[b][k];
-        inverse[0] += w * e[0] * e[0], inverse[1] += w * e[0] * e[1], inverse[2] += w * e[0] * e[2];
-        inverse[3] += w * e[1] * e[1], inverse[4] += w * e[1] * e[2], inverse[5] += w * e[2] * e[2];
-    }
+    Inertia inverse{};
+    for (std::size_t k = 0; k < 3; ++k) add_square(inverse, axes[b][k], unit * inverse_inertia[b][k]);
     for (auto slot = static_cast<std::size_t>(begin_[b]); slot < static_cast<std::size_t>(begin_[b + 1]); ++slot) {
         MemberArm& arm = arms_[slot];
         for (std::size_t a = 0; a < 3; ++a) arm.lever[a] = static_cast<float>(lever_[slot][a] * units.inverse_length);

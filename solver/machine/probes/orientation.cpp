@@ -58,9 +58,7 @@ public:
         geometry::Inertia sum{};  // of u u
         double count = 0;
         directions_.each(frame, [&](const Vec3& u) {
-            const geometry::Inertia square = {u[0] * u[0], u[0] * u[1], u[0] * u[2],
-                                              u[1] * u[1], u[1] * u[2], u[2] * u[2]};
-            for (std::size_t c = 0; c < 6; ++c) sum[c] += square[c];
+            geometry::add_square(sum, u, 1);
             ++count;
         });
         if (count == 0) return undefined;
