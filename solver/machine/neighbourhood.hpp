@@ -1,8 +1,9 @@
-// Places that spheres occupy, while particles are placed one by one.
+// Places that spheres occupy: of particles that are placed one by one, and of points that are counted.
 #pragma once
 
 #include "solver/geometry/domain.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,19 +14,29 @@ namespace grainsweep::machine {
 
 using geometry::Vec3;
 
-/// Spheres by cells of a width, at least the largest diameter.
+/// Spheres by cells of a width, at least the largest diameter. Periods hold two such spheres or more.
 class Neighbourhood {
 public:
-    Neighbourhood(const geometry::Domain& domain, double width) : domain_(domain), width_(width) {}
+    Neighbourhood(const geometry::Domain& domain, double width) : domain_(domain) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            count_[k] =
+                domain.periodic[k] ? std::max<std::int64_t>(1, std::llround(std::floor(domain.length(k) / width))) : 0;
+            edge_[k] = count_[k] > 0 ? domain.length(k) / static_cast<double>(count_[k]) : width;
+        }
+    }
 
     void add(const Vec3& centre, double radius) { cells_[cell_of(centre)].push_back({centre, radius}); }
-    /// Whether a sphere there would overlap one of them.
+    /// Returns whether a sphere there would overlap one of them; of radius 0, whether the point lies in one.
     [[nodiscard]] bool occupied(const Vec3& centre, double radius) const {
-        for (int image = 0; image < 27; ++image) {
-            const Vec3 place = image_of(centre, image);
-            if (image != 13 && place == centre) continue;  // no such image
-            if (overlaps(place, radius)) return true;
-        }
+        const Cell middle = cell_of(centre);
+        for (std::int64_t x = -1; x <= 1; ++x)
+            for (std::int64_t y = -1; y <= 1; ++y)
+                for (std::int64_t z = -1; z <= 1; ++z) {
+                    const auto found = cells_.find(wrapped({middle[0] + x, middle[1] + y, middle[2] + z}));
+                    if (found == cells_.end()) continue;
+                    for (const Ball& ball : found->second)
+                        if (geometry::norm(domain_.separation(centre, ball.centre)) < ball.radius + radius) return true;
+                }
         return false;
     }
 
@@ -36,34 +47,21 @@ private:
         double radius;
     };
 
-    [[nodiscard]] Cell cell_of(const Vec3& x) const {
-        Cell cell{};
-        for (std::size_t k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(x[k] / width_));
+    [[nodiscard]] Cell wrapped(Cell cell) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (count_[k] > 0) cell[k] = (cell[k] % count_[k] + count_[k]) % count_[k];
         return cell;
     }
-    [[nodiscard]] Vec3 image_of(const Vec3& x, int image) const {
-        const std::array<int, 3> shift = {image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-        Vec3 moved = x;
+    [[nodiscard]] Cell cell_of(const Vec3& x) const {
+        Cell cell{};
         for (std::size_t k = 0; k < 3; ++k)
-            if (domain_.periodic[k]) moved[k] += shift[k] * domain_.length(k);
-        return moved;
-    }
-    [[nodiscard]] bool overlaps(const Vec3& centre, double radius) const {
-        const Cell middle = cell_of(centre);
-        for (std::int64_t x = -1; x <= 1; ++x)
-            for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t z = -1; z <= 1; ++z) {
-                    const auto found = cells_.find({middle[0] + x, middle[1] + y, middle[2] + z});
-                    if (found == cells_.end()) continue;
-                    for (const Ball& ball : found->second)
-                        if (geometry::norm(geometry::operator-(ball.centre, centre)) < ball.radius + radius)
-                            return true;
-                }
-        return false;
+            cell[k] = static_cast<std::int64_t>(std::floor((x[k] - domain_.low[k]) / edge_[k]));
+        return wrapped(cell);
     }
 
     const geometry::Domain& domain_;
-    double width_;
+    Cell count_{};  ///< cells of a period; 0: the axis has none
+    Vec3 edge_{};
     std::map<Cell, std::vector<Ball>> cells_;
 };
 
