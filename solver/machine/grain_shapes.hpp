@@ -12,6 +12,9 @@
 
 namespace grainsweep::machine {
 
+/// Cost of a step of a clump's sphere divided by that of a sphere: 82 and 19 ns in mixed precision, 20,000 on one core.
+inline constexpr double cost_of_member = 4.4;
+
 /// Shape of a species, and how well it fits a mesh.
 struct GrainShape {
     particles::Clump clump;

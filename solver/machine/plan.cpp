@@ -2,6 +2,7 @@
 
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/machine/frames.hpp"
+#include "solver/machine/grain_shapes.hpp"
 #include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/scenes/kit/pace.hpp"
@@ -23,7 +24,6 @@ using kit::sentence;
 constexpr double early = 0.5;  // of a phase that may end before its time
 // s per particle and step with a probe at every step, by precision, and with another one.
 constexpr double at_steps_mixed = 2.8e-7, at_steps_double = 1.6e-7, another = 1.3e-8;
-constexpr double member_of_clump = 4.4;                // cost of a step of its sphere (20,000 in mixed precision)
 constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
 constexpr double softest = 0.1;                        // overlap over diameter
 constexpr double most_loose = 0.35;                    // solid fraction of particles placed at random
@@ -36,7 +36,7 @@ constexpr double pressed_fraction = 0.6, pressed_contacts = 6, over_mean = 4.5, 
 
 /// Returns the cost of a step of a particle divided by a sphere's.
 double cost_of(const Species& species) {
-    return species.shape ? member_of_clump * static_cast<double>(species.shape->balls.size()) : 1;
+    return species.shape ? cost_of_member * static_cast<double>(species.shape->balls.size()) : 1;
 }
 
 double mean_mass(const Spec& spec, const Mix& mix) {

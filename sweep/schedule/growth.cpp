@@ -82,16 +82,19 @@ double coordinate_of(const campaign::StatedFactor& factor, const store::Table::C
 /// Returns the answers that were imported into a campaign and belong to no point of its design.
 designs::FurtherAnswers imported_answers(const store::Store& store, const store::CampaignRecord& record,
                                          std::span<const std::string> observables) {
-    constexpr std::size_t first_factor = 8;  // of the columns of a view (results_schema/views.sql)
     designs::FurtherAnswers further;
     const auto factors = campaign::factors_of(record);
     for (const auto& other : store.campaigns()) {
         if (other.imported_into != record.name || other.factors != record.factors || other.fixed != record.fixed)
             continue;
         const auto rows = store.query(store.rows_of(other.name) + " ORDER BY point, replicate");
+        std::vector<std::size_t> columns;
+        for (const auto& factor : factors)
+            columns.push_back(
+                static_cast<std::size_t>(std::ranges::find(rows.columns, factor.name) - rows.columns.begin()));
         for (const auto& row : rows.rows)
             for (std::size_t j = 0; j < factors.size(); ++j)
-                further.coordinates.push_back(coordinate_of(factors[j], row[first_factor + j]));
+                further.coordinates.push_back(coordinate_of(factors[j], row.at(columns[j])));
         for (const auto& key : observables) {
             const auto [name, at] = designs::place_on_curve(key);
             auto& answers = further.answers[key];

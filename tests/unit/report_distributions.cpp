@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Designs, OverDistributions,
                                          Sampled{R"({"kind": "lattice", "levels": 24, "placement": "centred"})",
                                                  0.04}));
 
-/// A time that doubles with x1, and none where it would be above 0.7: the process has jammed.
+/// The time x1, and none where it would be above 0.7: the process has jammed.
 double time_of_flow(const Inputs& inputs) {
     const double time = input(inputs, "x1");
     return time > 0.7 ? std::numeric_limits<double>::quiet_NaN() : time;
