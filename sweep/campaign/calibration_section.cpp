@@ -124,22 +124,11 @@ void refuse_row_numbers(const Cursor& file, const CsvRecord& header, std::span<c
                         shown(header[0]), shown(header[1]), shown(header[2])));
 }
 
-/// The unit in brackets that a header ends with: "h (mm)". Empty: there is none, or the brackets hold other words.
-std::string unit_in_head(const std::string& head) {
-    const char close = head.empty() ? ' ' : head.back();
-    if (close != ')' && close != ']') return {};
-    const auto open = head.rfind(close == ')' ? '(' : '[');
-    if (open == std::string::npos) return {};
-    std::string unit(trimmed(std::string_view(head).substr(open + 1, head.size() - open - 2)));
-    if (unit == "\xC2\xB0") unit = "deg";
-    return resembles_united_number("1 " + unit) ? unit : std::string();
-}
-
 /// Converts column k to `unit` where its head states another one. Refuses a unit that does not fit.
 void convert_column(const Cursor& file, const std::string& head, std::size_t k, const std::string& unit,
                     std::vector<CurveRow>& rows) {
-    const std::string stated = unit_in_head(head);
-    if (stated.empty()) return;
+    const std::string stated = column_head(head).unit;
+    if (!resembles_united_number("1 " + stated)) return;  // brackets hold other words
     for (auto& row : rows) {
         const auto value = in_si(fmt::format("{} {}", shortest_text(row[k]), stated), unit);
         if (const auto* why = std::get_if<std::string>(&value))

@@ -40,14 +40,6 @@ struct OldColumn {
     std::size_t factor = 0;  ///< number of the factor
 };
 
-/// Splits "gap [mm]" or "gap (mm)".
-OldColumn split_header(const std::string& cell) {
-    static const std::regex united(R"(^(.*\S)\s*[\[\(]([^\[\]\(\)]*)[\]\)]$)");
-    std::smatch parts;
-    if (!std::regex_match(cell, parts, united)) return {cell, ""};
-    return {parts[1].str(), std::string(trimmed(parts[2].str()))};
-}
-
 /// Half a unit of the last decimal of a number, relative to it; 0 for a number without decimals.
 double written_precision(std::string_view number, double value) {
     const auto mark = std::min(number.find_first_of("eEdD"), number.size());
@@ -127,7 +119,8 @@ private:
     }
     [[nodiscard]] OldColumn column_of(const std::string& cell) const {
         using Role = OldColumn::Role;
-        auto column = split_header(cell);
+        const auto head = column_head(cell);
+        OldColumn column{.name = head.name, .unit = head.unit};
         const auto& name = column.name;
         const auto ignored = [&](const auto& word) { return word == name || word == cell; };
         if (std::ranges::any_of(request_.ignored, ignored)) return column;

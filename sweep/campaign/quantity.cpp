@@ -1,5 +1,6 @@
 #include "sweep/campaign/quantity.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/files/beside_program.hpp"
 
@@ -369,6 +370,18 @@ std::string with_decimal_point(std::string_view text) {
             return pointed;
         }
     return {};
+}
+
+ColumnHead column_head(std::string_view head) {
+    const std::string_view whole = trimmed(head);
+    const ColumnHead plain{std::string(whole), {}};
+    const char close = whole.empty() ? ' ' : whole.back();
+    if (close != ')' && close != ']') return plain;
+    const auto open = whole.rfind(close == ')' ? '(' : '[');
+    if (open == std::string_view::npos || open == 0) return plain;
+    std::string unit(trimmed(whole.substr(open + 1, whole.size() - open - 2)));
+    if (unit == "\xC2\xB0") unit = "deg";
+    return {std::string(trimmed(whole.substr(0, open))), unit};
 }
 
 std::string_view unit_of_quantity(std::string_view text) {

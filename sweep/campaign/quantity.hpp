@@ -21,6 +21,12 @@ namespace grainsweep::campaign {
 /// brackets do, whose commas separate.
 [[nodiscard]] std::string with_decimal_point(std::string_view text);
 
+/// Head of a column, "gap [mm]" or "gap (mm)": the name, and what the brackets at its end hold; a degree sign is deg.
+struct ColumnHead {
+    std::string name, unit;
+};
+[[nodiscard]] ColumnHead column_head(std::string_view head);
+
 /// Returns the unit of a quantity as written, a part of `text`; empty without one or without a number.
 [[nodiscard]] std::string_view unit_of_quantity(std::string_view text);
 
