@@ -132,6 +132,26 @@ private:
             auto& row = places_.emplace_back();
             for (const auto& factor : campaign_.space.factors) row.push_back(inputs.at(factor.name));
         }
+        for (std::size_t j = 0; j < campaign_.space.factors.size(); ++j) {
+            auto sorted = sorted_by(j);
+            const auto distinct = [](const auto& all) {
+                std::size_t count = 0;
+                for (std::size_t k = 0; k < all.size(); ++k) count += k == 0 || all[k].first != all[k - 1].first;
+                return count;
+            };
+            if (distinct(sorted) > distinct(sorted_)) sorted_ = std::move(sorted), sorted_by_ = j;
+        }
+    }
+    /// Returns the places with the numbers of a factor, ascending; none if it has words.
+    [[nodiscard]] std::vector<std::pair<double, std::size_t>> sorted_by(std::size_t j) const {
+        std::vector<std::pair<double, std::size_t>> sorted;
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            const auto number = campaign::coerced(places_[i][j], Value{0.0});
+            if (!std::holds_alternative<double>(number)) return {};
+            sorted.emplace_back(std::get<double>(number), i);
+        }
+        std::ranges::sort(sorted);
+        return sorted;
     }
     [[nodiscard]] static bool is_same(const Value& a, const Value& b, double tolerance) {
         const auto x = campaign::coerced(a, Value{0.0}), y = campaign::coerced(b, Value{0.0});
@@ -144,9 +164,25 @@ private:
             if (!is_same(result.row[j], places_[i][j], result.tolerances[j])) return false;
         return true;
     }
+    /// Returns the first place of the design with the inputs of a line.
+    [[nodiscard]] std::optional<std::size_t> place_of(const OldResult& result) const {
+        std::optional<std::size_t> first;
+        const auto take = [&](std::size_t i) {
+            if ((!first || i < *first) && is_at(result, i)) first = i;
+        };
+        if (sorted_.empty()) {
+            for (std::size_t i = 0; i < design_.size(); ++i) take(i);
+            return first;
+        }
+        const double number = std::get<double>(campaign::coerced(result.row[sorted_by_], Value{0.0}));
+        const double tolerance = result.tolerances[sorted_by_];
+        for (auto at = std::ranges::lower_bound(sorted_, std::pair(number - tolerance, std::size_t{0}));
+             at != sorted_.end() && at->first <= number + tolerance; ++at)
+            take(at->second);
+        return first;
+    }
     [[nodiscard]] ImportedCase case_of(const OldResult& result) const {
-        for (std::size_t i = 0; i < design_.size(); ++i)
-            if (is_at(result, i)) return {&result, design_.question(i), true};
+        if (const auto place = place_of(result)) return {&result, design_.question(*place), true};
         const auto inputs = campaign_.space.at(std::span<const Value>(result.row));
         const auto seed = campaign::case_seed(campaign_, inputs, result.repeat.value_or(0));
         return {&result, campaign::make_case(campaign_.scene(), inputs, seed), false};
@@ -287,6 +323,9 @@ private:
     fs::path database_;
     campaign::Cases design_;
     std::vector<std::vector<Value>> places_;  ///< factor values at each place of the design
+    /// The places by the numbers of the factor that has most of them; empty if all have words.
+    std::vector<std::pair<double, std::size_t>> sorted_;
+    std::size_t sorted_by_ = 0;
     campaign::OldResults old_;
     std::vector<ImportedCase> cases_;  ///< that are not in the database
     std::vector<campaign::PlacedCase> beside_;
