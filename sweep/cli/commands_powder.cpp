@@ -3,7 +3,7 @@
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/powder_export.hpp"
 #include "sweep/cli/command.hpp"
-#include "sweep/files/aside_file.hpp"
+#include "sweep/cli/page_file.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <system_error>
@@ -20,7 +19,6 @@
 namespace grainsweep::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using report::Format;
 using report::Json;
 
@@ -35,22 +33,8 @@ std::optional<std::string> stated(const std::string& word) {
     return word.empty() ? std::nullopt : std::optional(word);
 }
 
-/// Refuses a path at which the table cannot be written, and the path of the export itself.
-void check_table_file(const PowderRequest& request) {
-    if (request.output.empty())
-        throw campaign::input_error("-o", "", "powder import needs -o: the file of sizes to write");
-    std::error_code error;
-    const fs::path folder = fs::path(request.output).parent_path();
-    if (!fs::is_directory(folder.empty() ? "." : folder, error))
-        throw campaign::input_error("-o", request.output, "there is no such folder");
-    if (fs::is_directory(request.output, error))
-        throw campaign::input_error("-o", request.output, "this is a folder; name a file");
-    if (fs::equivalent(request.output, request.file, error))
-        throw campaign::input_error("-o", request.output, "this is the export itself; name another file");
-}
-
 int import_export(const PowderRequest& request, Format format) {
-    check_table_file(request);
+    check_converted_file(request.output, request.file, "export", {"table of sizes", "diameter,"});
     std::error_code error;
     const std::string bytes = files::whole_file(request.file, error, largest_export);
     if (error) throw campaign::input_error("EXPORT", request.file, fmt::format("cannot be read: {}", error.message()));
@@ -60,9 +44,7 @@ int import_export(const PowderRequest& request, Format format) {
                     stated(request.by), stated(request.edge), stated(request.smallest), stated(request.largest),
                     stated(request.sample)});
     });
-    files::AsideFile file{fs::path(request.output)};
-    file.write(imported.csv);
-    file.take_place();
+    write_page_file(request.output, imported.csv);
 
     store::Table table{{"of the export", "taken"}, {}};
     for (const auto& [what, taken] : imported.facts) table.rows.push_back({what, taken});

@@ -2,7 +2,7 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine_shape_file.hpp"
 #include "sweep/cli/command.hpp"
-#include "sweep/files/aside_file.hpp"
+#include "sweep/cli/page_file.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -30,14 +30,7 @@ struct ShapeRequest {
 int write_shape(const ShapeRequest& request, Format format) {
     namespace fs = std::filesystem;
     std::error_code error;
-    if (request.output.empty()) throw campaign::input_error("-o", "", "shape needs -o: the file of spheres to write");
-    const fs::path folder = fs::path(request.output).parent_path();
-    if (!fs::is_directory(folder.empty() ? "." : folder, error))
-        throw campaign::input_error("-o", request.output, "there is no such folder");
-    if (fs::is_directory(request.output, error))
-        throw campaign::input_error("-o", request.output, "this is a folder; name a file");
-    if (fs::equivalent(request.output, request.file, error))
-        throw campaign::input_error("-o", request.output, "this is the STL file itself; name another file");
+    check_converted_file(request.output, request.file, "STL file", {"list of spheres", "x,y,z,"});
     const std::string contents = files::whole_file(request.file, error, largest_stl);
     if (error) throw campaign::input_error("FILE", request.file, fmt::format("cannot be read: {}", error.message()));
     campaign::ShapeFile shape;
@@ -47,9 +40,7 @@ int write_shape(const ShapeRequest& request, Format format) {
     } catch (const std::invalid_argument& why) {
         throw campaign::input_error("FILE", request.file, why.what());
     }
-    files::AsideFile file{fs::path(request.output)};
-    file.write(shape.csv);
-    file.take_place();
+    write_page_file(request.output, shape.csv);
 
     store::Table table{{"quantity", "value"}, {}};
     const auto row = [&](const char* what, double value) { table.rows.push_back({std::string(what), value}); };

@@ -48,6 +48,16 @@ void check_page_file(std::string_view option, const std::string& output, const s
     if (start != kind.start) refuse(fmt::format("this file exists and is not a {}; choose another name", kind.word));
 }
 
+void check_converted_file(const std::string& output, const std::string& input, std::string_view kind_of_input,
+                          const FileKind& kind) {
+    if (output.empty()) throw campaign::input_error("-o", "", fmt::format("name the {} to write", kind.word));
+    std::error_code error;
+    if (fs::equivalent(output, input, error))
+        throw campaign::input_error("-o", output,
+                                    fmt::format("this is the {} itself; name another file", kind_of_input));
+    check_page_file("-o", output, "", kind);
+}
+
 void write_page_file(const std::string& output, const std::string& page) {
     std::error_code ignored;
     const bool link_to_nowhere = fs::is_symlink(fs::symlink_status(output, ignored)) && !fs::exists(output, ignored);

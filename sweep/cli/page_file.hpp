@@ -18,6 +18,11 @@ inline constexpr FileKind html_page{"page", "<!doctype html>"};
 void check_page_file(std::string_view option, const std::string& output, const std::string& database,
                      const FileKind& kind = html_page);
 
+/// Throws the same for -o of a command that converts a file, and if -o is missing or names the file itself; `input`:
+/// its path, `kind_of_input`: "export".
+void check_converted_file(const std::string& output, const std::string& input, std::string_view kind_of_input,
+                          const FileKind& kind);
+
 /// Writes the page and then moves it to its place, so that a failure leaves an existing file unchanged; writes directly
 /// to devices and pipes. Throws SystemError.
 void write_page_file(const std::string& output, const std::string& page);
