@@ -77,19 +77,23 @@ double clump_tolerance(const std::string& name) {
     return impact ? 1e-11 : 1e-8;
 }
 
+void expect_within(double tolerance, const ClumpDeviation& d, const std::string& name) {
+    EXPECT_LT(d.position, tolerance) << name;
+    EXPECT_LT(d.velocity, tolerance) << name;
+    EXPECT_LT(d.spin, tolerance) << name;
+    EXPECT_LT(d.angle, tolerance) << name;
+    std::ostringstream worst;
+    worst << d.worst();
+    testing::Test::RecordProperty(name, worst.str());
+}
+
 TEST(ClumpTrajectories, EqualLiggghts) {
     const json all = clump_cases();
     int seen = 0;
     for (const auto& [name, c] : all.items()) {
         const auto d = clump_deviation(name, c);
         const double tolerance = clump_tolerance(name);
-        EXPECT_LT(d.position, tolerance) << name;
-        EXPECT_LT(d.velocity, tolerance) << name;
-        EXPECT_LT(d.spin, tolerance) << name;
-        EXPECT_LT(d.angle, tolerance) << name;
-        std::ostringstream worst;
-        worst << d.worst();
-        RecordProperty(name, worst.str());
+        expect_within(tolerance, d, name);
         ++seen;
     }
     EXPECT_EQ(seen, 14);
@@ -102,13 +106,7 @@ TEST(ClumpTrajectories, EqualLiggghtsInMixedPrecision) {
     for (const auto& [name, c] : all.items()) {
         const auto d = clump_deviation(name, c, {}, {}, mixed);
         const double tolerance = clump_tolerance(name) < 1e-10 ? 1e-5 : 1e-3;
-        EXPECT_LT(d.position, tolerance) << name;
-        EXPECT_LT(d.velocity, tolerance) << name;
-        EXPECT_LT(d.spin, tolerance) << name;
-        EXPECT_LT(d.angle, tolerance) << name;
-        std::ostringstream worst;
-        worst << d.worst();
-        RecordProperty(name, worst.str());
+        expect_within(tolerance, d, name);
     }
     for (const std::string name : {"collide", "fall_damped_30"})
         EXPECT_LT(clump_deviation(name, all[name], {0.0305, 0.0295, 0}, {true, true, false}, mixed).worst(), 1e-5);

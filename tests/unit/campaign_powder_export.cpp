@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "tests/support/powder_exports.hpp"
 
 #include <map>
 #include <ostream>
@@ -230,15 +231,6 @@ TEST_P(Exports, AreRecognised) {
 }
 INSTANTIATE_TEST_SUITE_P(PowderExport, Exports, testing::ValuesIn(exports()),
                          [](const auto& given) { return given.param.name; });
-
-std::string refusal(const std::string& bytes, const ExportChoices& choices = {}) {
-    try {
-        (void)campaign::import_sizes(bytes, choices);
-    } catch (const campaign::InputError& wrong) {
-        return wrong.what();
-    }
-    return "accepted";
-}
 
 TEST(PowderExport, AsksForWhatItCannotKnow) {
     EXPECT_THAT(refusal("Size,Volume Under %\n1,0\n2,100\n4,100\n"), HasSubstr("by --unit"));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "tests/support/powder_exports.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -496,15 +497,6 @@ TEST_P(Instruments, AreImported) {
 }
 INSTANTIATE_TEST_SUITE_P(PowderExport, Instruments, testing::ValuesIn(all_layouts()),
                          [](const auto& given) { return given.param.name; });
-
-std::string refusal(const std::string& bytes, const ExportChoices& choices = {}) {
-    try {
-        (void)campaign::import_sizes(bytes, choices);
-    } catch (const campaign::InputError& wrong) {
-        return wrong.what();
-    }
-    return "accepted";
-}
 
 TEST(PowderInstruments, GuessNothing) {
     EXPECT_THAT(refusal("Size (nm),Intensity (%)\n10,20\n20,80\n40,0\n"), HasSubstr("by intensity of scattered light"));
