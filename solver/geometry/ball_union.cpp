@@ -1,5 +1,7 @@
 #include "solver/geometry/ball_union.hpp"
 
+#include <boost/math/special_functions/legendre.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,25 +12,17 @@ namespace {
 constexpr int gauss_points = 48;
 constexpr double least_arc = 1e-14, least_slab = 1e-13;
 
+/// Nodes in (-1, 1) and weights.
 struct GaussRule {
-    std::array<double, gauss_points> at{}, weight{};  // in (-1, 1)
+    std::vector<double> at, weight;
 
     GaussRule() {
-        // Roots of Legendre's polynomial by Newton's iteration.
-        for (int k = 0; k < gauss_points; ++k) {
-            double x = std::cos(std::numbers::pi * (k + 0.75) / (gauss_points + 0.5)), slope = 0;
-            for (int iteration = 0; iteration < 8; ++iteration) {
-                double p = 1, before = 0;
-                for (int n = 0; n < gauss_points; ++n) {
-                    const double next = ((2 * n + 1) * x * p - n * before) / (n + 1);
-                    before = p;
-                    p = next;
-                }
-                slope = gauss_points * (x * p - before) / (x * x - 1);
-                x -= p / slope;
+        for (const double zero : boost::math::legendre_p_zeros<double>(gauss_points)) {  // those above 0
+            const double slope = boost::math::legendre_p_prime(gauss_points, zero);
+            for (const double node : {-zero, zero}) {
+                at.push_back(node);
+                weight.push_back(2 / ((1 - zero * zero) * slope * slope));
             }
-            at[static_cast<std::size_t>(k)] = x;
-            weight[static_cast<std::size_t>(k)] = 2 / ((1 - x * x) * slope * slope);
         }
     }
 };
