@@ -247,10 +247,10 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
     auto& space = campaign.space;
     const std::size_t calibrated = space.factors.size();
     for (const auto& factor : space.factors) {
-        if (std::holds_alternative<Levels>(factor.range))
+        if (const auto* levels = std::get_if<Levels>(&factor.range); levels != nullptr && levels->values.size() < 2)
             throw input_error("$.factors", factor.name,
-                              "what is calibrated varies \"between\" two values; what differs from target to target "
-                              "stands in its \"inputs\"");
+                              "has one level: nothing to calibrate; what differs from target to target stands in its "
+                              "\"inputs\"");
         if (column_of(std::get_if<stats::Distribution>(&factor.range)) != nullptr)
             throw input_error("$.factors", factor.name,
                               "a calibration begins from factors that are independent; give each a distribution of "

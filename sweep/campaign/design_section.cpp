@@ -103,10 +103,18 @@ std::string read_option_word(const Cursor& place, const OptionSpec& option, cons
 }
 
 designs::FactorRange range_of(const Factor& factor) {
-    if (std::holds_alternative<Levels>(factor.range)) return {factor.name, {}};
-    const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
-    return {factor.name, [factor](double u) { return std::get<double>(value_at(factor, u)); },
-            distribution != nullptr && !distribution->has_ends()};
+    designs::FactorRange range{factor.name, {}};
+    if (const auto* levels = std::get_if<Levels>(&factor.range)) {
+        for (const auto& value : levels->values) range.levels.push_back(to_text(value));
+        range.parts = range.levels.size();
+        return range;
+    }
+    range.value_at = [factor](double u) { return std::get<double>(value_at(factor, u)); };
+    if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
+        range.endless = !distribution->has_ends();
+    else
+        range.parts = equal_parts(std::get<Between>(factor.range), factor.step);
+    return range;
 }
 
 }  // namespace

@@ -213,7 +213,7 @@ void check_unfit(const Campaign& campaign) {
         const auto refuse = [&](std::string_view who, std::string_view why) {
             throw input_error("$.factors", factor.name, fmt::format("{} {}: leave out '{}'", who, why, key));
         };
-        if (design.grows)
+        if (design.grows && !(design.calibrates && factor.step))
             refuse(fmt::format("a {}", campaign.design), "chooses its points between real numbers itself");
         if (campaign.convergence && campaign.convergence->traits().of_model && !factor.step)
             refuse("the rule 'assisted'", "integrates a model over independent factors");

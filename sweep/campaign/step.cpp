@@ -42,6 +42,13 @@ bool is_multiple(double step, double x) {
     return std::abs(x / step) <= static_cast<double>(most_multiples) && multiple_of(step, std::llround(x / step)) == x;
 }
 
+std::size_t equal_parts(const Between& range, std::optional<double> step) {
+    constexpr std::int64_t most = 64;
+    if (!step || range.scale != Scale::linear) return 0;
+    const auto count = multiples_in(*step, range.low, range.high).count();
+    return count > most ? 0 : static_cast<std::size_t>(std::max<std::int64_t>(count, 0));
+}
+
 double stepped(const Between& range, double step, double u) {
     const auto [first, last] = multiples_in(step, range.low, range.high);
     const Between widened{(static_cast<double>(first) - 0.5) * step, (static_cast<double>(last) + 0.5) * step,

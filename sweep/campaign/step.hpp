@@ -30,6 +30,8 @@ inline constexpr std::int64_t most_multiples = 1'000'000'000;
 [[nodiscard]] Multiples multiples_in(double step, double low, double high);
 /// Returns whether x is a multiple, to the last bit.
 [[nodiscard]] bool is_multiple(double step, double x);
+/// Returns the number of multiples of a factor's step, if they are equally likely and at most 64; else 0.
+[[nodiscard]] std::size_t equal_parts(const Between& range, std::optional<double> step);
 /// Returns the multiple at the coordinate u in [0, 1] of a range that has at least one.
 [[nodiscard]] double stepped(const Between& range, double step, double u);
 [[nodiscard]] double stepped(const stats::Distribution& distribution, double step, double u);

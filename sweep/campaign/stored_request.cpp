@@ -3,6 +3,7 @@
 #include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/step.hpp"
 
 #include <charconv>
 #include <sstream>
@@ -45,10 +46,14 @@ designs::OptionValue value_of(const designs::OptionSpec& option, const std::stri
 
 designs::FactorRange stated_range(const StatedFactor& stated) {
     designs::FactorRange range{stated.name, {}};
-    if (stated.between)
+    range.levels = stated.levels;
+    range.parts = stated.levels.size();
+    if (stated.between) {
         range.value_at = [factor = Factor{stated.name, *stated.between, stated.step}](double u) {
             return std::get<double>(value_at(factor, u));
         };
+        range.parts = equal_parts(*stated.between, stated.step);
+    }
     if (stated.distribution)
         range.value_at = [factor = Factor{stated.name, *stated.distribution, stated.step}](double u) {
             return std::get<double>(value_at(factor, u));

@@ -1,5 +1,6 @@
 #include "sweep/designs/calibration.hpp"
 
+#include "solver/plain_text.hpp"
 #include "stats/calibration.hpp"
 #include "stats/several_responses.hpp"
 #include "sweep/designs/calibration_layout.hpp"
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -20,13 +23,35 @@ constexpr std::size_t enough_kept = 8;       // candidates for each setting of t
 constexpr std::size_t most_compared = 4096;  // among which the next settings are spread
 constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
 
+/// Returns the points with the coordinates of levels and multiples moved to the middle of their part.
+std::vector<double> in_the_middle(std::span<const FactorRange> factors, std::vector<double> points) {
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = factors[i % factors.size()].middle(points[i]);
+    return points;
+}
+
 /// Sobol points of the calibrated factors, rows of d.
-std::vector<double> even_points(const DesignRequest& request, std::size_t d, std::int64_t count, std::uint64_t stream) {
+std::vector<double> even_points(const DesignRequest& request, std::span<const FactorRange> factors, std::int64_t count,
+                                std::uint64_t stream) {
     const DesignRequest sobol{
-        .levels = std::vector<std::size_t>(d, 0),
+        .levels = std::vector<std::size_t>(factors.size(), 0),
         .options = {{"points", count}, {"scramble", std::string("random")}, {"sequences", std::int64_t{1}}},
         .seed = draw_key(request.seed, DrawPurpose::calibration, stream)};
-    return design_named("sobol").sample(sobol).coordinates;
+    return in_the_middle(factors, design_named("sobol").sample(sobol).coordinates);
+}
+
+/// Adds the inputs of a response model for the factor at u: one number or, for more than two words, an indicator of
+/// each word but the first. Levels that are numbers count by their order.
+void add_inputs(std::vector<double>& row, const FactorRange& factor, double u) {
+    if (factor.levels.empty() || (factor.has_words() && factor.parts <= 2)) {
+        row.push_back(factor.middle(u));
+    } else if (factor.has_words()) {
+        for (std::size_t k = 1; k < factor.parts; ++k) row.push_back(factor.part(u) == k ? 1 : 0);
+    } else {
+        const double here = factor.number_at(u);
+        const auto below = std::ranges::count_if(
+            factor.levels, [&](const std::string& level) { return any_number_in(level).value() < here; });
+        row.push_back((static_cast<double>(below) + 0.5) / static_cast<double>(factor.parts));
+    }
 }
 
 /// The course of a calibration, wave by wave.
@@ -40,7 +65,9 @@ public:
         for (const auto& range : result_.ranges) result_.factors.push_back(range.name);
         result_.points.dimensions = request.dimensions();
         values_.resize(result_.targets.size());
-        const auto least = static_cast<std::int64_t>(std::max<std::size_t>(12, 4 * (d_ + 1)));
+        const std::vector<double> centre(d_, 0.5);
+        const auto model_inputs = result_.inputs({centre, d_}).width;
+        const auto least = static_cast<std::int64_t>(std::max<std::size_t>(12, 4 * (model_inputs + 1)));
         if (request.count("points_per_wave") < least)
             throw std::invalid_argument("a response model of " + std::to_string(d_) +
                                         " factors needs waves of at least " + std::to_string(least) + " points");
@@ -48,7 +75,7 @@ public:
     }
 
     Calibration run() {
-        auto settings = even_points(request_, d_, request_.count("points_per_wave"), 0);
+        auto settings = even_points(request_, result_.ranges, request_.count("points_per_wave"), 0);
         for (std::int64_t wave = 1;; ++wave) {
             if (!ask(settings)) return std::move(result_);
             learn(settings);
@@ -71,7 +98,8 @@ private:
         if (!request_.shared.empty()) return;
         for (std::size_t i = 0; (i + 1) * d <= request_.further.coordinates.size(); ++i) {
             const auto point = std::span(request_.further.coordinates).subspan(i * d, d);
-            for (const auto j : layout_.calibrated) result_.settings.push_back(point[j]);
+            for (std::size_t j = 0; j < d_; ++j)
+                result_.settings.push_back(result_.ranges[j].middle(point[layout_.calibrated[j]]));
             for (std::size_t t = 0; t < result_.targets.size(); ++t) {
                 const auto known = request_.further.answers.find(result_.targets[t].answers_key());
                 const bool fits = std::ranges::all_of(layout_.stated, [&](std::size_t j) {
@@ -91,13 +119,16 @@ private:
         first_ = asked_;
         asked_ += rows;
         bool known = true;
-        for (std::size_t i = 0; i < rows; ++i)
+        for (std::size_t i = 0; i < rows; ++i) {
+            const auto setting = std::span(settings).subspan(i * d_, d_);
+            const auto repeat = times_asked_[{setting.begin(), setting.end()}]++;
             for (const auto& condition : layout_.conditions) {
-                const auto point = point_of(std::span(settings).subspan(i * d_, d_), condition);
+                const auto point = point_of(setting, condition);
                 result_.points.coordinates.insert(result_.points.coordinates.end(), point.begin(), point.end());
                 result_.points.part.push_back(part);
-                result_.points.repeat.push_back(0);
+                result_.points.repeat.push_back(repeat);
             }
+        }
         for (std::size_t t = 0; t < result_.targets.size(); ++t)
             for (std::size_t i = 0; i < rows; ++i) known = known && answer(t, i).has_value();
         return known;
@@ -105,12 +136,11 @@ private:
     /// Returns the point of this experiment that runs a setting under a condition.
     [[nodiscard]] std::vector<double> point_of(std::span<const double> setting,
                                                const std::map<std::string, std::size_t>& condition) const {
-        std::vector<double> point;
-        std::size_t at = 0;
-        for (std::size_t j = 0; j < request_.dimensions(); ++j)
-            point.push_back(request_.levels[j] == 0 ? setting[layout_.column[at++]]
-                                                    : (static_cast<double>(level_of(condition, j)) + 0.5) /
-                                                          static_cast<double>(request_.levels[j]));
+        std::vector<double> point(request_.dimensions());
+        for (std::size_t k = 0; k < layout_.calibrated.size(); ++k)
+            point[layout_.calibrated[k]] = setting[layout_.column[k]];
+        for (const std::size_t j : layout_.stated)
+            point[j] = (static_cast<double>(level_of(condition, j)) + 0.5) / static_cast<double>(request_.levels[j]);
         return point;
     }
     /// Returns whether `where` accepts a setting under every condition; otherwise some target would have no answer.
@@ -145,7 +175,8 @@ private:
             for (std::size_t i = result_.further; i < values_[t].size(); ++i)
                 unanswered[i] = unanswered[i] || !std::isfinite(values_[t][i]);
         }
-        auto fits = stats::fit_responses({result_.settings, d_}, values_);
+        const auto inputs = result_.inputs({result_.settings, d_});
+        auto fits = stats::fit_responses(inputs.rows(), values_);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             auto& fitted = fits[t];
             if (auto* model = std::get_if<stats::ResponseModel>(&fitted)) {
@@ -195,8 +226,9 @@ private:
     }
     [[nodiscard]] std::vector<std::vector<stats::Prediction>> predict(stats::Rows points) const {
         std::vector<std::vector<stats::Prediction>> predictions;
+        const auto inputs = result_.inputs(points);
         for (const auto& model : result_.models)
-            if (model) predictions.push_back(model->predict(points));
+            if (model) predictions.push_back(model->predict(inputs.rows()));
         return predictions;
     }
 
@@ -209,7 +241,7 @@ private:
     };
     [[nodiscard]] Candidates candidates(std::int64_t count, std::uint64_t stream) const {
         Candidates all;
-        const auto box = even_points(request_, d_, count, stream);
+        const auto box = even_points(request_, result_.ranges, count, stream);
         for (std::size_t i = 0; i < box.size(); i += d_)
             if (admitted(std::span(box).subspan(i, d_))) append(all.points, box, i / d_);
         for (const double weight : result_.answering.log_weights({all.points, d_}))
@@ -240,7 +272,8 @@ private:
         if (modelled().empty()) {
             now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
             if (wave == request_.count("waves")) return fail("the waves asked for are done, and no target has a model");
-            return even_points(request_, d_, request_.count("points_per_wave"), static_cast<std::uint64_t>(2 * wave));
+            return even_points(request_, result_.ranges, request_.count("points_per_wave"),
+                               static_cast<std::uint64_t>(2 * wave));
         }
         const auto wanted = static_cast<std::size_t>(request_.count("points_per_wave"));
         Candidates all;
@@ -335,13 +368,16 @@ private:
         }
         return chosen;
     }
-    [[nodiscard]] stats::PosteriorSample posterior(std::uint64_t stream) const {
+    [[nodiscard]] stats::PosteriorSample posterior(std::uint64_t stream,
+                                                   std::optional<stats::PosteriorShape>* shape = nullptr) const {
         const auto targets = modelled();
         const auto covariance = modelled_covariance();
         stats::PosteriorSettings settings;
         settings.seed = draw_key(request_.seed, DrawPurpose::calibration, stream, 1);
-        return stats::sample_posterior(
-            [&](stats::Rows points) {
+        auto sample = stats::sample_posterior(
+            [&](stats::Rows drawn) {
+                const auto middles = in_the_middle(result_.ranges, {drawn.values.begin(), drawn.values.end()});
+                const stats::Rows points{middles, d_};
                 auto density = stats::log_likelihood(targets, predict(points), covariance);
                 const auto weights = result_.answering.log_weights(points);
                 for (std::size_t i = 0; i < density.size(); ++i)
@@ -350,11 +386,13 @@ private:
                 return density;
             },
             {best_, d_}, settings);
+        if (shape != nullptr) *shape = stats::posterior_shape(sample.rows());  // before levels lose their width
+        sample.points = in_the_middle(result_.ranges, std::move(sample.points));
+        return sample;
     }
     void sample() {
         if (!result_.points.without_result.empty()) return;
-        result_.posterior = posterior(0);
-        result_.shape = stats::posterior_shape(result_.posterior->rows());
+        result_.posterior = posterior(0, &result_.shape);
     }
     /// Requests settings drawn from the posterior. Returns false if an answer is still missing.
     bool check() {
@@ -381,12 +419,21 @@ private:
     const DesignRequest& request_;
     CalibrationLayout layout_;
     std::size_t d_ = 0, asked_ = 0, first_ = 0;  ///< factors; settings so far; the first of the last request
-    std::vector<std::vector<double>> values_;    ///< of each target
-    std::vector<double> best_;                   ///< settings of least implausibility
+    std::map<std::vector<double>, std::uint32_t> times_asked_;  ///< a setting of levels alone comes again: a replicate
+    std::vector<std::vector<double>> values_;                   ///< of each target
+    std::vector<double> best_;                                  ///< settings of least implausibility
     Calibration result_;
 };
 
 }  // namespace
+
+ModelInputs Calibration::inputs(stats::Rows points) const {
+    ModelInputs inputs;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t j = 0; j < ranges.size(); ++j) add_inputs(inputs.values, ranges[j], points.row(i)[j]);
+    if (points.size() > 0) inputs.width = inputs.values.size() / points.size();
+    return inputs;
+}
 
 Calibration calibration_of(const DesignRequest& request) {
     return Course(request).run();

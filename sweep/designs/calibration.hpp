@@ -7,6 +7,9 @@
 // two cases: the error of the models is below all other errors at every kept setting, or a wave has ruled out less than
 // a share `shrink` of the kept settings. Then settings drawn from the posterior are run as the predictive check.
 //
+// Levels, and at most 64 multiples of a step, divide their axis into equal parts; a setting is the middle of its part.
+// A setting that comes again is run as a further replicate, so that the models see the scatter.
+//
 // Settings without an answer for some target weigh only if that depends on the factors (answering_settings.hpp).
 // Settings that the campaign's `where` excludes are neither failures nor candidates, and the posterior is 0 there.
 //
@@ -45,6 +48,13 @@ struct CalibrationWave {
     std::vector<std::string> refusals;  ///< why a target has no model, target by target; empty: it has one
 };
 
+/// Inputs of the response models at some settings.
+struct ModelInputs {
+    std::vector<double> values;
+    std::size_t width = 0;
+    [[nodiscard]] stats::Rows rows() const { return {values, width}; }
+};
+
 /// State of a calibration.
 struct Calibration {
     std::vector<std::string> factors;  ///< calibrated factors
@@ -66,6 +76,10 @@ struct Calibration {
     std::vector<std::vector<double>> check;  ///< answers of each target there, in their order; NaN: none
     bool checks_known = false;               ///< every run of the predictive check is settled
     PointSet points;                         ///< all points that follow from the answers
+
+    /// Returns the models' inputs at settings of the calibrated factors: coordinates; for more than two words an
+    /// indicator of each word but the first.
+    [[nodiscard]] ModelInputs inputs(stats::Rows points) const;
 };
 
 /// Computes the calibration from the answers. Throws std::invalid_argument if the combination of options is impossible.

@@ -12,11 +12,15 @@ std::string experiment_of(const DesignRequest& request) {
 
 CalibrationLayout calibration_layout(const DesignRequest& request, std::span<const MeasuredTarget> targets) {
     CalibrationLayout layout;
-    for (std::size_t j = 0; j < request.dimensions(); ++j)
-        (request.levels[j] == 0 ? layout.calibrated : layout.stated).push_back(j);
-    if (layout.calibrated.empty())
-        throw std::invalid_argument("no factor varies between two values: nothing to calibrate");
     if (targets.empty()) throw std::invalid_argument("a calibration needs at least one target");
+    const auto is_stated = [&](const std::string& factor) {
+        return std::ranges::any_of(targets, [&](const MeasuredTarget& target) {
+            return target.experiment == experiment_of(request) && target.level.contains(factor);
+        });
+    };
+    for (std::size_t j = 0; j < request.dimensions(); ++j)
+        (is_stated(request.factors[j].name) ? layout.stated : layout.calibrated).push_back(j);
+    if (layout.calibrated.empty()) throw std::invalid_argument("there is no factor to calibrate");
     layout.factors = request.shared;
     for (const std::size_t j : layout.calibrated) {
         if (request.shared.empty()) layout.factors.push_back(request.factors[j]);

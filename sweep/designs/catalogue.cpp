@@ -1,3 +1,4 @@
+#include "solver/plain_text.hpp"
 #include "stats/random.hpp"
 #include "sweep/designs/kinds.hpp"
 
@@ -55,7 +56,35 @@ const T& option_of(const DesignRequest& request, std::string_view option) {
 
 }  // namespace
 
+bool FactorRange::has_words() const {
+    return std::ranges::any_of(levels, [](const std::string& text) { return !any_number_in(text); });
+}
+
+std::size_t FactorRange::part(double u) const {
+    return parts == 0 ? 0 : std::min(static_cast<std::size_t>(u * static_cast<double>(parts)), parts - 1);
+}
+
+double FactorRange::middle(double u) const {
+    return parts == 0 ? u : (static_cast<double>(part(u)) + 0.5) / static_cast<double>(parts);
+}
+
+double FactorRange::number_at(double u) const {
+    if (levels.empty()) return value_at(u);
+    return has_words() ? static_cast<double>(part(u)) : any_number_in(levels[part(u)]).value();
+}
+
+std::string FactorRange::text_at(double u) const {
+    return levels.empty() ? shortest_text(value_at(u)) : levels[part(u)];
+}
+
 FactorRange::Shown FactorRange::shown() const {
+    if (!levels.empty()) {
+        std::vector<double> numbers;
+        for (std::size_t k = 0; k < parts; ++k)
+            numbers.push_back(number_at((static_cast<double>(k) + 0.5) / static_cast<double>(parts)));
+        const auto [low, high] = std::ranges::minmax(numbers);
+        return {low, high};
+    }
     const double outside = endless ? 0.001 : 0;  // as stats::Distribution::range
     const double low = value_at(outside), high = value_at(1 - outside);
     return {low, high, low > 0 && std::abs(value_at(0.5) - std::sqrt(low * high)) < 1e-6 * (high - low)};

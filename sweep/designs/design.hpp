@@ -54,9 +54,23 @@ struct FactorRange {
     std::function<double(double u)> value_at;
     /// Whether its distribution has no ends, so that no point may have the coordinate 0 or 1.
     bool endless = false;
+    /// Levels as text, in the order of the campaign file; empty: a range.
+    std::vector<std::string> levels = {};
+    /// Number of equal parts of [0, 1] that have one value each: levels, or few multiples of a step; 0: no parts.
+    std::size_t parts = 0;
+
+    /// Returns whether it has levels that are not all numbers.
+    [[nodiscard]] bool has_words() const;
+    /// Returns the index of the part at u, and the coordinate of its middle; without parts 0 and u.
+    [[nodiscard]] std::size_t part(double u) const;
+    [[nodiscard]] double middle(double u) const;
+    /// Returns the value at u as a number; for words the index of the level.
+    [[nodiscard]] double number_at(double u) const;
+    /// Returns the value at u as text that reads back as the same value.
+    [[nodiscard]] std::string text_at(double u) const;
 
     /// Range of the factor in figures: the full range, or the central 99.8 % of a distribution without ends;
-    /// logarithmic if its middle is the geometric mean of the ends.
+    /// logarithmic if its middle is the geometric mean of the ends; of levels the smallest and the largest.
     struct Shown {
         double low = 0, high = 0;
         bool log = false;

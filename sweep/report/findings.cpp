@@ -1,6 +1,7 @@
 #include "sweep/report/findings.hpp"
 
 #include "sweep/campaign/experiments.hpp"
+#include "sweep/report/print_axes.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
 
@@ -88,9 +89,16 @@ Json calibration_json(const CalibrationReport& report) {
                     {"excluded", one.excluded}, {"kept", one.kept},   {"model_errors", one.model_error}};
     };
     const auto factor = [](const study::FactorPosterior& one) {
-        return Json{{"factor", one.name},   {"mean", one.mean}, {"sd", one.sd},
-                    {"q05", one.low},       {"q95", one.high},  {"share_of_range", one.share_of_range},
-                    {"verdict", one.word()}};
+        return Json{{"factor", one.name},
+                    {"mean", one.mean},
+                    {"sd", one.sd},
+                    {"q05", one.low},
+                    {"q95", one.high},
+                    {"share_of_range", one.share_of_range},
+                    {"verdict", one.word()},
+                    {"levels", Json::list(one.levels, [](const study::LevelProbability& level) {
+                         return Json{{"level", level.level}, {"probability", level.probability}};
+                     })}};
     };
     const auto target = [](const study::TargetCheck& one) {
         return Json{{"experiment", one.experiment},
@@ -151,11 +159,20 @@ store::Table waves_table(const CalibrationReport& report) {
 
 store::Table posterior_table(const CalibrationReport& report) {
     store::Table table{{"factor", "unit", "mean", "sd", "5 %", "95 %", "width over range's", "verdict"}, {}};
+    const auto number = [](double x, int digits) { return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-"; };
     for (const auto& factor : report.factors)
-        table.rows.push_back({factor.name, factor.unit, fmt::format("{:.4g}", factor.mean),
-                              fmt::format("{:.2g}", factor.sd), fmt::format("{:.4g}", factor.low),
-                              fmt::format("{:.4g}", factor.high), fmt::format("{:.2f}", factor.share_of_range),
-                              std::string(factor.word())});
+        table.rows.push_back({factor.name, factor.unit, number(factor.mean, 4), number(factor.sd, 2),
+                              number(factor.low, 4), number(factor.high, 4),
+                              fmt::format("{:.2f}", factor.share_of_range), std::string(factor.word())});
+    return table;
+}
+
+/// Probabilities of levels; no rows: every factor is continuous.
+store::Table levels_table(const CalibrationReport& report) {
+    store::Table table{{"factor", "unit", "level", "probability"}, {}};
+    for (const auto& factor : report.factors)
+        for (const auto& one : factor.levels)
+            table.rows.push_back({factor.name, factor.unit, one.level, fmt::format("{:.3f}", one.probability)});
     return table;
 }
 
@@ -208,28 +225,42 @@ void say_calibration(Document& shown, const CalibrationReport& report) {
     shown.say(calibration_line(report));
     if (!report.found.waves.empty()) shown.say().show(waves_table(report));
     if (!report.factors.empty()) shown.say("\nposterior").show(posterior_table(report));
+    if (const auto levels = levels_table(report); !levels.rows.empty())
+        shown.say("\nposterior probability of each level").show(levels);
     shown.say("\ntargets (standard deviations: measurement, spread over the posterior, scatter of fresh runs)");
     shown.show(targets_table(report)).say_notes(report.notes);
 }
 
 Json page_of(const CalibrationReport& report) {
     const auto& found = report.found;
-    Json factors = Json::array(), draws = Json::array(), settings = Json::array();
+    Json factors = Json::array(), marginals = Json::array(), draws = Json::array(), settings = Json::array();
+    for (std::size_t j = 0; found.posterior && j < found.factors.size(); ++j) {
+        const auto one = study::marginal_of(found, j);
+        marginals.push_back({{"from", one.from}, {"to", one.to}, {"prior", one.prior}, {"posterior", one.posterior}});
+    }
     for (std::size_t j = 0; j < found.factors.size(); ++j) {
         const auto& range = found.ranges[j];
         const auto [low, high, logarithmic] = range.shown();
         const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
         factors.push_back({{"name", found.factors[j]},
                            {"unit", unit},
-                           {"levels", Json::array()},
+                           {"levels", range.levels},
                            {"low", low},
                            {"high", high},
                            {"log", logarithmic},
                            {"values", std::array{low, high}}});
     }
+    std::size_t added = 0;
     const auto add = [&](Json& rows, std::span<const double> coordinates) {
         Json row = Json::array();
-        for (std::size_t j = 0; j < found.factors.size(); ++j) row.push_back(found.ranges[j].value_at(coordinates[j]));
+        ++added;
+        for (std::size_t j = 0; j < found.factors.size(); ++j) {
+            const auto& range = found.ranges[j];
+            if (range.levels.empty())
+                row.push_back(range.value_at(coordinates[j]));
+            else
+                row.push_back(spread_around(static_cast<double>(range.part(coordinates[j])), added));
+        }
         rows.push_back(row);
     };
     if (found.posterior) {
@@ -242,9 +273,11 @@ Json page_of(const CalibrationReport& report) {
     return {{"says", calibration_line(report)},
             {"notes", report.notes},
             {"posterior", found.posterior ? columns_and_rows(posterior_table(report)) : Json()},
+            {"levels", columns_and_rows(levels_table(report))},
             {"targets", columns_and_rows(targets_table(report))},
             {"waves", columns_and_rows(waves_table(report))},
             {"factors", factors},
+            {"marginals", marginals},
             {"draws", draws},
             {"settings", settings}};
 }

@@ -11,9 +11,10 @@ namespace {
 
 using namespace study;
 
-constexpr std::size_t most_draws = 1000, bins_of_draws = 24;
+constexpr std::size_t most_draws = 1000;
 
-/// A calibrated factor; values in its unit of the posterior's draws and of the settings that were run.
+/// A calibrated factor; values of the posterior's draws and of the settings that were run, in its unit. For levels they
+/// are spread around the index of the level.
 struct Calibrated {
     Variable variable;
     std::vector<double> draws, settings;
@@ -24,47 +25,51 @@ Calibrated calibrated_factor(const CalibrationReport& report, std::size_t j) {
     const auto& range = found.ranges[j];
     const auto [low, high, log] = range.shown();
     const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
-    Calibrated one{{found.factors[j], unit, {}, low, high, log, {}}, {}, {}};
+    Variable variable{found.factors[j], unit, range.levels, low, high, log, {}};
+    const auto shown = [&](std::vector<double> values) {
+        variable.values = std::move(values);
+        std::vector<double> places;
+        for (std::size_t row = 0; row < variable.values.size(); ++row) places.push_back(variable.place(row));
+        return places;
+    };
+    const auto number = [&](double u) {
+        return range.levels.empty() ? range.value_at(u) : static_cast<double>(range.part(u));
+    };
+    std::vector<double> draws, settings;
     const auto all = found.posterior->rows();
     const std::size_t step = std::max<std::size_t>(1, all.size() / most_draws);
-    for (std::size_t i = 0; i < all.size(); i += step) one.draws.push_back(range.value_at(all.row(i)[j]));
+    for (std::size_t i = 0; i < all.size(); i += step) draws.push_back(number(all.row(i)[j]));
     const std::size_t width = found.factors.size();
     for (std::size_t i = 0; i + width <= found.settings.size(); i += width)
-        one.settings.push_back(range.value_at(found.settings[i + j]));
-    return one;
+        settings.push_back(number(found.settings[i + j]));
+    return {variable, shown(std::move(draws)), shown(std::move(settings))};
 }
 
 plot::Panel pair_panel(const Calibrated& a, const Calibrated& b) {
-    const auto x = a.variable.quantity(), y = b.variable.quantity();
     const auto alpha = [](plot::Colour tone) { return plot::faded(tone, 0.6); };
     return {a.variable.axis(0),
             b.variable.axis(0),
-            {plot::Points{x.of(a.settings), y.of(b.settings), {alpha(plot::blue)}},
-             plot::Points{x.of(a.draws), y.of(b.draws), {alpha(plot::vermilion)}, plot::Points::Shape::dot, 0.8}}};
+            {plot::Points{a.settings, b.settings, {alpha(plot::blue)}},
+             plot::Points{a.draws, b.draws, {alpha(plot::vermilion)}, plot::Points::Shape::dot, 0.8}}};
 }
 
-/// The posterior of a single factor.
-plot::Panel histogram_panel(const Calibrated& one) {
-    const auto shown = one.variable.quantity();
-    const auto axis = one.variable.axis(0);
-    const auto at = [&](double x) { return axis.log ? std::log(x) : x; };
-    const double low = at(one.variable.low), high = at(one.variable.high);
-    const auto edge = [&](std::size_t k) {
-        const double x = low + (high - low) * static_cast<double>(k) / static_cast<double>(bins_of_draws);
-        return shown.of(axis.log ? std::exp(x) : x);
-    };
-    plot::Bars bars{{}, {}, std::vector<double>(bins_of_draws, 0), plot::vermilion};
-    for (std::size_t k = 0; k < bins_of_draws; ++k) {
-        bars.from.push_back(edge(k));
-        bars.to.push_back(edge(k + 1));
+/// The posterior of a single factor, with its prior.
+plot::Panel marginal_panel(const CalibrationReport& report, std::size_t j) {
+    const auto one = calibrated_factor(report, j);
+    const auto marginal = marginal_of(report.found, j);
+    const auto shown = [&](double x) { return one.variable.shown(x); };
+    plot::Bars bars{{}, {}, marginal.posterior, plot::vermilion};
+    plot::Line prior{{}, {}, plot::blue};
+    for (std::size_t k = 0; k < marginal.from.size(); ++k) {
+        bars.from.push_back(shown(marginal.from[k]));
+        bars.to.push_back(shown(marginal.to[k]));
+        for (const double x : {bars.from.back(), bars.to.back()}) {
+            prior.x.push_back(x);
+            prior.y.push_back(marginal.prior[k]);
+        }
     }
-    for (const double x : one.draws) {
-        const double share = std::clamp((at(x) - low) / (high - low), 0.0, 1.0);
-        const auto bin = static_cast<std::size_t>(share * static_cast<double>(bins_of_draws));
-        bars.length[std::min(bin, bins_of_draws - 1)] += 1 / static_cast<double>(one.draws.size());
-    }
-    const double most = *std::ranges::max_element(bars.length);
-    return {axis, {"share of the draws", 0, 1.06 * most}, {bars}};
+    const double most = std::max(std::ranges::max(marginal.posterior), std::ranges::max(marginal.prior));
+    return {one.variable.axis(0), {"probability", 0, 1.06 * most}, {bars, prior}};
 }
 
 std::optional<CalibrationReport> with_posterior(const FigureSubject& subject) {
@@ -73,7 +78,7 @@ std::optional<CalibrationReport> with_posterior(const FigureSubject& subject) {
     return report;
 }
 
-/// Pairs of factors, "friction,gap"; of one factor its name.
+/// Pairs of factors, whose panels are named "friction,gap".
 std::vector<std::pair<std::size_t, std::size_t>> factor_pairs(std::size_t count) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     for (std::size_t j = 1; j < count; ++j)
@@ -86,7 +91,7 @@ PanelNames posterior_panels(const FigureSubject& subject) {
     if (!report) return {};
     const auto& factors = report->found.factors;
     if (factors.size() == 1) return {""};
-    PanelNames names;
+    PanelNames names = factors;
     for (const auto& [i, j] : factor_pairs(factors.size())) names.push_back(factors[i] + "," + factors[j]);
     return names;
 }
@@ -94,9 +99,11 @@ PanelNames posterior_panels(const FigureSubject& subject) {
 plot::Figure draw_posterior(const FigureSubject& subject, const PanelNames& panels) {
     const auto report = *with_posterior(subject);
     const auto& factors = report.found.factors;
-    if (factors.size() == 1) return {{histogram_panel(calibrated_factor(report, 0))}};
     plot::Figure figure;
-    figure.keys = {{"settings run", plot::blue}, {"posterior", plot::vermilion}};
+    figure.keys = {{"settings run, prior", plot::blue}, {"posterior", plot::vermilion}};
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors.size() == 1 || std::ranges::count(panels, factors[j]) > 0)
+            figure.panels.push_back(marginal_panel(report, j));
     for (const auto& [i, j] : factor_pairs(factors.size()))
         if (std::ranges::count(panels, factors[i] + "," + factors[j]) > 0)
             figure.panels.push_back(pair_panel(calibrated_factor(report, i), calibrated_factor(report, j)));
@@ -106,7 +113,7 @@ plot::Figure draw_posterior(const FigureSubject& subject, const PanelNames& pane
 }  // namespace
 
 FigureKind posterior_figure() {
-    return {"posterior", "calibrated factors: posterior and the settings that were run", posterior_panels,
+    return {"posterior", "calibrated factors: prior and posterior, and the settings that were run", posterior_panels,
             draw_posterior};
 }
 

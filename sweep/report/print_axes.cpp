@@ -145,8 +145,12 @@ std::vector<plot::Key> Variable::keys(plot::Key::Kind kind) const {
 
 double Variable::place(std::size_t row) const {
     if (levels.empty()) return shown(values[row]);
+    return spread_around(values[row], row);
+}
+
+double spread_around(double level, std::size_t row) {
     constexpr double golden = 0.618034;
-    return values[row] + 0.5 * (std::fmod(static_cast<double>(row) * golden, 1.0) - 0.5);
+    return level + 0.5 * (std::fmod(static_cast<double>(row) * golden, 1.0) - 0.5);
 }
 
 Variable variable_of(const study::FactorColumn& factor) {

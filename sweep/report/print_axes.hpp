@@ -51,6 +51,8 @@ struct Variable {
     /// Returns the value of a row as on the axis; cases of one level are spread sideways by a fixed sequence.
     [[nodiscard]] double place(std::size_t row) const;
 };
+/// Returns the place of a case beside its level: a fixed sequence of rows.
+[[nodiscard]] double spread_around(double level, std::size_t row);
 [[nodiscard]] Variable variable_of(const study::FactorColumn& factor);
 /// A response has a logarithmic axis if it spans decades.
 [[nodiscard]] Variable variable_of(const study::ResponseColumn& response);

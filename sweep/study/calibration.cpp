@@ -33,6 +33,7 @@ double mean_of(const std::vector<double>& values) {
 
 double sd_of(const std::vector<double>& values) {
     if (values.size() < 2) return none;
+    if (std::ranges::count(values, values.front()) == std::ssize(values)) return 0;  // without rounding of the mean
     const double mean = mean_of(values);
     double squares = 0;
     for (const double x : values) squares += (x - mean) * (x - mean);
@@ -47,17 +48,40 @@ double quantile(std::vector<double> values, double share) {
     return std::lerp(values[below], values[above], at - static_cast<double>(below));
 }
 
+/// Returns the posterior probability of each part of a factor, with its value as text.
+std::vector<LevelProbability> probabilities_of(const designs::FactorRange& range, std::span<const double> coordinates) {
+    std::vector<LevelProbability> found;
+    if (range.parts == 0) return found;
+    for (std::size_t k = 0; k < range.parts; ++k)
+        found.push_back({range.text_at((static_cast<double>(k) + 0.5) / static_cast<double>(range.parts))});
+    for (const double u : coordinates) found[range.part(u)].probability += 1 / static_cast<double>(coordinates.size());
+    return found;
+}
+
+/// Returns the width of the posterior divided by the prior's: 0 for a value that is certain, 1 for values that are as
+/// likely as before. For words it is the probability of all but the likeliest word, divided by the prior's.
+double share_of_prior(const designs::FactorRange& range, const FactorPosterior& one,
+                      const std::vector<double>& coordinates, double width) {
+    if (range.parts == 0) return width / uniform_sd;
+    const auto parts = static_cast<double>(range.parts);
+    if (!range.has_words()) return sd_of(coordinates) / (uniform_sd * std::sqrt(1 - 1 / (parts * parts)));
+    const double likeliest = std::ranges::max(one.levels, {}, &LevelProbability::probability).probability;
+    return (1 - likeliest) / (1 - 1 / parts);
+}
+
 FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
     const auto rows = found.posterior->rows();
-    std::vector<double> values;
-    for (std::size_t i = 0; i < rows.size(); ++i) values.push_back(found.ranges[j].value_at(rows.row(i)[j]));
-    FactorPosterior one{found.factors[j],
-                        "",
-                        mean_of(values),
-                        sd_of(values),
-                        quantile(values, 0.05),
-                        quantile(values, 0.95),
-                        found.shape->sd[j] / uniform_sd};
+    const auto& range = found.ranges[j];
+    std::vector<double> coordinates, values;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        coordinates.push_back(rows.row(i)[j]);
+        values.push_back(range.number_at(coordinates.back()));
+    }
+    FactorPosterior one{found.factors[j],      "", mean_of(values), sd_of(values), quantile(values, 0.05),
+                        quantile(values, 0.95)};
+    if (range.has_words()) one.mean = one.sd = one.low = one.high = none;
+    one.levels = probabilities_of(range, coordinates);
+    one.share_of_range = share_of_prior(range, one, coordinates, found.shape->sd[j]);
     using enum Determination;
     one.determination = one.share_of_range <= determined_below ? determined
                         : one.share_of_range <= partly_below   ? partly
@@ -65,7 +89,8 @@ FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
     const std::size_t d = found.factors.size();
     double strongest = strongly_coupled;
     for (std::size_t k = 0; k < d; ++k) {
-        const double coupling = k == j ? 0 : std::abs(found.shape->correlation[j * d + k]);
+        const bool none_of_words = k != j && !range.has_words() && !found.ranges[k].has_words();
+        const double coupling = none_of_words ? std::abs(found.shape->correlation[j * d + k]) : 0;
         if (coupling < strongest) continue;
         strongest = coupling;
         one.ridge_with = found.factors[k];
@@ -105,7 +130,8 @@ TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
         check.beyond = found.beyond[t];
     }
     if (found.posterior && found.models[t]) {
-        const auto means = found.models[t]->means(found.posterior->rows());
+        const auto inputs = found.inputs(found.posterior->rows());
+        const auto means = found.models[t]->means(inputs.rows());
         check.predicted = mean_of(means);
         check.predicted_error = sd_of(means);
     }
@@ -146,9 +172,10 @@ std::size_t followed_points(const designs::Calibration& found, const Responses& 
         for (std::size_t j = 0; j < d; ++j) {
             const auto known = std::ranges::find(found.ranges, run.factors[j].name, &designs::FactorRange::name);
             if (known == found.ranges.end()) continue;
-            const auto& range = *known;
-            const double value = range.value_at(found.points.point(point)[j]);
-            const double width = std::abs(range.value_at(1) - range.value_at(0));
+            const double u = found.points.point(point)[j];
+            const bool by_index = !known->levels.empty();
+            const double value = by_index ? static_cast<double>(known->part(u)) : known->value_at(u);
+            const double width = by_index ? 1 : std::abs(known->value_at(1) - known->value_at(0));
             if (std::abs(run.factors[j].values[row] - value) > rounding * width) followed = point;
         }
     }
@@ -209,16 +236,26 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
                             found.least_implausibility));
     }
     if (!found.posterior) return notes;
-    for (const auto& factor : report.factors)
-        if (factor.determination == Determination::not_determined)
+    for (std::size_t j = 0; j < report.factors.size(); ++j) {
+        const auto& factor = report.factors[j];
+        if (factor.determination != Determination::not_determined) continue;
+        if (found.ranges[j].has_words()) {
+            const auto& likeliest = std::ranges::max(factor.levels, {}, &LevelProbability::probability);
+            notes.push_back(
+                fmt::format("{} is not determined by these targets: its likeliest level, {}, has the "
+                            "probability {:.2f}",
+                            factor.name, likeliest.level, likeliest.probability));
+        } else {
             notes.push_back(
                 fmt::format("{} is not determined by these targets: its posterior is {:.0f} % as wide as its range",
                             factor.name, 100 * factor.share_of_range));
+        }
+    }
     const std::size_t d = report.factors.size();
     for (std::size_t i = 0; i < d; ++i)
         for (std::size_t j = i + 1; j < d; ++j) {
             const double r = found.shape->correlation[i * d + j];
-            if (std::abs(r) < strongly_coupled) continue;
+            if (std::abs(r) < strongly_coupled || found.ranges[i].has_words() || found.ranges[j].has_words()) continue;
             notes.push_back(
                 fmt::format("{} and {} are determined together, not each: along a ridge of equal fit one {} as the "
                             "other rises (correlation {:.2f})",
@@ -294,6 +331,44 @@ std::map<std::string, store::CampaignRecord> records_of(const store::Store& stor
 }
 
 }  // namespace
+
+Marginal marginal_of(const designs::Calibration& found, std::size_t j) {
+    constexpr std::size_t bins = 24, prior_points = 2400;
+    const auto& range = found.ranges[j];
+    const auto even = [](std::size_t k, std::size_t n) {
+        return (static_cast<double>(k) + 0.5) / static_cast<double>(n);
+    };
+    Marginal marginal;
+    const auto [low, high, log] = range.shown();
+    const auto edge = [&](std::size_t k) {
+        const double share = static_cast<double>(k) / static_cast<double>(bins);
+        return log ? low * std::pow(high / low, share) : std::lerp(low, high, share);
+    };
+    const double half_step = range.parts > 1 ? (high - low) / static_cast<double>(2 * (range.parts - 1)) : 0;
+    for (std::size_t k = 0; k < (range.parts > 0 ? range.parts : bins); ++k) {
+        const double here =
+            range.levels.empty() && range.parts > 0 ? range.value_at(even(k, range.parts)) : static_cast<double>(k);
+        const double half = range.levels.empty() ? half_step : 0.5;
+        marginal.from.push_back(range.parts > 0 ? here - half : edge(k));
+        marginal.to.push_back(range.parts > 0 ? here + half : edge(k + 1));
+    }
+    const auto shares = [&](std::size_t count, auto coordinate) {
+        std::vector<double> share(marginal.from.size(), 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double u = coordinate(i);
+            const auto bin = range.parts > 0
+                                 ? range.part(u)
+                                 : static_cast<std::size_t>(std::ranges::upper_bound(marginal.to, range.value_at(u)) -
+                                                            marginal.to.begin());
+            share[std::min(bin, share.size() - 1)] += 1 / static_cast<double>(count);
+        }
+        return share;
+    };
+    const auto rows = found.posterior->rows();
+    marginal.prior = shares(prior_points, [&](std::size_t i) { return even(i, prior_points); });
+    marginal.posterior = shares(rows.size(), [&](std::size_t i) { return rows.row(i)[j]; });
+    return marginal;
+}
 
 std::string_view FactorPosterior::word() const {
     using enum Determination;

@@ -17,13 +17,21 @@ namespace grainsweep::study {
 /// determined (two bits). Above 1/2 it is not (less than one bit). Between them it is determined partly.
 enum class Determination { determined, partly, not_determined };
 
+/// Posterior probability of one level, or of one multiple of a step.
+struct LevelProbability {
+    std::string level;
+    double probability = 0;
+};
+
 /// Posterior of one factor.
 struct FactorPosterior {
     std::string name, unit;
-    double mean = 0, sd = 0;   ///< in its unit
+    double mean = 0, sd = 0;   ///< in its unit; NaN for levels that are words
     double low = 0, high = 0;  ///< 5 and 95 % quantiles
     double share_of_range =
-        0;  ///< sd divided by the sd of the uniform prior, in the scale of the factor; near 1: not determined
+        0;  ///< sd divided by the sd of the uniform prior, in the scale of the factor; near 1: not determined. For
+            ///< words: the probability of all but the likeliest, divided by the prior's
+    std::vector<LevelProbability> levels = {};  ///< of levels, and of few multiples of a step; else empty
     Determination determination = Determination::not_determined;
     /// Factor with which it is strongly correlated; empty: none.
     std::string ridge_with = {};
@@ -31,6 +39,15 @@ struct FactorPosterior {
     /// Returns "determined", "partly" or "not determined".
     [[nodiscard]] std::string_view word() const;
 };
+
+/// Distribution of one factor before and after a calibration, over bins of its range; of levels one bin each, around
+/// its index.
+struct Marginal {
+    std::vector<double> from, to;          ///< in its unit
+    std::vector<double> prior, posterior;  ///< probability of each bin
+};
+/// Returns the distribution of factor j of a calibration that has a posterior.
+[[nodiscard]] Marginal marginal_of(const designs::Calibration& found, std::size_t j);
 
 /// Prediction and fresh runs of one target.
 struct TargetCheck {

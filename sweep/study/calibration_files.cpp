@@ -22,8 +22,8 @@ std::string posterior_csv(const designs::Calibration& found) {
     const auto rows = found.posterior->rows();
     for (std::size_t i = 0; i < rows.size(); ++i)
         for (std::size_t j = 0; j < found.ranges.size(); ++j)
-            text += fmt::format("{}{}", found.ranges[j].value_at(rows.row(i)[j]),
-                                j + 1 == found.ranges.size() ? '\n' : ',');
+            text +=
+                fmt::format("{}{}", found.ranges[j].text_at(rows.row(i)[j]), j + 1 == found.ranges.size() ? '\n' : ',');
     return text;
 }
 
@@ -36,7 +36,7 @@ std::optional<campaign::PowderResult> powder_result(const CalibrationReport& rep
     campaign::PowderResult result;
     for (std::size_t j = 0; j < found.factors.size(); ++j)
         if (std::ranges::find(property_names, found.factors[j]) != property_names.end())
-            result.properties.emplace_back(found.factors[j], found.ranges[j].value_at(best[j]));
+            result.properties.emplace_back(found.factors[j], found.ranges[j].number_at(best[j]));
     if (result.properties.empty()) return std::nullopt;
     for (const auto& target : report.targets)
         result.measured.push_back({target.name(), target.unit, target.value, target.error});

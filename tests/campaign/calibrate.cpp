@@ -22,8 +22,8 @@ json config() {
     return json::parse(R"({"campaign": "fit", "scene": "rehearsal",
   "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
   "fixed": {"response": "spreading_a", "x4": 0.5, "noise": 0.02},
-  "calibration": {"targets": [{"observable": "y", "value": 0.2555, "error": 0.003, "inputs": {"x3": 0.5}},
-                              {"observable": "y", "value": 0.5093, "error": 0.003, "inputs": {"x3": 0.95}}],
+  "calibration": {"targets": [{"observable": "y", "value": 0.2370, "error": 0.003, "inputs": {"x3": 0.5}},
+                              {"observable": "y", "value": 0.4949, "error": 0.003, "inputs": {"x3": 0.95}}],
                   "discrepancy": {"y": 0.001}, "waves": 3, "points_per_wave": 24}})");
 }
 
@@ -82,6 +82,41 @@ TEST(CalibrateCampaign, TwoImpactsOfAGrainEndCalibrated) {
         EXPECT_LE(found["posterior"][factor]["q05"].get<double>(), truth);
         EXPECT_GE(found["posterior"][factor]["q95"].get<double>(), truth);
     }
+}
+
+// The measured response is one of two, which differ at x3 = 0.4 only; x2 is a whole number of fifths.
+TEST(CalibrateCampaign, FindsAWordAndAMultiple) {
+    const Folder folder;
+    auto asked = config();
+    asked["calibration"]["targets"][0] = json::parse(R"({"observable": "y", "value": 0.1323, "error": 0.003,
+                                                         "inputs": {"x3": 0.4}})");
+    asked["fixed"] = {{"x1", 0.3}, {"x4", 0.5}, {"noise", 0.02}};
+    asked["factors"] = json::parse(R"([{"name": "response", "levels": ["spreading_b", "spreading_a"]},
+                                       {"name": "x2", "between": [0, 1], "step": 0.2}])");
+    folder.write("c.json", asked.dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "2"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("posterior probability of each level"));
+    const auto said = run_program({"converge", "a.db", "--format", "json"}, folder.path());
+    ASSERT_EQ(said.code, 0) << said.err;
+    const auto found = json::parse(said.out)[0];
+    const auto& response = found["posterior"][0];
+    EXPECT_TRUE(response["mean"].is_null());
+    EXPECT_EQ(response["verdict"], "determined");
+    EXPECT_EQ(response["levels"][1]["level"], "spreading_a");
+    EXPECT_GT(response["levels"][1]["probability"].get<double>(), 0.95);
+    ASSERT_EQ(found["posterior"][1]["levels"].size(), 6U);
+    EXPECT_EQ(found["posterior"][1]["levels"][3]["level"], "0.6");
+    EXPECT_GT(found["posterior"][1]["levels"][3]["probability"].get<double>(), 0.95);
+    std::stringstream draws;
+    draws << std::ifstream(folder.path() / "fit_posterior.csv").rdbuf();
+    EXPECT_THAT(draws.str(), HasSubstr("\nspreading_a,0.6\n"));
+    for (const auto* panel : {"posterior", "posterior:response", "posterior:response,x2"}) {
+        const auto drawn = run_program({"figure", "a.db", panel, "-o", "a.svg"}, folder.path());
+        EXPECT_EQ(drawn.code, 0) << drawn.err;
+    }
+    const auto report = run_program({"report", "a.db"}, folder.path());
+    EXPECT_EQ(report.code, 0) << report.err;
 }
 
 TEST(CalibrateCampaign, GivesTheSameInterruptedOrNotWithOneWorkerOrTwo) {
@@ -326,8 +361,8 @@ TEST(CalibrateCampaign, RefusesInOneSentence) {
     asked["calibration"]["points_per_wave"] = 11;
     EXPECT_THAT(refusal(folder, asked), HasSubstr("$.calibration.points_per_wave"));
     asked = config();
-    asked["factors"][0] = {{"name", "x1"}, {"levels", {0, 1}}};
-    EXPECT_THAT(refusal(folder, asked), HasSubstr("$.factors"));
+    asked["factors"][0] = {{"name", "x1"}, {"levels", {0.5}}};
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("has one level"));
     for (const auto& [key, number] :
          {std::pair("value", 1e308), std::pair("value", -1e101), std::pair("error", 1e101)}) {
         asked = config();

@@ -17,8 +17,8 @@ using namespace std::chrono_literals;
 const char* calibration = R"({"campaign": "cal", "scene": "rehearsal",
  "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
  "fixed": {"response": "spreading_a", "x4": 0.5, "noise": 0.02, "wait_seconds": 0.01},
- "calibration": {"targets": [{"observable": "y", "value": 0.2555, "error": 0.003, "inputs": {"x3": 0.5}},
-                             {"observable": "y", "value": 0.5093, "error": 0.003, "inputs": {"x3": 0.95}}],
+ "calibration": {"targets": [{"observable": "y", "value": 0.2370, "error": 0.003, "inputs": {"x3": 0.5}},
+                             {"observable": "y", "value": 0.4949, "error": 0.003, "inputs": {"x3": 0.95}}],
                  "discrepancy": {"y": 0.001}, "waves": 3, "points_per_wave": 12}, "execution": {"workers": 2}})";
 
 /// Stored answers, by the file that a run writes every second and removes between waves.

@@ -243,8 +243,8 @@ TEST_F(Powders, AreSpreadFromFilesAndReplayedFromTheDatabaseAlone) {
 const char* const calibration = R"({"campaign": "cal", "scene": "rehearsal",
     "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
     "fixed": {"response": "spreading_a", "x4": 0.5, "noise": 0.02},
-    "calibration": {"targets": [{"observable": "y", "value": 0.2555, "error": 0.003, "inputs": {"x3": 0.5}},
-                                {"observable": "y", "value": 0.5093, "error": 0.003, "inputs": {"x3": 0.95}}],
+    "calibration": {"targets": [{"observable": "y", "value": 0.2370, "error": 0.003, "inputs": {"x3": 0.5}},
+                                {"observable": "y", "value": 0.4949, "error": 0.003, "inputs": {"x3": 0.95}}],
                     "discrepancy": {"y": 0.001}, "waves": 3, "points_per_wave": 24, "checks": 2}})";
 
 TEST_F(Powders, AreNoiseAsFarAsACalibrationKnowsThem) {

@@ -152,6 +152,8 @@ TEST(CalibrationWaves, EveryTargetIsAskedUnderItsOwnCondition) {
     auto asked = calibration_request(2, {{"a", 0.5, 0.02, 0, {{"f1", 0}}}, {"a", 1.1, 0.02, 0, {{"f1", 2}}}},
                                      {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{1}}});
     asked.levels[1] = 3;
+    asked.factors[1].levels = {"0", "1", "2"};
+    asked.factors[1].parts = 3;
     const auto response = [](Point u) { return u[0] + 0.6 * (std::floor(3 * u[1]) / 2); };
     const auto found = answered(asked, {{"a", response}});
     ASSERT_TRUE(found.shape);
@@ -161,6 +163,65 @@ TEST(CalibrationWaves, EveryTargetIsAskedUnderItsOwnCondition) {
     for (std::size_t p = 0; p < found.points.size(); ++p)
         EXPECT_NE(std::floor(3 * found.points.point(p)[1]), 1) << "nothing is asked at the level of no target";
 }
+
+// y = A (u, level) + e with known sds: the probability of a level is an integral of one dimension over u.
+std::vector<double> level_probabilities(const std::function<double(double, std::size_t)>& first,
+                                        const std::function<double(double, std::size_t)>& second, std::size_t levels,
+                                        const MeasuredTarget& a, const MeasuredTarget& b) {
+    std::vector<double> sums(levels, 0);
+    double all = 0;
+    for (std::size_t k = 0; k < levels; ++k)
+        for (std::size_t i = 0; i < 20'000; ++i) {
+            const double u = (static_cast<double>(i) + 0.5) / 20'000;
+            const double x = (first(u, k) - a.value) / a.error, y = (second(u, k) - b.value) / b.error;
+            const double density = std::exp(-(x * x + y * y) / 2);
+            sums[k] += density;
+            all += density;
+        }
+    for (double& sum : sums) sum /= all;
+    return sums;
+}
+
+struct LevelCase {
+    std::string name;
+    std::vector<std::string> levels;
+    std::vector<double> shift;  ///< of the first response
+};
+
+class CalibrationLevels : public ::testing::TestWithParam<LevelCase> {};
+
+TEST_P(CalibrationLevels, HaveTheProbabilityOfBayes) {
+    const auto& [name, levels, shift] = GetParam();
+    const auto first = [&](double u, std::size_t k) { return u + shift[k]; };
+    const auto second = [&](double u, std::size_t k) { return u - 0.3 * shift[k]; };
+    const MeasuredTarget a{"a", 0.85, 0.1, 0, {}}, b{"b", 0.35, 0.1, 0, {}};
+    auto asked = calibration_request(2, {a, b}, {{"waves", std::int64_t{2}}, {"points_per_wave", std::int64_t{32}}});
+    asked.levels[1] = levels.size();
+    asked.factors[1].value_at = nullptr;
+    asked.factors[1].levels = levels;
+    asked.factors[1].parts = levels.size();
+    const auto level = [&](double u) { return asked.factors[1].part(u); };
+    const auto found = answered(asked, {{"a", [&](Point u) { return first(u[0], level(u[1])); }},
+                                        {"b", [&](Point u) { return second(u[0], level(u[1])); }}});
+    ASSERT_TRUE(found.posterior);
+    std::vector<double> sampled(levels.size(), 0);
+    const auto rows = found.posterior->rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        sampled[level(rows.row(i)[1])] += 1 / static_cast<double>(rows.size());
+        EXPECT_EQ(rows.row(i)[1], asked.factors[1].middle(rows.row(i)[1]));
+    }
+    const auto exact = level_probabilities(first, second, levels.size(), a, b);
+    for (std::size_t k = 0; k < levels.size(); ++k) EXPECT_NEAR(sampled[k], exact[k], 0.04) << levels[k];
+    for (std::size_t p = 0; p < found.points.size(); ++p)
+        EXPECT_EQ(found.points.point(p)[1], asked.factors[1].middle(found.points.point(p)[1]));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, CalibrationLevels,
+                         ::testing::Values(LevelCase{"numbers", {"1", "2", "4"}, {0.1, 0.4, 0.7}},
+                                           LevelCase{"numbers_in_another_order", {"4", "1", "2"}, {0.7, 0.1, 0.4}},
+                                           LevelCase{"two_words", {"sjkr", "paper"}, {0.2, 0.5}},
+                                           LevelCase{"words_in_no_order", {"low", "high", "middle"}, {0.1, 0.8, 0.4}}),
+                         [](const auto& one) { return one.param.name; });
 
 // y = a; cases fail where a > 0.5, the measured value. b acts on nothing: it stays uniform, whatever the pattern of the
 // failures.

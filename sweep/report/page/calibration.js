@@ -37,17 +37,17 @@ function posteriorFigure(calibration, i, j) {
   })).node;
 }
 
-// The posterior of a single factor.
-function posteriorHistogram(calibration) {
-  const [factor] = calibration.factors, shown = quantity(factor), bins = 24;
-  const counts = new Array(bins).fill(0);
-  const place = (x) => (factor.log ? Math.log(x / factor.low) / Math.log(factor.high / factor.low) : (x - factor.low) / (factor.high - factor.low));
-  const edge = (u) => (factor.log ? factor.low * (factor.high / factor.low) ** u : factor.low + u * (factor.high - factor.low));
-  for (const [x] of calibration.draws) counts[Math.min(bins - 1, Math.max(0, Math.floor(bins * place(x))))] += 1;
-  return figure(`posterior of ${factor.name}`, "", () => ({
-    type: "bar",
-    data: { datasets: [{ data: counts.map((count, k) => ({ x: shown.of(edge((k + 0.5) / bins)), y: count / calibration.draws.length })), backgroundColor: colour("two"), barPercentage: 1, categoryPercentage: 1 }] },
-    options: { scales: { x: variableAxis(factor), y: axis("share of the draws") } },
+// The posterior of a factor beside its prior.
+function marginalFigure(calibration, j) {
+  const factor = calibration.factors[j], shown = quantity(factor), { from, to, prior, posterior } = calibration.marginals[j];
+  const middle = (k) => shown.of(factor.log ? Math.sqrt(from[k] * to[k]) : (from[k] + to[k]) / 2);
+  const line = prior.flatMap((share, k) => [{ x: shown.of(from[k]), y: share }, { x: shown.of(to[k]), y: share }]);
+  return figure(factor.name, "", () => ({
+    data: { datasets: [
+      { type: "line", label: "prior", data: line, borderColor: colour("dot"), borderWidth: 1.5, pointRadius: 0 },
+      { type: "bar", label: "posterior", data: posterior.map((share, k) => ({ x: middle(k), y: share })), backgroundColor: colour("two"), barPercentage: 1, categoryPercentage: 1 }] },
+    options: { scales: { x: variableAxis(factor), y: axis("probability") },
+      plugins: { legend: { display: true, position: "bottom", labels: { color: colour("ink"), usePointStyle: true, boxWidth: 6, boxHeight: 6 } } } },
   })).node;
 }
 
@@ -56,11 +56,12 @@ function calibrationSection(campaign) {
   if (!calibration) return null;
   const pairs = [];
   for (let j = 1; j < calibration.factors.length; ++j) for (let i = 0; i < j; ++i) pairs.push([i, j]);
-  const figures = calibration.draws.length === 0 ? [] : calibration.factors.length === 1 ? [posteriorHistogram(calibration)]
-    : pairs.map(([i, j]) => posteriorFigure(calibration, i, j));
+  const figures = calibration.draws.length === 0 ? []
+    : [...calibration.factors.map((factor, j) => marginalFigure(calibration, j)), ...pairs.map(([i, j]) => posteriorFigure(calibration, i, j))];
   return section("calibration", "Calibration", capital(calibration.says) + ".",
     calibration.notes.length === 0 ? null : el("div", { class: "verdict no" }, calibration.notes.map((note) => el("p", {}, note))),
     el("div", { class: "grid wide" }, calibration.posterior ? cardOf("Posterior", posteriorTable(calibration)) : null,
+      calibration.levels.rows.length > 0 ? cardOf("Levels", calibration.levels) : null,
       cardOf("Targets", targetsTable(calibration)), cardOf("Waves", calibration.waves)),
     el("div", { class: "grid" }, figures));
 }
