@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 namespace grainsweep::tests::machine_conveying_test {
 
@@ -48,6 +50,45 @@ TEST(MachineConveying, NoGrainLargerThanTheApertureIsScreened) {
     EXPECT_EQ(seen.at("under_coarse"), 0);
     EXPECT_GT(seen.at("passed_fine"), 0.95);
     EXPECT_GT(seen.at("passed_near"), 0.8);
+}
+
+/// Larger grains than by default: fewer of them.
+const Inputs coarse_vanes = {
+    {"diameter", 0.005}, {"clearance", 0.006}, {"particles", std::int64_t{2200}}, {"settle_time", 0.3}};
+
+TEST(MachineConveying, AVaneFeederDeliversSpeedTimesVolumeOfPocketsTimesSolidFraction) {
+    const double pi = std::numbers::pi, density = 2500;
+    const double pockets = pi * (0.046 * 0.046 - 0.01 * 0.01) * 0.024;  // m3, between hub and casing
+    double filling_before = 1;
+    for (const double rpm : {60.0, 200.0}) {
+        Inputs changed = coarse_vanes;
+        changed["speed"] = rpm;
+        const auto seen = answer_with("vane_feeder", changed).scalars;
+        const double solid = seen.at("solid_fraction");
+        EXPECT_NEAR(seen.at("rate") / (rpm / 60 * pockets * density * solid), 1, 0.1) << rpm;
+        EXPECT_TRUE(solid > 0.4 && solid < 0.6) << solid;
+        // Pockets that open for a shorter time fill less.
+        EXPECT_LT(seen.at("filling"), filling_before);
+        filling_before = seen.at("filling");
+        // A grain between the edge of the inlet and a vane 1 mm away would overlap each by 0.4 diameters.
+        EXPECT_LT(seen.at("max_wall_overlap"), 0.15) << rpm;
+    }
+}
+
+TEST(MachineConveying, AVaneFeederWarnsOfGrainsThatDoNotPassItsClearance) {
+    const auto machine = campaign::installed_machine("vane_feeder");
+    const auto kinds = [&](double clearance) {
+        Inputs changed = coarse_vanes;
+        changed["clearance"] = clearance;
+        std::set<std::string> all;
+        for (const Warning& warning : campaign::machine_spec(*machine, inputs_of(*machine, changed)).warnings)
+            all.insert(warning.kind);
+        return all;
+    };
+    EXPECT_TRUE(kinds(0.001).contains("pinched grains"));
+    EXPECT_FALSE(kinds(0.006).contains("pinched grains"));
+    EXPECT_FALSE(kinds(0.006).contains("wide clearance"));
+    EXPECT_TRUE(kinds(0.015).contains("wide clearance"));
 }
 
 }  // namespace grainsweep::tests::machine_conveying_test
