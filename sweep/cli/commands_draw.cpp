@@ -45,7 +45,7 @@ Inputs inputs_of(const SceneInfo& scene, const std::vector<std::string>& setting
     return inputs;
 }
 
-Json about_machine(const SceneInfo& scene, const Inputs& inputs) {
+Json about_machine(const SceneInfo& scene, const Inputs& inputs, const std::string& message) {
     Json shown = Json::array();
     for (const auto& parameter : scene.parameters)
         shown.push_back(std::array<Json, 3>{
@@ -57,7 +57,7 @@ Json about_machine(const SceneInfo& scene, const Inputs& inputs) {
             {"case", ""},
             {"drawing", true},
             {"subtitle", "the machine before it runs: walls move, particles stay where they are filled in"},
-            {"message", ""},
+            {"message", message},
             {"inputs", shown},
             {"results", Json::array()}};
 }
@@ -68,9 +68,13 @@ int draw(const DrawRequest& request, report::Format format) {
     const auto scene = campaign::enter_machine(machine);
     const Inputs inputs = inputs_of(*scene, request.settings);
     report::Film film;
-    campaign::draw_machine(*machine, inputs, request.frames,
-                           [&film](const Snapshot& picture, double time) { film.add(picture, time); });
-    const std::string page = report::watch_page(film, about_machine(*scene, inputs));
+    std::string empty = campaign::draw_machine(
+        *machine, inputs, request.frames, [&film](const Snapshot& picture, double time) { film.add(picture, time); });
+    if (!empty.empty()) {
+        empty = "drawn without particles: " + empty;
+        std::cerr << fmt::format("grainsweep: {}: {}\n", scene->shown(), empty);
+    }
+    const std::string page = report::watch_page(film, about_machine(*scene, inputs, empty));
     write_page_file(request.page, page);
     if (format == report::Format::json)
         report::write(std::cout, Json{{"machine", scene->shown()},
