@@ -72,6 +72,8 @@ class Player {
     if (film.walls.length > 0) {
       this.wallTick = tick("walls", true, (on) => { painter.show.walls = on; this.draw(); });
       shown.push(this.wallTick);
+      const named = this.wallsByName();
+      if (named) shown.push(named);
     }
     if (film.spheres > 0 && film.mobile.includes(0)) {
       this.frozenTick = tick("frozen spheres", true, (on) => { painter.show.frozen = on; this.draw(); });
@@ -84,6 +86,14 @@ class Player {
     const looks = Object.keys(views).map((name, k) => button(name, () => this.look(name), { title: `key ${k + 1}` }));
     shown.push(el("span", { class: "watch-views" }, looks), button("save picture", () => this.savePicture(), { title: "save this view as a PNG file" }));
     return el("div", { class: "watch-choices" }, shown);
+  }
+
+  // A switch for each wall; the copies of a repeated one share theirs.
+  wallsByName() {
+    const names = [...new Set(this.film.walls.map((wall) => wallGroup(wall.name)))].sort(), { hidden } = this.painter.show;
+    if (names.length < 2) return null;
+    const ticks = names.map((name) => tick(words(name), true, (on) => { if (on) hidden.delete(name); else hidden.add(name); this.draw(); }));
+    return el("details", { class: "watch-walls" }, el("summary", {}, "walls by name"), el("div", {}, ticks));
   }
 
   // Small spheres are enlarged; the factor stands beside the slider.
