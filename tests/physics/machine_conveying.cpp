@@ -1,4 +1,5 @@
-// Installed machines that convey, against conservation of mass and the theory of plastic impacts of a point mass.
+// Installed machines that convey and mix, against conservation of mass and the theory of plastic impacts of a point
+// mass.
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "tests/support/machines.hpp"
@@ -89,6 +90,28 @@ TEST(MachineConveying, AVaneFeederWarnsOfGrainsThatDoNotPassItsClearance) {
     EXPECT_FALSE(kinds(0.006).contains("pinched grains"));
     EXPECT_FALSE(kinds(0.006).contains("wide clearance"));
     EXPECT_TRUE(kinds(0.015).contains("wide clearance"));
+}
+
+TEST(MachineConveying, RibbonsMixByTurnsAtATorqueThatSpeedHardlyChanges) {
+    double mixed_before = 0, torque_before = 0;
+    for (const double rpm : {60.0, 120.0}) {
+        const auto seen = answer_with(
+            "ribbon_mixer",
+            {{"speed", rpm}, {"diameter", 0.006}, {"particles", std::int64_t{1200}}, {"revolutions", std::int64_t{3}}});
+        const double apart = seen.series.at("mixing").front().value, mixed = seen.scalars.at("lacey");
+        EXPECT_LT(apart, 0.25) << rpm;
+        EXPECT_GT(mixed, 0.6) << rpm;
+        EXPECT_EQ(seen.scalars.at("lost"), 0);
+        EXPECT_LT(seen.scalars.at("max_wall_overlap"), 0.2) << "no grain is pinched between ribbon and trough";
+        const double torque = seen.scalars.at("torque");
+        EXPECT_LT(torque, 0) << "the powder resists";
+        EXPECT_NEAR(seen.scalars.at("power") / (-torque * rpm / 60 * 2 * std::numbers::pi), 1, 1e-9);
+        if (mixed_before > 0) {
+            EXPECT_NEAR(mixed, mixed_before, 0.1);
+            EXPECT_NEAR(torque / torque_before, 1, 0.2);
+        }
+        mixed_before = mixed, torque_before = torque;
+    }
 }
 
 }  // namespace grainsweep::tests::machine_conveying_test
