@@ -288,7 +288,7 @@ std::span<const Field> wall() {
             {"at", MachineKey::vector, "of the same: where its origin is placed, m", "[0, 0, 0]"},
             {"material", MachineKey::text, "one of the materials; default: the only one that no particles are of"},
             holding({"motion", MachineKey::array, "motions, which add up", "[]"}, motion()),
-            {"only", MachineKey::words,
+            {"only", MachineKey::species,
              "the species that it touches; all others pass through it as if it were not there; default: all touch it"},
             {"during", MachineKey::words, "phases in which it is there; default: all"},
             {"when", MachineKey::quantity, "0: it is not there at all", "1"},
