@@ -34,9 +34,9 @@ constexpr Field course_load(std::string_view name, std::string_view unit, std::s
     return {name, Field::Kind::quantity, meaning, {}, {}, {}, false, unit};
 }
 constexpr Field course_every{
-    "every", Field::Kind::quantity, "with an expression of t: time from value to value, s", {}, {}, {}, false, "s"};
+    "every", Field::Kind::quantity, "with an expression of t: time from value to value", {}, {}, {}, false, "s"};
 constexpr Field course_until{
-    "until", Field::Kind::quantity, "with an expression of t: the last time, s", {}, {}, {}, false, "s"};
+    "until", Field::Kind::quantity, "with an expression of t: the last time", {}, {}, {}, false, "s"};
 constexpr std::array press_fields = {
     needed(
         fields::direction<&Press::along>("along", "direction of the force, the only one in which the wall can move")),

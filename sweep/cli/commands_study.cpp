@@ -81,7 +81,7 @@ std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t c
 /// number of campaigns of the store.
 std::vector<report::PageFilm> machines_of(const store::Store& store, std::size_t campaigns) {
     constexpr std::int64_t pictures = 24;
-    constexpr report::FilmLimits small{.spheres = 3000, .bytes = 300'000, .columns = false};
+    constexpr report::FilmLimits small{.spheres = 3000, .bytes = 300'000};
     std::vector<report::PageFilm> drawings;
     for (const auto& [campaign, id, says] : report::cases_to_watch(store, campaigns)) {
         const campaign::Case stored = store.find_case(id).value();
