@@ -190,8 +190,9 @@ class Player {
 
   look(name) { this.camera.look(name); this.draw(); }
 
+  // A picture that stands is one of a simulated time; only a playing film moves between two of them.
   show(moment) {
-    this.moment = Math.min(this.film.frames - 1, Math.max(0, moment));
+    this.moment = Math.min(this.film.frames - 1, Math.max(0, Math.round(moment)));
     this.slider.value = this.moment;
     this.draw();
   }
@@ -270,7 +271,11 @@ class Player {
 
   // ---- playing
 
-  toggle() { if (this.playing) this.pause(); else this.start(); }
+  toggle() {
+    if (!this.playing) { this.start(); return; }
+    this.pause();
+    this.show(this.moment);
+  }
 
   start() {
     if (this.film.frames < 2) return;
@@ -389,6 +394,7 @@ class Player {
 
   // With the film beside it.
   savePicture() {
+    if (!this.playing) this.show(this.moment);
     this.paint();
     saveTogether(`${this.film.header.about.name || "particles"}.png`, [...this.stages.querySelectorAll(".watch-canvas")]);
   }
