@@ -30,7 +30,7 @@ inline constexpr Interval no_negative_number{0, std::numeric_limits<double>::inf
 
 struct Field {
     /// quantity: a number, a text with a unit, or an expression; value: any JSON value, which its reader checks;
-    /// named: an object of entries by name.
+    /// particles: species, or single particles by name; named: an object of entries by name.
     enum class Kind {
         text,
         word,
@@ -43,6 +43,7 @@ struct Field {
         direction,
         region,
         species,
+        particles,
         walls,
         value,
         object,

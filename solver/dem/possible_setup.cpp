@@ -129,7 +129,8 @@ void check_rolling(const Setup& setup) {
     for (std::size_t a = 0; a < table.kinds(); ++a) {
         if (!of_clumps[a]) continue;
         for (std::size_t b = 0; b < table.kinds(); ++b) check_contact(table.pairs()[place_of_pair(a, b)]);
-        for (const Wall& wall : setup.walls) check_contact(table.at_wall(wall, a));
+        for (const Wall& wall : setup.walls)
+            if (wall.touches(a)) check_contact(table.at_wall(wall, a));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "solver/geometry/quaternion.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -23,10 +24,28 @@ constexpr std::array vibration_fields = {
     needed(fields::quantity<&Vibration::frequency>("frequency", "Hz", "", no_negative_number)),
     fields::quantity<&Vibration::phase>("phase", "rad", ""),
 };
+constexpr Field course_field(std::string_view name, std::string_view meaning) {
+    return {name, Field::Kind::array, meaning};
+}
+constexpr Field course_times =
+    course_field("times", "rising times since the motion starts, s; straight lines between, the ends hold");
+/// Returns the row of a load, which a reader takes with its course.
+constexpr Field course_load(std::string_view name, std::string_view unit, std::string_view meaning) {
+    return {name, Field::Kind::quantity, meaning, {}, {}, {}, false, unit};
+}
+constexpr Field course_every{
+    "every", Field::Kind::quantity, "with an expression of t: time from value to value", {}, {}, {}, false, "s"};
+constexpr Field course_until{
+    "until", Field::Kind::quantity, "with an expression of t: the last time", {}, {}, {}, false, "s"};
 constexpr std::array press_fields = {
     needed(
         fields::direction<&Press::along>("along", "direction of the force, the only one in which the wall can move")),
-    needed(fields::quantity<&Press::force>("force", "N", "that acts on the wall, with its weight")),
+    course_load("force", "N",
+                "that acts on the wall, with its weight; or an expression of t, the time since the motion starts"),
+    course_field("forces", "or the forces at \"times\", N"),
+    course_times,
+    course_every,
+    course_until,
     needed(fields::quantity<&Press::mass>("mass", "kg", "of the wall", positive_number)),
     needed(fields::quantity<&Press::fastest>("speed_at_most", "m/s",
                                              "it never moves faster; the time step follows from it", positive_number)),
@@ -34,7 +53,12 @@ constexpr std::array press_fields = {
 constexpr std::array drive_fields = {
     needed(fields::direction<&Drive::axis>("axis", "direction")),
     fields::vector<&Drive::point>("through", "m", "a point on the axis"),
-    needed(fields::quantity<&Drive::moment>("torque", "N m", "that acts on the wall, right hand")),
+    course_load("torque", "N m",
+                "that acts on the wall, right hand; or an expression of t, the time since the motion starts"),
+    course_field("torques", "or the torques at \"times\", N m"),
+    course_times,
+    course_every,
+    course_until,
     needed(fields::quantity<&Drive::inertia>("inertia", "kg m2", "moment of inertia of the wall about the axis",
                                              positive_number)),
     needed(fields::quantity<&Drive::fastest>("speed_at_most", "rad/s",
@@ -247,6 +271,13 @@ bool turns(const Motion& motion) {
            std::holds_alternative<Flight>(motion);
 }
 
+double largest_load(double constant, const LoadCourse& course) {
+    if (!course) return std::abs(constant);
+    double most = 0;
+    for (const LoadAt& load : *course) most = std::max(most, std::abs(load.value));
+    return most;
+}
+
 Vec3 spin_of(const Flight& m) {
     const Pose pose = turned_pose(m);
     Vec3 spin{};
@@ -271,6 +302,16 @@ double kinetic_energy_of(const Drive& m) {
 }
 double kinetic_energy_of(const Flight& m) {
     return m.mass / 2 * dot(m.velocity, m.velocity) + turning_energy(m);
+}
+
+/// Returns a load at a time since its motion started.
+double load_at(double constant, const LoadCourse& course, double time) {
+    if (!course) return constant;
+    const auto after = std::ranges::upper_bound(*course, time, {}, &LoadAt::time);
+    if (after == course->begin()) return course->front().value;
+    if (after == course->end()) return course->back().value;
+    const LoadAt &a = *(after - 1), &b = *after;
+    return a.value + (time - a.time) / (b.time - a.time) * (b.value - a.value);
 }
 
 /// Of a press or a drive: `load` and `own` are forces along its way, or moments about its axis.
@@ -331,9 +372,11 @@ void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, cons
     const auto moment_about = [&](const Vec3& point) { return moment + cross(about - shift - point, force); };
     for (Motion& motion : motions) {
         if (auto* m = std::get_if<Press>(&motion))
-            kick_along(*m, m->mass, dot(force, m->along), m->force, time, span, energy);
+            kick_along(*m, m->mass, dot(force, m->along), load_at(m->force, m->course, time - m->start), time, span,
+                       energy);
         if (auto* m = std::get_if<Drive>(&motion))
-            kick_along(*m, m->inertia, dot(moment_about(m->point), m->axis), m->moment, time, span, energy);
+            kick_along(*m, m->inertia, dot(moment_about(m->point), m->axis),
+                       load_at(m->moment, m->course, time - m->start), time, span, energy);
         if (auto* m = std::get_if<Flight>(&motion)) kick_flight(*m, force, moment_about(m->centre), time, span, energy);
     }
 }
@@ -382,6 +425,13 @@ bool is_positive(double x) {
     return x > 0 && std::isfinite(x);
 }
 
+bool is_sound(const LoadCourse& course) {
+    if (!course) return true;
+    const auto is_finite = [](const LoadAt& load) { return std::isfinite(load.time) && std::isfinite(load.value); };
+    return std::ranges::all_of(*course, is_finite) &&
+           std::ranges::adjacent_find(*course, std::greater_equal<>(), &LoadAt::time) == course->end();
+}
+
 std::string flaw_of(const Translation& m) {
     return finite(m.velocity) ? "" : "a motion must be finite";
 }
@@ -400,6 +450,7 @@ std::string flaw_of(const Press& m) {
         return "a motion must be finite";
     if (!is_unit(m.along)) return "the direction of a press must have unit length";
     if (!is_positive(m.mass)) return "the mass of a pressed wall must be above 0";
+    if (!is_sound(m.course)) return "the times of a load must rise, and its values be finite";
     return is_positive(m.fastest) ? "" : "the speed of a pressed wall must have a bound above 0";
 }
 std::string flaw_of(const Drive& m) {
@@ -408,6 +459,7 @@ std::string flaw_of(const Drive& m) {
         return "a motion must be finite";
     if (!is_unit(m.axis)) return "the axis of a drive must have unit length";
     if (!is_positive(m.inertia)) return "the inertia of a driven wall must be above 0";
+    if (!is_sound(m.course)) return "the times of a load must rise, and its values be finite";
     return is_positive(m.fastest) ? "" : "the speed of a driven wall must have a bound above 0";
 }
 std::string flaw_of(const Flight& m) {

@@ -7,6 +7,7 @@
 //     rotation      by the angle w s, right hand, about an axis through a point
 //     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
 //     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
+//                                          F and M are constant, or a course: straight lines between values at times
 //     flight        d = way, turned by q   m dv/dt = F + load, dL/dt = M + moment of the load about the centre of mass
 //
 // A list of motions is combined: displacements are added to D, rotations follow one another, and all points of
@@ -22,10 +23,14 @@
 #include "solver/field.hpp"
 #include "solver/geometry/vector.hpp"
 
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 namespace grainsweep::geometry {
 
@@ -54,6 +59,28 @@ struct Rotation {
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
 };
 
+/// Force or moment of a course at a time.
+struct LoadAt {
+    double time = 0;   ///< s since the motion starts; rising
+    double value = 0;  ///< N or N m
+};
+/// Course of a load: straight lines between its values; the first and the last one hold before and after. Null: the
+/// load is constant. Shared, because walls copy their motions in every step.
+using LoadCourse = std::shared_ptr<const std::vector<LoadAt>>;
+/// Writes (const object) or reads a course with visit(number).
+void visit_course(const LoadCourse& course, auto&& visit) {
+    visit(static_cast<std::uint64_t>(course ? course->size() : 0));
+    if (course)
+        for (const LoadAt& load : *course) visit(load);
+}
+void visit_course(LoadCourse& course, auto&& visit) {
+    std::uint64_t size = 0;
+    visit(size);
+    std::vector<LoadAt> loads;
+    for (LoadAt one; loads.size() < size; loads.push_back(one)) visit(one);
+    course = loads.empty() ? nullptr : std::make_shared<const std::vector<LoadAt>>(std::move(loads));
+}
+
 /// Press: a force moves the body along one direction between `start` and `end`; at other times the body is held.
 struct Press {
     Vec3 along{0, 0, -1};                                             ///< unit
@@ -63,6 +90,12 @@ struct Press {
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
     double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< m, m/s
+    LoadCourse course{};                                              ///< of the force, instead of `force`
+
+    static void fields(auto& m, auto&& visit) {
+        visit(m.along), visit(m.force), visit(m.mass), visit(m.fastest), visit(m.start), visit(m.end), visit(m.number);
+        visit(m.way), visit(m.speed), visit_course(m.course, visit);
+    }
 };
 
 /// Drive: a moment rotates the body about an axis.
@@ -75,6 +108,12 @@ struct Drive {
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
     double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< rad, rad/s
+    LoadCourse course{};                                              ///< of the moment, instead of `moment`
+
+    static void fields(auto& m, auto&& visit) {
+        visit(m.point), visit(m.axis), visit(m.moment), visit(m.inertia), visit(m.fastest), visit(m.start);
+        visit(m.end), visit(m.number), visit(m.way), visit(m.speed), visit_course(m.course, visit);
+    }
 };
 
 /// Flight: the body rotates about its centre of mass and moves along the free axes, between `start` and `end`; at other
@@ -104,6 +143,8 @@ using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flig
 [[nodiscard]] bool is_free(const Motion& motion);
 /// Returns whether the motion rotates the body: Rotation, Drive and Flight.
 [[nodiscard]] bool turns(const Motion& motion);
+/// Returns the largest absolute value of a load: constant, or of its course.
+[[nodiscard]] double largest_load(double constant, const LoadCourse& course);
 /// Returns the angular velocity of a flight, rad/s.
 [[nodiscard]] Vec3 spin_of(const Flight& flight);
 

@@ -45,9 +45,9 @@ void Feeder::require_room() const {
         bool always = wall.motions.empty();
         for (std::size_t p = 0; p < spec_.phases.size(); ++p)
             if (holds(feed().during, p) && !holds(wall.during, p)) always = false;
-        if (always) still.emplace_back(wall.shape);
+        still.emplace_back(wall.shape).present = always;
     }
-    const Obstacles obstacles(still, spec_.domain, largest_, 0);
+    const Obstacles obstacles(spec_, feed().mix, still, largest_, 0);
     for (std::uint64_t n = 0; n < tries_of_empty; ++n)
         if (fits(obstacles, place(draws, series_of_empty, n), largest_ / 2)) return;
     throw std::invalid_argument(
@@ -58,7 +58,7 @@ void Feeder::require_room() const {
 
 Filled Feeder::batch(const dem::State& state, const std::vector<dem::Wall>& walls, double time) {
     const Draws draws(spec_, feed().mix, seed_, first_feed + feed_);
-    const Obstacles obstacles(walls, spec_.domain, largest_, time);
+    const Obstacles obstacles(spec_, feed().mix, walls, largest_, time);
     double widest = largest_;
     for (const double radius : state.radius) widest = std::max(widest, 2 * radius);
     Neighbourhood near(spec_.domain, widest);

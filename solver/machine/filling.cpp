@@ -29,6 +29,7 @@ public:
     void operator()(const std::vector<Placed>& placed) {
         for (const Placed& one : placed) {
             require_in_domain(one);
+            if (one.named) into_.named.push_back(static_cast<std::int32_t>(into_.spheres.size()));
             into_.add(spec_, one.species, one.sphere, one.orientation.value_or(geometry::Quaternion{1, 0, 0, 0}));
         }
         begin_ = into_.spheres.size();
@@ -39,7 +40,7 @@ public:
         const Draws draws(spec_, fill.mix, seed_, number_);
         const auto particles = draws.in_numbers(fill.count);
         const double largest = widest_in(spec_, fill.mix);
-        const Obstacles obstacles(walls_in(spec_, 0, {{0.0}, {}}), spec_.domain, largest, 0);
+        const Obstacles obstacles(spec_, fill.mix, walls_in(spec_, 0, {{0.0}, {}}), largest, 0);
         const auto centres = places_of(spec_, fill, draws, particles, obstacles);
         for (std::size_t n = 0; n < particles.size(); ++n) {
             dem::Sphere sphere;
@@ -108,13 +109,14 @@ void require_out_of_wall(const Spec& spec, std::size_t number, const dem::Moving
                          const std::vector<Placed>& placed) {
     std::vector<dem::WallTouch> touches;
     Filled members;
-    for (const auto& [species, sphere, orientation] : placed)
+    for (const auto& [species, sphere, orientation, named] : placed)
         members.add(spec, species, sphere, orientation.value_or(geometry::Quaternion{1, 0, 0, 0}));
     for (std::size_t k = 0; k < members.spheres.size(); ++k) {
         const std::size_t species = members.species[k];
         const dem::Sphere& sphere = members.spheres[k];
         const Vec3& x = sphere.position;
-        if (!sphere.mobile || spec.domain.outside(x)) continue;  // outside: it is refused for that
+        if (!sphere.mobile || !spec.walls[number].touches(spec.species[species])) continue;
+        if (spec.domain.outside(x)) continue;  // it is refused for that
         touches.clear();
         wall.find(0, wall.image().of(x), sphere.radius, touches);
         for (const dem::WallTouch& touch : touches) {
@@ -247,11 +249,16 @@ std::vector<Draws::Particle> Draws::in_numbers(std::int64_t count) const {
     return particles;
 }
 
-Obstacles::Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time,
+bool touches(const Spec& spec, const MachineWall& wall, const Mix& mix) {
+    return std::ranges::any_of(
+        mix, [&](const auto& part) { return part.second > 0 && wall.touches(spec.species[part.first]); });
+}
+
+Obstacles::Obstacles(const Spec& spec, const Mix& mix, const std::vector<dem::Wall>& walls, double largest, double time,
                      dem::MovingWall::Searches searches) {
-    for (const dem::Wall& wall : walls) {
-        if (!wall.present) continue;
-        walls_.emplace_back(wall, domain, largest, searches);
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+        if (!walls[w].present || !touches(spec, spec.walls[w], mix)) continue;
+        walls_.emplace_back(walls[w], spec.domain, largest, searches);
         walls_.back().place(time);
     }
 }

@@ -18,6 +18,7 @@ struct Filled {
     std::vector<dem::Sphere> spheres;   ///< members of clumps, too
     std::vector<std::uint8_t> species;  ///< of each sphere
     std::vector<dem::Body> bodies{};    ///< clumps that move
+    std::vector<std::int32_t> named{};  ///< index of the (first) sphere of each named particle
 
     /// Adds a particle of a species; of a clump `sphere` is the sphere of equal volume, and `orientation` that of the
     /// frame in which its shape is described. One that does not move becomes single spheres.
@@ -68,11 +69,15 @@ enum : std::uint64_t { size_draw = 0, species_draw, place_draw, velocity_draw, o
 /// Stream of the first feed; fillings have the streams before it.
 inline constexpr std::uint64_t first_feed = 1000;
 
-/// Walls that a particle must not touch.
+/// Returns whether a species of a mix touches a wall.
+[[nodiscard]] bool touches(const Spec& spec, const MachineWall& wall, const Mix& mix);
+
+/// Walls that a particle of a mix must not touch: those that touch one of its species.
 class Obstacles {
 public:
-    /// Takes the present walls of `walls` at a time, for spheres of up to the largest diameter.
-    Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time,
+    /// Takes the present walls of `walls`, which are those of the spec, at a time, for spheres of up to the largest
+    /// diameter.
+    Obstacles(const Spec& spec, const Mix& mix, const std::vector<dem::Wall>& walls, double largest, double time,
               dem::MovingWall::Searches searches = dem::MovingWall::Searches::many);
     /// Returns whether a sphere touches a wall.
     [[nodiscard]] bool touch(const Vec3& centre, double radius) const;

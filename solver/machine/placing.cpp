@@ -308,7 +308,7 @@ void require_places(const Spec& spec) {
     for (const auto& filling : spec.fills) {
         const auto* fill = std::get_if<Fill>(&filling);
         if (fill == nullptr || fill->as != Fill::As::lattice || fill->count > most_tried) continue;
-        const Obstacles obstacles(walls_in(spec, 0, {{0.0}, {}}), spec.domain, widest_in(spec, fill->mix), 0,
+        const Obstacles obstacles(spec, fill->mix, walls_in(spec, 0, {{0.0}, {}}), widest_in(spec, fill->mix), 0,
                                   dem::MovingWall::Searches::few);
         (void)on_lattice(spec, *fill, Draws(spec, fill->mix, 1, 0), obstacles);
     }

@@ -313,7 +313,8 @@ double mean_parts(const Spec& spec) {
                 const double area = press != nullptr ? area_across(spec, press->along) : 0;
                 if (!(area > 0) || (motion.phases && (p < motion.phases->first || p > motion.phases->last))) continue;
                 for (const Species& species : spec.species)
-                    parts = std::max(parts, parts_under(spec, species, std::abs(press->force) / area));
+                    parts = std::max(
+                        parts, parts_under(spec, species, geometry::largest_load(press->force, press->course) / area));
             }
         all += length_of(spec.phases[p]);
         sum += parts * length_of(spec.phases[p]);

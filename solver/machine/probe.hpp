@@ -45,6 +45,7 @@ struct Frame {
     std::span<const std::uint32_t> by_partners = {};
     std::span<const std::int32_t> particle = {};  ///< by id of a sphere: id of its particle; empty: its own
     const dem::State* members = nullptr;          ///< all spheres and clumps; nullptr: there are no clumps
+    std::span<const std::int32_t> named = {};     ///< ids of the particles with a name, in their order
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }
@@ -63,8 +64,8 @@ struct Frame {
     [[nodiscard]] const dem::State& spheres() const { return members == nullptr ? state : *members; }
     /// Returns the frame with all spheres as its particles.
     [[nodiscard]] Frame of_spheres() const {
-        return {engine, spheres(),    contacts, species,   density,     domain,   gravity,
-                time,   peak_overlap, radius,   time_step, by_partners, particle, members};
+        return {engine,       spheres(), contacts,  species,     density,  domain,  gravity, time,
+                peak_overlap, radius,    time_step, by_partners, particle, members, named};
     }
     /// Calls visit(i, clump) for every clump, with its index in `state`.
     template <class Visit>
@@ -86,6 +87,10 @@ struct Passage {
     double time = 0;                ///< s since the start
     Vec3 position{};                ///< m
 };
+
+/// Number of the first particle with a name among the numbers of an option of the kind `particles`; lower ones are
+/// species.
+inline constexpr std::size_t first_named = 1000;
 
 /// Values of the options of a probe.
 using OptionValue = std::variant<double, Vec3, Region, std::vector<std::size_t>, std::string>;

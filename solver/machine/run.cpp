@@ -50,6 +50,7 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
             for (std::size_t k = 0; species.shape && k < species.shape->balls.size(); ++k)
                 announce(species.shape->balls[k].radius);
         }
+    named_ = start.named;
     enlist(start);
     for (const Measure& measure : spec_.measures) {
         const ProbeInfo& probe = *find_probe(measure.probe);
@@ -267,7 +268,8 @@ Frame Run::frame() const {
             spec_.time_step,
             {},
             particle_,
-            has_clumps() ? &spheres_ : nullptr};
+            has_clumps() ? &spheres_ : nullptr,
+            named_};
 }
 
 void Run::take_frame() {
@@ -367,6 +369,7 @@ Snapshot Run::snapshot() const {
     for (std::size_t k = 0; k < 3; ++k)
         if (spec_.domain.periodic[k]) picture.periods[k] = spec_.domain.length(k);
     const auto walls = walls_now();
+    for (const MachineWall& wall : spec_.walls) picture.contacts->walls.push_back(wall.name);
     for (std::size_t w = 0; w < walls.size(); ++w)
         if (walls[w].present)
             picture.walls.push_back(

@@ -106,6 +106,7 @@ private:
     std::vector<double> radius_;  // by id; of a clump's first member the radius of the sphere of equal volume, of
                                   // the others 0
     std::vector<std::int32_t> particle_;  // by id of a sphere, where there are clumps: id of its particle
+    std::vector<std::int32_t> named_;     // ids of the particles with a name
     std::unique_ptr<dem::Engine> engine_;
     std::vector<std::unique_ptr<Probe>> probes_;                 // of measures
     std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // probes that end a phase, by phase and condition

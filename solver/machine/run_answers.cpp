@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -96,9 +98,10 @@ void Run::observe(Observations& into) const {
         into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();
         into.scalars[spec_.feeds[k].name + "_waiting"] = std::max(0.0, feeders_[k].waiting());
     }
+    std::map<std::string, double, std::less<>> lasted;  // repeated phases together
     for (std::size_t p = 0; p < times_.end.size(); ++p) {
         if (spec_.phases[p].until.empty()) continue;
-        into.scalars[spec_.phases[p].name + "_time"] = times_.end[p] - times_.begin[p];
+        into.scalars[spec_.phases[p].name + "_time"] = lasted[spec_.phases[p].name] += times_.end[p] - times_.begin[p];
         into.scalars[spec_.phases[p].name + "_ended"] = ended_by_[p];
     }
     // A measurement of the machine with one of these names replaces it.

@@ -1,5 +1,5 @@
-// Particles that a probe counts: by species, and by the region that contains the centre; of a passage through a plane,
-// the place where the centre passes. Glued particles are part of a wall.
+// Particles that a probe counts: by species or name, and by the region that contains the centre; of a passage through
+// a plane, the place where the centre passes. Glued particles are part of a wall, unless they are selected by name.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -9,24 +9,32 @@
 
 namespace grainsweep::machine {
 
-inline constexpr Field of_option = option("of", Field::Kind::species, "", "the species that count; default: all");
+inline constexpr Field species_option = option("of", Field::Kind::species, "", "the species that count; default: all");
+inline constexpr Field of_option =
+    option("of", Field::Kind::particles, "", "the species, or single particles by name, that count; default: all");
 inline constexpr Field in_option =
     option("in", Field::Kind::region, "", "the region in which centres count; default: everywhere");
 
 class Selection {
 public:
-    explicit Selection(const Options& options) : of_(options.numbers("of")), in_(options.region("in")) {}
+    explicit Selection(const Options& options) : in_(options.region("in")) {
+        for (const std::size_t number : options.numbers("of"))
+            number < first_named ? species_.push_back(number) : named_.push_back(number - first_named);
+    }
 
-    [[nodiscard]] bool species_counts(const Frame& frame, std::size_t i) const {
-        return of_.empty() || std::ranges::find(of_, frame.species_of(i)) != of_.end();
+    /// Returns whether a particle counts by its species or name.
+    [[nodiscard]] bool is_of(const Frame& frame, std::size_t id) const {
+        if (species_.empty() && named_.empty()) return true;
+        if (std::ranges::find(species_, frame.species[id]) != species_.end()) return true;
+        return is_named(frame, id);
     }
     [[nodiscard]] bool holds(const Frame& frame, std::size_t i) const {
-        return frame.state.mobile[i] != 0 && species_counts(frame, i) &&
+        const std::size_t id = frame.id(i);
+        return (frame.state.mobile[i] != 0 ? is_of(frame, id) : is_named(frame, id)) &&
                (!in_ || in_->contains(frame.state.position[i]));
     }
     [[nodiscard]] bool holds(const Frame& frame, const Passage& passage) const {
-        return (of_.empty() || std::ranges::find(of_, frame.species[passage.id]) != of_.end()) &&
-               (!in_ || in_->contains(passage.position));
+        return is_of(frame, passage.id) && (!in_ || in_->contains(passage.position));
     }
     /// Calls visit(i) for every particle that counts.
     template <class Visit>
@@ -37,7 +45,13 @@ public:
     [[nodiscard]] const std::optional<Region>& region() const { return in_; }
 
 private:
-    std::vector<std::size_t> of_;
+    [[nodiscard]] bool is_named(const Frame& frame, std::size_t id) const {
+        return std::ranges::any_of(named_, [&](std::size_t name) {
+            return frame.particle_of(static_cast<std::int32_t>(id)) == frame.named[name];
+        });
+    }
+
+    std::vector<std::size_t> species_, named_;
     std::optional<Region> in_;
 };
 

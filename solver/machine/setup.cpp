@@ -119,6 +119,7 @@ std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const Phase
         for (const WallMotion& motion : given.motions)
             if (auto act = acting(motion, times)) wall.motions.push_back(*act);
         wall.materials = given.materials;
+        wall.passing = given.passing;
         wall.present = holds(given.during, phase);
         wall.integrated = loads_are_integrated(spec, walls.size());
         walls.push_back(std::move(wall));
@@ -184,6 +185,7 @@ double time_step_of(const Spec& spec, double fraction, double speed) {
             shortest = std::min(shortest, impact_time(pair, std::min(a.finest(), b.finest()) / 2, speed));
         }
         for (const MachineWall& wall : spec.walls) {
+            if (!wall.touches(a)) continue;
             dem::Material pair = wall.materials[a.material];
             pair.density = impact_density(spec, a);
             shortest = std::min(shortest, impact_time(pair, a.finest() / 2, speed));

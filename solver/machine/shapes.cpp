@@ -33,6 +33,16 @@ constexpr std::array rectangle_fields = {
     needed(fields::vector<&Rectangle::along>("along", "m", "one side")),
     needed(fields::vector<&Rectangle::across>("across", "m", "the other side")),
 };
+constexpr std::array<std::string_view, 2> pattern_words = {"square", "triangular"};
+constexpr std::array perforated_fields = {
+    needed(fields::vector<&Perforated::corner>("corner", "m", "")),
+    needed(fields::vector<&Perforated::along>("along", "m", "one side, along which the rows run")),
+    needed(fields::vector<&Perforated::across>("across", "m", "the other side, at a right angle")),
+    needed(fields::quantity<&Perforated::hole>("hole", "m", "diameter of the holes", positive_number)),
+    needed(fields::quantity<&Perforated::pitch>("pitch", "m", "between the centres of neighbours", positive_number)),
+    fields::choice<&Perforated::pattern>("pattern", "triangular: every second row is shifted by half a pitch",
+                                         pattern_words, "\"square\""),
+};
 constexpr std::array disc_fields = {
     fields::vector<&Disc::centre>("centre", "m", ""),
     fields::direction<&Disc::normal>("normal", "direction across it"),
@@ -87,6 +97,8 @@ constexpr std::array shape_rows = {
     fields::alternative<StatedShape, geometry::Plane>("plane", "an infinite plane", plane_fields),
     fields::alternative<StatedShape, Rectangle>("rectangle", "a parallelogram, two sides from a corner",
                                                 rectangle_fields),
+    fields::alternative<StatedShape, Perforated>(
+        "perforated", "a flat plate with round holes in rows, as many as fit; it has no thickness", perforated_fields),
     fields::alternative<StatedShape, Disc>("disc", "a flat disc or ring of 64 facets", disc_fields),
     fields::alternative<StatedShape, Box>("box", "the faces of a box", box_fields),
     fields::alternative<StatedShape, Cylinder>("cylinder", "a drum from inside, a roller from outside",

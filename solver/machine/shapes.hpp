@@ -1,4 +1,4 @@
-// Shapes of a machine made of triangles, in their place: discs, rectangles, boxes and STL files.
+// Shapes of a machine made of triangles, in their place: discs, rectangles, perforated plates, boxes and STL files.
 #pragma once
 
 #include "solver/field.hpp"
@@ -37,8 +37,17 @@ struct Box {
     std::array<bool, 6> open{};    ///< faces that are left out: -x, +x, -y, +y, -z, +z
 };
 
+/// Flat plate with round holes in rows, as many as fit; the rest is shared between opposite edges.
+struct Perforated {
+    enum class Pattern { square, triangular };
+    geometry::Vec3 corner{}, along{}, across{};  ///< m; two sides from a corner, at a right angle
+    double hole = 0;                             ///< diameter, m
+    double pitch = 0;                            ///< between the centres of neighbours, m
+    Pattern pattern = Pattern::square;           ///< rows are parallel to `along`
+};
+
 /// Shape as a machine file states it.
-using StatedShape = std::variant<geometry::Plane, Rectangle, Disc, Box, geometry::Cylinder, geometry::Cone,
+using StatedShape = std::variant<geometry::Plane, Rectangle, Perforated, Disc, Box, geometry::Cylinder, geometry::Cone,
                                  geometry::Tube, geometry::Bar>;
 /// Returns the alternatives of a StatedShape with the fields that a file sets.
 [[nodiscard]] std::span<const Type> shape_types();
@@ -46,6 +55,8 @@ using StatedShape = std::variant<geometry::Plane, Rectangle, Disc, Box, geometry
 
 /// Returns two triangles.
 [[nodiscard]] Triangles triangles_of(const Rectangle& rectangle);
+/// Returns triangles with a polygon of 32 sides around the circle of each hole.
+[[nodiscard]] Triangles triangles_of(const Perforated& plate);
 /// Returns 64 facets with the area of the circle.
 [[nodiscard]] Triangles triangles_of(const Disc& disc);
 /// Returns the faces that are not open, in the order -x, +x, -y, +y, -z, +z.

@@ -67,6 +67,9 @@ struct MachineWall {
     std::vector<WallMotion> motions;
     std::vector<dem::Material> materials;  ///< one for its contacts with each material of the particles
     Phases during;
+    std::uint8_t passing = 0;  ///< materials of particles that pass through it, bit by bit
+
+    [[nodiscard]] bool touches(const Species& species) const { return (passing >> species.material & 1U) == 0; }
 };
 
 /// Shares of species in a filling or feed, by number of particles; their sum is 1.
@@ -88,6 +91,7 @@ struct Placed {
     std::size_t species = 0;
     dem::Sphere sphere;
     std::optional<geometry::Quaternion> orientation{};  ///< of a clump, in the frame in which its shape is described
+    bool named = false;                                 ///< probes may select it alone
 };
 
 struct Feed {
@@ -164,9 +168,10 @@ struct Derived {
 struct Spec {
     Vec3 gravity{0, 0, -9.81};
     geometry::Domain domain;
-    std::vector<std::string> materials;  ///< of particles
-    std::vector<double> densities;       ///< of each, kg/m3
-    std::vector<dem::Material> pairs;    ///< of their contacts, at dem::place_of_pair()
+    /// Materials of particles. One that several species have is there several times if a wall tells these apart.
+    std::vector<std::string> materials;
+    std::vector<double> densities;     ///< of each, kg/m3
+    std::vector<dem::Material> pairs;  ///< of their contacts, at dem::place_of_pair()
     std::vector<Species> species;
     std::vector<MachineWall> walls;
     std::vector<std::variant<Fill, std::vector<Placed>>> fills;

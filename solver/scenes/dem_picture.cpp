@@ -200,6 +200,34 @@ WallSurface surface_of(const dem::Wall& wall, std::string name, const Vec3& low,
     return surface;
 }
 
+namespace {
+
+/// A number per contact in every column; "second" and "wall" are -1 where the partner is a wall or a particle.
+ContactLines lines_of(const dem::State& state, std::span<const dem::ContactForce> contacts) {
+    ContactLines lines;
+    for (const dem::ContactForce& contact : contacts) {
+        const auto at = [&](std::int32_t id) {
+            return static_cast<std::size_t>(std::ranges::lower_bound(state.id, id) - state.id.begin());
+        };
+        const std::size_t i = at(contact.first);
+        const bool wall = contact.second < 0;
+        const double distance = state.radius[i] + (wall ? 0 : state.radius[at(contact.second)]) - contact.overlap;
+        lines.ends.push_back({state.position[i], state.position[i] - distance * contact.normal});
+        lines.scalars["first"].push_back(contact.first);
+        lines.scalars["second"].push_back(wall ? -1 : contact.second);
+        lines.scalars["wall"].push_back(wall ? -1 - contact.second : -1);
+        lines.scalars["normal_force"].push_back(contact.normal_force);
+        lines.scalars["tangential_force"].push_back(geometry::norm(contact.tangential_force));
+        lines.scalars["overlap"].push_back(contact.overlap);
+        lines.scalars["slides"].push_back(contact.slides ? 1 : 0);
+        lines.vectors["force"].push_back(contact.normal_force * contact.normal + contact.tangential_force);
+    }
+    lines.units = {{"normal_force", "N"}, {"tangential_force", "N"}, {"overlap", "m"}, {"force", "N"}};
+    return lines;
+}
+
+}  // namespace
+
 Snapshot picture_of(const dem::Engine& engine) {
     dem::State state;
     std::vector<dem::ContactForce> contacts;
@@ -207,6 +235,7 @@ Snapshot picture_of(const dem::Engine& engine) {
     engine.contacts(contacts);
     auto loads = observables::particle_loads(state, contacts);
     Snapshot picture;
+    picture.contacts = lines_of(state, contacts);
     picture.positions = std::move(state.position);
     picture.scalars["id"].assign(state.id.begin(), state.id.end());
     picture.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());

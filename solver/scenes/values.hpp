@@ -109,6 +109,16 @@ struct WallSurface {
     std::vector<std::array<std::int32_t, 2>> edges;      ///< lines between corners
 };
 
+/// Contacts in a picture, as lines from the centre of a first particle: to the centre of a second one, through the
+/// nearest periodic image, or to the place of the contact on a wall.
+struct ContactLines {
+    std::vector<std::array<std::array<double, 3>, 2>> ends;  ///< in the picture's unit of length
+    std::map<std::string, std::vector<double>, std::less<>> scalars;
+    std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
+    std::map<std::string, std::string, std::less<>> units;  ///< of columns; absent: a pure number
+    std::vector<std::string> walls;                         ///< names of the walls that the column "wall" numbers
+};
+
 /// Quantities of a fluid in the cells of a rectilinear grid, x fastest.
 struct FlowField {
     std::string name;                          ///< as for a wall
@@ -130,6 +140,7 @@ struct Snapshot {
     std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
     std::vector<WallSurface> walls;
     std::vector<FlowField> fields;
+    std::optional<ContactLines> contacts;                   ///< empty: the scene has none; none at the moment: no lines
     std::map<std::string, std::string, std::less<>> units;  ///< of columns and quantities; absent: a pure number
     std::string length_unit = "m", time_unit = "s";
     std::array<double, 3> periods{};  ///< periods along the axes; 0: not periodic

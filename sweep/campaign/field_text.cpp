@@ -57,6 +57,8 @@ std::string_view kind_word(Field::Kind kind) {
             return "region";
         case Field::Kind::species:
             return "species";
+        case Field::Kind::particles:
+            return "particles";
         case Field::Kind::walls:
             return "walls";
         case Field::Kind::quantity:

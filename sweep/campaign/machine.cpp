@@ -132,7 +132,7 @@ double input_number(const Inputs& inputs, std::string_view name) {
 }
 
 /// `phases`: their path.
-void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string& phases) {
+void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::vector<std::string>& phase_paths) {
     spec.method.precision = std::get<std::string>(inputs.find("precision")->second) == "double"
                                 ? dem::Method::Precision::double_precision
                                 : dem::Method::Precision::mixed;
@@ -147,7 +147,7 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string&
     for (std::size_t p = 0; p < spec.phases.size(); ++p)
         if (spec.phases[p].duration > most_steps * spec.time_step)
             throw input_error(
-                path_of(phases, p), fmt::format("{:.4g} s", spec.phases[p].duration),
+                phase_paths[p], fmt::format("{:.4g} s", spec.phases[p].duration),
                 fmt::format("a phase has at most {:.0e} time steps, here of {:.4g} s", most_steps, spec.time_step));
 }
 
@@ -174,7 +174,7 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
         throw input_error(top.place().path(), "", "a machine needs particles: \"fill\" or \"feed\"");
     read_surroundings(top, reading);
     try {
-        set_time_step(reading.spec, inputs, top.at("phases").path());
+        set_time_step(reading.spec, inputs, reading.phase_paths);
     } catch (const std::invalid_argument& why) {  // walls that cannot be in this domain
         throw input_error(top.place().path(), "", why.what());
     }

@@ -15,8 +15,6 @@ namespace {
 
 using machine::Vec3;
 
-constexpr std::size_t most_repeats = 1000;
-
 /// "glass steel": two of the materials, in any order.
 std::pair<std::size_t, std::size_t> materials_of_pair(const Cursor& place, const std::string& name,
                                                       const MachineReading& reading) {
@@ -41,24 +39,12 @@ std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading)
     throw input_error(wall.path(), "", "key 'material' is missing: several materials could be meant");
 }
 
-/// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes. Within it the
-/// counter "as" is known.
-template <class Read>
-void for_every_one(const Section& section, MachineReading& reading, Read read) {
-    const auto repeat = section.find("repeat"), as = section.find("as");
-    if (as && !repeat) as->refuse("without \"repeat\" it has no effect");
-    const std::int64_t count = repeat ? reading.scope.whole(*repeat, {0, most_repeats}) : 1;
-    MachineScope outer = reading.scope;
-    for (std::int64_t k = 0; k < count; ++k) {
-        if (as) {
-            const std::string counter = as->text();
-            require_name(*as, counter);
-            if (counter == "pi" || outer.knows(counter)) as->refuse("a parameter or \"let\" has this name");
-            reading.scope.set(counter, static_cast<double>(k));
-        }
-        read(k, count);
-        reading.scope = outer;
-    }
+/// Returns the kinds of particles of all species but those listed, bit by bit.
+std::uint8_t all_but(const Cursor& only, const MachineReading& reading) {
+    const auto listed = reading.scope.places_in(only, reading.species, "species");
+    unsigned passing = (1U << reading.of_particles.size()) - 1;
+    for (const std::size_t species : listed) passing &= ~(1U << reading.spec.species[species].material);
+    return static_cast<std::uint8_t>(passing);
 }
 
 }  // namespace
@@ -149,15 +135,14 @@ void read_walls(const Section& top, MachineReading& reading) {
                                     wall.motions.push_back(std::move(piece));
                                 return;
                             }
-                            bool acts = true;
-                            auto motion = read_motion(one, reading, wall, acts);
-                            if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));
+                            read_motion(one, reading, wall);
                         });
                 const auto material = section.find("material");
                 const std::size_t of = material ? reading.scope.place_in(*material, reading.materials, "material")
                                                 : material_of_walls(place, reading);
                 for (const std::size_t particles : reading.of_particles)
                     wall.materials.push_back(reading.contacts[particles][of]);
+                if (const auto only = section.find("only")) wall.passing = all_but(*only, reading);
                 numbers.push_back(reading.spec.walls.size());
                 reading.spec.walls.push_back(std::move(wall));
             }
@@ -183,7 +168,8 @@ geometry::Shape read_shape(const Section& wall, const MachineReading& reading) {
     const bool placed = type == nullptr || std::visit([]<class S>(const S&) { return machine::is_flat<S>; }, shape);
     for (const char* key : {"turned", "at"})
         if (const auto given = wall.find(key); given && !placed)
-            given->refuse("only stl, triangles, rectangle, disc and box are placed; other shapes say where they are");
+            given->refuse(
+                "only stl, triangles, rectangle, perforated, disc and box are placed; other shapes say where they are");
     if (const auto scale = wall.find("scale"); scale && !stl) scale->refuse("only an stl file has a scale");
     if (const auto angle = wall.find("facet_angle"); angle && type != nullptr)
         angle->refuse("only stl and triangles have facets of a curved surface");

@@ -32,6 +32,13 @@ void read_while(const Cursor& place, const MachineReading& reading, machine::Mea
 
 }  // namespace
 
+std::pair<double, bool> threshold_of(const Section& section, const MachineReading& reading, std::string_view unit) {
+    const auto above = section.find("above"), below = section.find("below");
+    if (above.has_value() == below.has_value())
+        throw input_error(section.place().path(), "", "it has one of \"above\" and \"below\"");
+    return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
+}
+
 std::size_t measure_named(const Cursor& place, const MachineReading& reading) {
     const std::size_t number = reading.scope.place_in(place, reading.measures, "measurement with a probe");
     if (!machine::find_probe(reading.spec.measures[number].probe)->over.empty())
@@ -49,7 +56,7 @@ void read_counting(const Cursor& place, const MachineReading& reading, machine::
     if (!place.json().contains("since")) return;
     const Cursor since = place["since"];
     if (into.reduction != "series") since.refuse("only a series has times");
-    into.since = reading.scope.place_in(since, reading.phases, "phase");
+    into.since = reading.copies[reading.scope.place_in(since, reading.phases, "phase")].front();
     for (std::size_t p = 0; p < *into.since; ++p)
         if (machine::holds(into.during, p))
             since.refuse("it must be the first phase that is measured, or an earlier one: see \"during\"");

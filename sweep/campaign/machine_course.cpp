@@ -1,4 +1,4 @@
-// "phases" and "measure" of a machine.
+// "measure" of a machine.
 #include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
@@ -66,6 +66,13 @@ const machine::ReductionInfo& reduction_of(const Cursor& place, const machine::P
     return *machine::find_reduction(place["as"].word(words));
 }
 
+/// Names that "of" may have: of species, then of single particles.
+std::vector<std::string> particles_in_words(const MachineReading& reading) {
+    auto names = reading.species;
+    names.insert(names.end(), reading.named_particles.begin(), reading.named_particles.end());
+    return names;
+}
+
 machine::OptionValue option_value(const Cursor& place, const Field& option, const MachineReading& reading) {
     switch (option.kind) {
         case Field::Kind::quantity:
@@ -78,6 +85,12 @@ machine::OptionValue option_value(const Cursor& place, const Field& option, cons
             return reading.scope.region(place);
         case Field::Kind::species:
             return reading.scope.places_in(place, reading.species, "species");
+        case Field::Kind::particles: {
+            auto numbers = reading.scope.places_in(place, particles_in_words(reading), "species or particle");
+            for (std::size_t& number : numbers)
+                if (number >= reading.species.size()) number = machine::first_named + (number - reading.species.size());
+            return numbers;
+        }
         case Field::Kind::walls: {
             std::vector<std::size_t> walls;
             for (const std::size_t named : reading.scope.places_in(place, reading.walls, "wall"))
@@ -108,14 +121,6 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
     if (probe.flaw != nullptr)
         if (const auto flaw = probe.flaw(options); !flaw.empty()) place.refuse(flaw);
     return options;
-}
-
-/// "above" or "below".
-std::pair<double, bool> threshold_of(const Section& section, const MachineReading& reading, std::string_view unit) {
-    const auto above = section.find("above"), below = section.find("below");
-    if (above.has_value() == below.has_value())
-        throw input_error(section.place().path(), "", "it has one of \"above\" and \"below\"");
-    return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
 }
 
 /// Sorts expressions so that each follows the expressions that it needs. Refuses circles. Only a measurement that may
@@ -180,80 +185,7 @@ machine::Derived withdrawn(machine::Derived condition) {
     return condition;
 }
 
-machine::Until read_until(const Cursor& place, const MachineReading& reading) {
-    const Section section(place, machine_keys::until());
-    const auto rest = section.find("at_rest"), empty = section.find("empty"), stops = section.find("flow_stops"),
-               measure = section.find("measure");
-    if (static_cast<int>(rest.has_value()) + static_cast<int>(empty.has_value()) + static_cast<int>(stops.has_value()) +
-            static_cast<int>(measure.has_value()) !=
-        1)
-        place.refuse("a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\" and \"measure\"");
-    if (!measure)
-        for (const char* key : {"above", "below"})
-            if (const auto end = section.find(key)) end->refuse("it belongs to \"measure\"");
-    if (rest) {
-        if (!rest->flag()) rest->refuse("must be true");
-        if (!(geometry::norm(reading.spec.gravity) > 0)) rest->refuse("without gravity nothing comes to rest");
-        return machine::AtRest{};
-    }
-    if (empty) return machine::Empty{reading.scope.region(*empty)};
-    if (stops) {
-        machine::FlowStops condition;
-        reading.scope.read(Section(*stops, machine_keys::flow_stops()), machine_keys::flow_stops(), &condition);
-        return condition;
-    }
-    const std::size_t number = measure_named(*measure, reading);
-    const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
-    return machine::Passes{number, value, above};
-}
-
 }  // namespace
-
-machine::Phases read_during(const Section& section, const MachineReading& reading) {
-    const auto place = section.find("during");
-    if (!place) return {};
-    auto phases = reading.scope.places_in(*place, reading.phases, "phase");
-    std::ranges::sort(phases);
-    return phases;
-}
-
-void read_phase_names(const Section& top, MachineReading& reading) {
-    const Cursor all = top.at("phases");
-    for (const auto& place : all.elements()) {
-        const Section section(place, machine_keys::phase());
-        const Cursor name = section.at("name");
-        require_name(name, name.text());
-        if (std::ranges::find(reading.phases, name.text()) != reading.phases.end())
-            name.refuse("a phase of this name is there twice");
-        reading.phases.push_back(name.text());
-    }
-    if (reading.phases.empty()) all.refuse("a machine needs a phase");
-}
-
-void read_phases(const Section& top, MachineReading& reading) {
-    for (const auto& place : top.at("phases").elements()) {
-        const Section section(place, machine_keys::phase());
-        const auto given = section.find("for"), until = section.find("until"), most = section.find("at_most");
-        if (given.has_value() == until.has_value() || until.has_value() != most.has_value())
-            place.refuse("a phase lasts \"for\" a time, or \"until\" something and \"at_most\" a time");
-        machine::Phase phase;
-        phase.name = section.at("name").text();
-        phase.duration = reading.scope.number(given ? *given : *most, "s", no_negative_number);
-        if (const auto frames = section.find("frames")) {
-            phase.frames = reading.scope.whole(*frames, {1, 1e6});
-            phase.frames_given = true;
-        }
-        if (until && !until->json().is_array()) phase.until.push_back(read_until(*until, reading));
-        if (until && until->json().is_array())
-            for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
-        if (until && phase.until.empty()) until->refuse("must name a condition");
-        reading.scope.read(section, machine_keys::phase(), &phase);
-        if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");
-        if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
-        if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
-        reading.spec.phases.push_back(std::move(phase));
-    }
-}
 
 void read_measures(const Section& top, MachineReading& reading) {
     const Cursor all = top.at("measure");
@@ -267,10 +199,7 @@ void read_measures(const Section& top, MachineReading& reading) {
         measure.probe = probe.name;
         measure.options = read_options(place[probe.name], probe, reading);
         measure.reduction = reduction_of(place, probe).name;
-        if (place.json().contains("during")) {
-            measure.during = reading.scope.places_in(place["during"], reading.phases, "phase");
-            std::ranges::sort(measure.during);
-        }
+        if (place.json().contains("during")) measure.during = reading.phases_in(place["during"]);
         reading.measures.push_back(name);
         spec.measures.push_back(std::move(measure));
     }
@@ -308,6 +237,29 @@ std::string why_nothing(const Cursor& place) {
     std::string why = "there was nothing to measure";
     if (place.json().contains("unless")) why += ", or " + place["unless"].text();
     return why;
+}
+
+/// Adds what every phase with a condition gives. Repeated phases share a name.
+void add_phase_observables(const Cursor& phases, bool repeated, std::vector<ObservableSpec>& all) {
+    for (const auto& phase : phases.elements()) {
+        if (!phase.json().is_object()) continue;
+        if (phase.json().contains("phases")) add_phase_observables(phase["phases"], true, all);
+        if (!phase.json().contains("until") || !phase.json().contains("name")) continue;
+        const std::string name = phase["name"].text();
+        all.push_back({name + "_time",
+                       "s",
+                       fmt::format("how long phase '{}' lasted{}", name, repeated ? ", all repeats together" : ""),
+                       Shape::scalar,
+                       {},
+                       {}});
+        all.push_back({name + "_ended",
+                       "1",
+                       fmt::format("number of the condition that ended phase '{}'{}, from 1; 0: its time", name,
+                                   repeated ? " last" : ""),
+                       Shape::scalar,
+                       {},
+                       {}});
+    }
 }
 
 }  // namespace
@@ -382,17 +334,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                            "it is left out here"});
         }
     }
-    for (const auto& phase : top.at("phases").elements()) {
-        if (!phase.json().is_object() || !phase.json().contains("until") || !phase.json().contains("name")) continue;
-        const std::string name = phase["name"].text();
-        all.push_back({name + "_time", "s", fmt::format("how long phase '{}' lasted", name), Shape::scalar, {}, {}});
-        all.push_back({name + "_ended",
-                       "1",
-                       fmt::format("number of the condition that ended phase '{}', from 1; 0: its time", name),
-                       Shape::scalar,
-                       {},
-                       {}});
-    }
+    add_phase_observables(top.at("phases"), false, all);
     if (const auto main = top.find("main")) {
         const auto found = std::ranges::find(all, main->text(), &ObservableSpec::name);
         if (found == all.end()) main->refuse("there is no such measurement", nearest_word(main->text(), names_of(all)));

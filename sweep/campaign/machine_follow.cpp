@@ -1,11 +1,13 @@
-// "follow" of a motion: a wall follows a table of times, or an expression of the time t. It becomes motions of constant
-// velocity from time to time, so that the wall is at the stated place at every stated time.
+// Courses of a wall over time, as a table or an expression of the time t. "follow" of a motion becomes motions of
+// constant velocity from time to time, so that the wall is at the stated place at every stated time. The load of a
+// press or a drive changes along straight lines between its values.
 #include "sweep/campaign/machine_reading.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -17,6 +19,7 @@ using machine::Vec3;
 
 constexpr std::size_t most_pieces = 2000;  // a step looks at each of them
 constexpr std::size_t most_turns = 200;    // of angles: each turns the next
+constexpr std::size_t most_loads = 100000;
 
 /// Places or angles at times; angles are along x.
 struct Course {
@@ -25,27 +28,51 @@ struct Course {
     bool turns = false;
 };
 
-Cursor needed_key(const Section& follow, std::string_view key) {
-    if (const auto place = follow.find(key)) return *place;
-    throw input_error(follow.place().path(), "", fmt::format("key '{}' is missing", key));
+Cursor needed_key(const Section& section, std::string_view key) {
+    if (const auto place = section.find(key)) return *place;
+    throw input_error(section.place().path(), "", fmt::format("key '{}' is missing", key));
+}
+
+/// Returns the times of a table that has a value for each of them.
+std::vector<double> times_of_table(const Section& section, const Cursor& values, const MachineScope& scope) {
+    const auto places = needed_key(section, "times").elements();
+    if (values.elements().size() != places.size() || places.size() < 2)
+        values.refuse(fmt::format("must have two or more values, as many as \"times\": {}", places.size()));
+    std::vector<double> times;
+    for (const Cursor& place : places) {
+        const double time = scope.number(place, "s", no_negative_number);
+        if (!times.empty() && !(time > times.back())) place.refuse("times must rise");
+        times.push_back(time);
+    }
+    return times;
+}
+
+/// Returns the times, "every" apart and up to "until", at which an expression of t is evaluated.
+std::vector<double> times_of_expression(const Section& section, const Cursor& expression, const MachineScope& scope,
+                                        std::size_t most) {
+    if (scope.knows("t"))
+        expression.refuse("'t' is the time here; give the parameter or \"let\" of this name another one");
+    const double every = scope.number(needed_key(section, "every"), "s", positive_number);
+    const double until = scope.number(needed_key(section, "until"), "s", positive_number);
+    const double pieces = std::ceil(until / every * (1 - 1e-12));
+    if (!(pieces <= static_cast<double>(most)))
+        section.at("every").refuse(fmt::format("makes {:.4g} pieces, and at most {} are possible", pieces, most));
+    std::vector<double> times;
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(pieces); ++k)
+        times.push_back(std::min(static_cast<double>(k) * every, until));
+    return times;
 }
 
 Course course_of_table(const Section& follow, const MachineScope& scope) {
-    Course course;
-    const auto times = follow.at("times").elements();
     const auto positions = follow.find("positions"), angles = follow.find("angles");
     if (positions.has_value() == angles.has_value())
         throw input_error(follow.place().path(), "", "beside \"times\" it has \"positions\" or \"angles\"");
+    Course course;
     course.turns = angles.has_value();
-    const auto places = (angles ? *angles : *positions).elements();
-    if (places.size() != times.size() || times.size() < 2)
-        (angles ? *angles : *positions)
-            .refuse(fmt::format("must have two or more values, as many as \"times\": {}", times.size()));
-    for (std::size_t k = 0; k < times.size(); ++k) {
-        course.times.push_back(scope.number(times[k], "s", no_negative_number));
-        if (k > 0 && !(course.times[k] > course.times[k - 1])) times[k].refuse("times must rise");
-        course.places.push_back(angles ? Vec3{scope.number(places[k], "rad"), 0, 0} : scope.vector(places[k], "m"));
-    }
+    const Cursor values = angles ? *angles : *positions;
+    course.times = times_of_table(follow, values, scope);
+    for (const Cursor& place : values.elements())
+        course.places.push_back(angles ? Vec3{scope.number(place, "rad"), 0, 0} : scope.vector(place, "m"));
     return course;
 }
 
@@ -54,28 +81,48 @@ Course course_of_expression(const Section& follow, const MachineScope& outer) {
     if (position.has_value() == angle.has_value())
         throw input_error(follow.place().path(), "",
                           "it follows \"times\", or an expression of t: \"position\" or \"angle\"");
-    if (outer.knows("t"))
-        (angle ? *angle : *position)
-            .refuse("'t' is the time here; give the parameter or \"let\" of this name another one");
-    const double every = outer.number(needed_key(follow, "every"), "s", positive_number);
-    const double until = outer.number(needed_key(follow, "until"), "s", positive_number);
-    const double pieces = std::ceil(until / every * (1 - 1e-12));
-    const std::size_t most = angle ? most_turns : most_pieces;
-    if (!(pieces <= static_cast<double>(most)))
-        follow.at("every").refuse(fmt::format("makes {:.4g} pieces, and at most {} are possible", pieces, most));
     Course course;
     course.turns = angle.has_value();
+    course.times = times_of_expression(follow, angle ? *angle : *position, outer, angle ? most_turns : most_pieces);
     MachineScope scope = outer;
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(pieces); ++k) {
-        const double t = std::min(static_cast<double>(k) * every, until);
+    for (const double t : course.times) {
         scope.set("t", t);
-        course.times.push_back(t);
         course.places.push_back(angle ? Vec3{scope.number(*angle, "rad"), 0, 0} : scope.vector(*position, "m"));
     }
     return course;
 }
 
 }  // namespace
+
+geometry::LoadCourse read_load(const Section& motion, std::string_view name, std::string_view unit,
+                               const MachineScope& outer, double& constant) {
+    const auto load = motion.find(name), values = motion.find(std::string(name) + "s"), times = motion.find("times"),
+               every = motion.find("every"), until = motion.find("until");
+    if (load.has_value() == values.has_value())
+        throw input_error(motion.place().path(), "",
+                          fmt::format("it has either a \"{0}\", or \"times\" and \"{0}s\"", name));
+    for (const auto& place : {every, until})
+        if (place && values) place->refuse(fmt::format("it belongs to an expression of t: \"{}\"", name));
+    if (times && load) times->refuse(fmt::format("it belongs to \"{}s\"", name));
+    if (load && !every && !until) {
+        constant = outer.number(*load, unit);
+        return nullptr;
+    }
+    std::vector<geometry::LoadAt> course;
+    if (values) {
+        const auto places = values->elements();
+        for (const double t : times_of_table(motion, *values, outer))
+            course.push_back({t, outer.number(places[course.size()], unit)});
+    } else {
+        MachineScope scope = outer;
+        for (const double t : times_of_expression(motion, *load, outer, most_loads)) {
+            scope.set("t", t);
+            course.push_back({t, scope.number(*load, unit)});
+        }
+    }
+    constant = course.front().value;
+    return std::make_shared<const std::vector<geometry::LoadAt>>(std::move(course));
+}
 
 std::vector<machine::WallMotion> read_follow(const Section& motion, const MachineReading& reading) {
     const auto& scope = reading.scope;

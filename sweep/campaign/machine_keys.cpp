@@ -139,6 +139,7 @@ constexpr std::array fill_keys = {
 
 constexpr std::array sphere_keys = {
     needed(fields::vector<&dem::Sphere::position>("at", "m", "")),
+    Field{"name", MachineKey::text, "by which \"of\" of a measurement selects it alone"},
     Field{"diameter", MachineKey::quantity, "m; default: that of the species"},
     fields::vector<&dem::Sphere::velocity>("velocity", "m/s", ""),
     fields::vector<&dem::Sphere::angular_velocity>("spin", "rad/s", ""),
@@ -185,7 +186,7 @@ constexpr auto until_keys = std::to_array<Field>({
 
 using machine::Phase;
 constexpr std::array phase_keys = {
-    needed({"name", MachineKey::text, "by which others name it"}),
+    Field{"name", MachineKey::text, "by which others name it; needed unless it is a group"},
     Field{"for", MachineKey::quantity, "how long it lasts, s"},
     Field{"until", MachineKey::value, "what ends it; of a list whatever holds first"},
     Field{"at_most", MachineKey::quantity, "with until: how long it lasts at most, s"},
@@ -197,6 +198,10 @@ constexpr std::array phase_keys = {
           "100"},
     fields::flag<&Phase::ends_at_frames>("ends_at_frames",
                                          "true: its conditions are looked at when it is measured, and not in between"),
+    Field{"phases", MachineKey::array,
+          "instead of all others: a group of phases, or of groups, that \"repeat\" repeats"},
+    Field{"repeat", MachineKey::quantity, "of a group: so many times, 1 or more"},
+    Field{"as", MachineKey::text, "of a group: name that counts them in expressions, from 0"},
 };
 
 constexpr auto measure_keys = std::to_array<Field>({
@@ -277,12 +282,14 @@ std::span<const Field> wall() {
             {"scale", MachineKey::quantity, "of stl: length of the file's unit, m", "1"},
             {"facet_angle", MachineKey::quantity,
              "of stl and triangles: facets that meet at less than this angle stand for a curved surface, rad", "0"},
-            holding(
-                {"turned", MachineKey::object, "of stl, triangles, rectangle, disc, box: turned before it is placed"},
-                machine::placement_fields()),
+            holding({"turned", MachineKey::object,
+                     "of stl, triangles, rectangle, perforated, disc, box: turned before it is placed"},
+                    machine::placement_fields()),
             {"at", MachineKey::vector, "of the same: where its origin is placed, m", "[0, 0, 0]"},
             {"material", MachineKey::text, "one of the materials; default: the only one that no particles are of"},
             holding({"motion", MachineKey::array, "motions, which add up", "[]"}, motion()),
+            {"only", MachineKey::species,
+             "the species that it touches; all others pass through it as if it were not there; default: all touch it"},
             {"during", MachineKey::words, "phases in which it is there; default: all"},
             {"when", MachineKey::quantity, "0: it is not there at all", "1"},
             {"repeat", MachineKey::quantity, "so many of them", "1"},

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace grainsweep::campaign {
 namespace {
@@ -61,11 +62,25 @@ void complete(geometry::Flight& flight, const Section& of, const MachineReading&
 
 }  // namespace
 
-machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading, const machine::MachineWall& wall,
-                                bool& present) {
+namespace {
+
+/// Returns the runs of successive phases among phases in ascending order.
+std::vector<machine::WhileIn> runs_of(const machine::Phases& phases) {
+    std::vector<machine::WhileIn> runs;
+    for (const std::size_t phase : phases)
+        if (!runs.empty() && runs.back().last + 1 == phase)
+            runs.back().last = phase;
+        else
+            runs.push_back({phase, phase});
+    return runs;
+}
+
+}  // namespace
+
+void read_motion(const Cursor& place, const MachineReading& reading, machine::MachineWall& wall) {
     const auto& scope = reading.scope;
     const Section section(place, machine_keys::motion());
-    present = scope.present(section);
+    const bool acts = scope.present(section);
     machine::WallMotion motion;
     const auto types = geometry::motion_types();
     const Type* type = named_in(place.json(), types);
@@ -77,12 +92,11 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
     }
     const Section of(section.at(type->name), type->fields);
     scope.read(of, type->fields, type->make(&motion.motion));
+    if (auto* press = std::get_if<geometry::Press>(&motion.motion))
+        press->course = read_load(of, "force", "N", scope, press->force);
+    if (auto* drive = std::get_if<geometry::Drive>(&motion.motion))
+        drive->course = read_load(of, "torque", "N m", scope, drive->moment);
     if (auto* flight = std::get_if<geometry::Flight>(&motion.motion)) complete(*flight, of, reading, wall.shape);
-    std::visit(
-        [&](auto& m) {
-            if constexpr (requires { m.number; }) m.number = static_cast<double>(wall.motions.size());
-        },
-        motion.motion);
 
     const auto during = read_during(section, reading);
     const auto from = section.find("from"), to = section.find("to");
@@ -91,7 +105,10 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
         if (!end.json().is_string()) return std::nullopt;
         const auto word = end.json().get<std::string>();
         const auto found = std::ranges::find(reading.phases, word);
-        if (found != reading.phases.end()) return static_cast<std::size_t>(found - reading.phases.begin());
+        if (found != reading.phases.end()) {
+            const auto& copies = reading.copies[static_cast<std::size_t>(found - reading.phases.begin())];
+            return to && end.path() == to->path() ? copies.back() : copies.front();
+        }
         const auto of_name = [](char c) {
             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
         };
@@ -102,14 +119,13 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
         return std::nullopt;
     };
     const auto first = from ? phase_in(*from) : std::nullopt, last = to ? phase_in(*to) : std::nullopt;
+    std::vector<machine::WhileIn> runs = runs_of(during);
     if (!during.empty()) {
-        motion.phases = {*std::ranges::min_element(during), *std::ranges::max_element(during)};
-        if (motion.phases->last - motion.phases->first + 1 != during.size())
-            section.at("during").refuse("phases of a motion follow one another; give it twice");
+        motion.phases = runs.front();
     } else if (first || last) {
         if ((from && !first) || (to && !last))
             place.refuse("\"from\" and \"to\" of a motion are both phases or both times");
-        motion.phases = {first.value_or(0), last.value_or(reading.phases.size())};
+        motion.phases = {first.value_or(0), last.value_or(reading.phase_paths.size())};
         if (motion.phases->last < motion.phases->first)
             place.refuse("the phase of \"to\" comes before that of \"from\"");
     } else {
@@ -121,7 +137,17 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
             motion.motion);
     }
     if (const auto flaw = geometry::flaw(motion.motion); !flaw.empty()) place.refuse(flaw);
-    return motion;
+    if (!acts || geometry::is_still(motion.motion)) return;
+    const std::size_t count = std::max<std::size_t>(1, runs.size());
+    for (std::size_t k = 0; k < count; ++k) {
+        if (!runs.empty()) motion.phases = runs[k];
+        std::visit(
+            [&](auto& m) {
+                if constexpr (requires { m.number; }) m.number = static_cast<double>(wall.motions.size());
+            },
+            motion.motion);
+        wall.motions.push_back(motion);
+    }
 }
 
 }  // namespace grainsweep::campaign

@@ -172,10 +172,37 @@ std::vector<machine::Placed> spheres_in_file(const Cursor& place, const MachineR
         if (!(sphere.radius > 0)) place.refuse(fmt::format("line {}: a diameter must be above 0", table.number()));
         machine::Placed placed{species, sphere, {}};
         const geometry::Quaternion q{value("qw", 1), value("qx", 0), value("qy", 0), value("qz", 0)};
-        if (reading.spec.species[species].shape && geometry::magnitude(q) > 0) placed.orientation = geometry::normalised(q);
+        if (reading.spec.species[species].shape && geometry::magnitude(q) > 0)
+            placed.orientation = geometry::normalised(q);
         all.push_back(placed);
     }
     return all;
+}
+
+/// Enters the name of a single particle. `falls_apart`: it is a glued clump.
+bool take_name(const Cursor& place, MachineReading& reading, bool falls_apart) {
+    const std::string name = reading.scope.text(place);
+    require_name(place, name);
+    if (falls_apart) place.refuse("a glued particle with a shape becomes single spheres, which have no name");
+    for (const auto* names : {&reading.species, &reading.named_particles})
+        if (std::ranges::find(*names, name) != names->end())
+            place.refuse("a species or a particle has this name", name + "_2");
+    reading.named_particles.push_back(name);
+    return true;
+}
+
+/// Returns for each wall with "only" whether it lists the species. read_walls() checks these lists.
+std::vector<bool> walls_of_some_that_touch(const Section& top, const std::string& species, const MachineScope& scope) {
+    std::vector<bool> touches;
+    const auto walls = top.find("walls");
+    if (!walls || !walls->json().is_object()) return touches;
+    for (const auto& [name, value] : walls->json().items()) {
+        if (!value.is_object() || !value.contains("only")) continue;
+        const Cursor only = (*walls)[name]["only"];
+        const auto lists = [&](const Cursor& one) { return one.json().is_string() && scope.text(one) == species; };
+        touches.push_back(only.json().is_array() ? std::ranges::any_of(only.elements(), lists) : lists(only));
+    }
+    return touches;
 }
 
 }  // namespace
@@ -184,6 +211,7 @@ void read_species(const Section& top, MachineReading& reading) {
     const Cursor all = top.at("species");
     if (!all.json().is_object() || all.json().empty()) all.refuse("must be an object of species by name");
     auto& spec = reading.spec;
+    std::vector<std::pair<std::size_t, std::vector<bool>>> kinds;  // material, and walls of some species that touch
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         require_name(place, name);
@@ -201,18 +229,23 @@ void read_species(const Section& top, MachineReading& reading) {
         if (!(reading.densities[material] > 0))
             throw input_error(path_of(top.at("materials").path(), reading.materials[material]), "",
                               fmt::format("key 'density' is missing: particles of '{}' are of it", name));
-        auto at = std::ranges::find(reading.of_particles, material);
-        if (at == reading.of_particles.end()) {
-            if (reading.of_particles.size() == dem::materials_at_most)
-                place.refuse(fmt::format("particles are of at most {} materials", dem::materials_at_most));
+        const auto walls = walls_of_some_that_touch(top, name, reading.scope);
+        std::size_t kind = 0;
+        while (kind < kinds.size() && kinds[kind] != std::pair(material, walls)) ++kind;
+        if (kind == kinds.size()) {
+            if (kind == dem::materials_at_most)
+                place.refuse(
+                    fmt::format("particles are of at most {} materials, and species that walls with \"only\" "
+                                "tell apart count as several",
+                                dem::materials_at_most));
+            kinds.emplace_back(material, walls);
             reading.of_particles.push_back(material);
             spec.materials.push_back(reading.materials[material]);
             spec.densities.push_back(reading.densities[material]);
-            at = reading.of_particles.end() - 1;
         }
         Species species;
         species.name = name;
-        species.material = static_cast<std::uint8_t>(at - reading.of_particles.begin());
+        species.material = static_cast<std::uint8_t>(kind);
         species.diameter = reading.scope.number(section, "diameter", "m", 0, {1e-7, 10});
         if (const auto sizes = section.find("sizes"))
             species.sizes = sizes_of(Section(*sizes, machine_keys::sizes()), reading, species.diameter);
@@ -241,7 +274,11 @@ void read_fills(const Section& top, MachineReading& reading) {
             const std::size_t species = reading.scope.place_in(section.at("species"), reading.species, "species");
             std::vector<machine::Placed> placed;
             if (spheres->json().is_array())
-                for (const auto& one : spheres->elements()) placed.push_back(placed_sphere(one, reading, species));
+                for (const auto& one : spheres->elements()) {
+                    placed.push_back(placed_sphere(one, reading, species));
+                    if (const auto name = Section(one, machine_keys::sphere()).find("name"))
+                        placed.back().named = take_name(*name, reading, glued && reading.spec.species[species].shape);
+                }
             else if (spheres->json().is_string())
                 placed = spheres_in_file(*spheres, reading, species);
             else

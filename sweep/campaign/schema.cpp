@@ -132,6 +132,7 @@ OrderedJson schema_of(const Field& key) {
             schema["$ref"] = "#/$defs/region";
             break;
         case Field::Kind::species:
+        case Field::Kind::particles:
         case Field::Kind::walls:
             schema.update(names_schema());
             break;

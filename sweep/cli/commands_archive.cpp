@@ -504,7 +504,7 @@ int replay(const ReplayRequest& request, Format format) {
     archive.enter_files_of(question);
     const auto stored = archive.result(question.id);
     if (!stored || stored->outcome == Outcome::abandoned) {
-        const bool shows = !request.pictures.page.empty() || !request.pictures.folder.empty();
+        const bool shows = request.pictures.any();
         if (shows && program == nullptr) return show_checkpoint(request, question);
         throw campaign::input_error("CASE", request.id, "has no result to compare with yet");
     }

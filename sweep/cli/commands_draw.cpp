@@ -45,32 +45,19 @@ Inputs inputs_of(const SceneInfo& scene, const std::vector<std::string>& setting
     return inputs;
 }
 
-Json about_machine(const SceneInfo& scene, const Inputs& inputs) {
-    Json shown = Json::array();
-    for (const auto& parameter : scene.parameters)
-        shown.push_back(std::array<Json, 3>{
-            parameter.name, report::to_json(report::to_cell(inputs.find(parameter.name)->second)), parameter.unit});
-    std::string title = scene.shown();
-    std::ranges::replace(title, '_', ' ');
-    return {{"title", title},
-            {"name", scene.shown()},
-            {"case", ""},
-            {"drawing", true},
-            {"subtitle", "the machine before it runs: walls move, particles stay where they are filled in"},
-            {"message", ""},
-            {"inputs", shown},
-            {"results", Json::array()}};
-}
-
 int draw(const DrawRequest& request, report::Format format) {
     check_page_file("-o", request.page, "");
     const auto machine = campaign::machine_named("MACHINE", request.machine);
     const auto scene = campaign::enter_machine(machine);
     const Inputs inputs = inputs_of(*scene, request.settings);
     report::Film film;
-    campaign::draw_machine(*machine, inputs, request.frames,
-                           [&film](const Snapshot& picture, double time) { film.add(picture, time); });
-    const std::string page = report::watch_page(film, about_machine(*scene, inputs));
+    std::string empty = campaign::draw_machine(
+        *machine, inputs, request.frames, [&film](const Snapshot& picture, double time) { film.add(picture, time); });
+    if (!empty.empty()) {
+        empty = "drawn without particles: " + empty;
+        std::cerr << fmt::format("grainsweep: {}: {}\n", scene->shown(), empty);
+    }
+    const std::string page = report::watch_page(film, report::about_machine(*scene, inputs, empty));
     write_page_file(request.page, page);
     if (format == report::Format::json)
         report::write(std::cout, Json{{"machine", scene->shown()},

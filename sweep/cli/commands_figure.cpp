@@ -24,14 +24,15 @@ using store::Table;
 struct FigureRequest {
     std::string database, name;
     FigureFile file;
-    std::string campaign, observable, across, up, colour, axis;
+    std::string campaign, observable, across, up, colour, axis, across_axis;
+    bool lines = false;
 };
 
-/// Whether the axis of the observable is logarithmic; nothing: as the figure has it.
-std::optional<bool> log_axis(const std::string& word) {
+/// Whether an axis is logarithmic; nothing: as the figure has it.
+std::optional<bool> log_axis(const std::string& option, const std::string& word) {
     if (word.empty()) return std::nullopt;
     if (word != "log" && word != "linear")
-        throw campaign::input_error("--axis", fmt::format("'{}'", word), "must be log or linear");
+        throw campaign::input_error(option, fmt::format("'{}'", word), "must be log or linear");
     return word == "log";
 }
 
@@ -62,7 +63,7 @@ int list_figures(const report::FigureSubject& subject, Format format) {
 
 int figure(const FigureRequest& request, Format format) {
     const double width = width_in_mm(request.file);
-    const auto log = log_axis(request.axis);
+    const auto log = log_axis("--axis", request.axis), across_log = log_axis("--across-axis", request.across_axis);
     const auto& output = request.file.output;
     if (!request.name.empty()) (void)figure_type(request.file, request.database);
     if (request.name.empty() && !output.empty())
@@ -70,8 +71,15 @@ int figure(const FigureRequest& request, Format format) {
                                     "name a figure; grainsweep figure DB lists them");
     const Store store(request.database, Store::Mode::read);
     const auto responses = study::read_responses(store, campaign_of_figure(store, request.campaign));
-    const report::FigureSubject subject{
-        store, responses, responses.observable(request.observable), request.across, request.up, request.colour, log};
+    const report::FigureSubject subject{store,
+                                        responses,
+                                        responses.observable(request.observable),
+                                        request.across,
+                                        request.up,
+                                        request.colour,
+                                        log,
+                                        across_log,
+                                        request.lines};
     if (request.name.empty()) return list_figures(subject, format);
     const auto bytes = write_figure(request.file, report::figure_named(subject, request.name), request.database);
     Document shown{.rows = {{"figure", "bytes"}, {{output, static_cast<std::int64_t>(bytes)}}}};
@@ -94,6 +102,10 @@ void declare_figure(Parser& parser, FigureRequest& request) {
     parser.add_option("--axis KIND", request.axis,
                       "axis of the observable, log or linear; default: log where all values are positive and the "
                       "largest is more than a hundred times the smallest");
+    parser.add_option("--across-axis KIND", request.across_axis,
+                      "of cases: axis of the variable along the horizontal one, log or linear");
+    parser.add_flag("--lines", request.lines,
+                    "of cases: means over a factor with 95 % errors, joined; a line per level of --colour");
     parser.add_option("--colour NAME", request.colour, "of cases and curves: the variable that colours them");
 }
 

@@ -1,6 +1,8 @@
 // converge, sensitivity, report: results from stored answers.
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_drawing.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/stored_case.hpp"
@@ -73,6 +75,30 @@ std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t c
                                   shown_scene(question.scene)));
     }
     return films;
+}
+
+/// Returns a drawing of the machine of each campaign that has one, with the inputs of its median case. `campaigns`:
+/// number of campaigns of the store.
+std::vector<report::PageFilm> machines_of(const store::Store& store, std::size_t campaigns) {
+    constexpr std::int64_t pictures = 24;
+    constexpr report::FilmLimits small{.spheres = 3000, .bytes = 300'000};
+    std::vector<report::PageFilm> drawings;
+    for (const auto& [campaign, id, says] : report::cases_to_watch(store, campaigns)) {
+        const campaign::Case stored = store.find_case(id).value();
+        const auto machine = campaign::known_machine(stored.scene);
+        if (machine == nullptr) continue;
+        store.enter_files_of(stored);
+        report::Film film(small);
+        try {
+            const auto empty =
+                campaign::draw_machine(*machine, stored.inputs, pictures,
+                                       [&film](const Snapshot& picture, double time) { film.add(picture, time); });
+            const auto about = report::about_machine(*find_scene(stored.scene), stored.inputs, empty);
+            drawings.push_back({campaign, "", "the machine before it runs", film.bytes(about)});
+        } catch (const campaign::InputError&) {  // a machine that this version reads otherwise
+        }
+    }
+    return drawings;
 }
 
 /// Which campaign and which observable of a database.
@@ -171,11 +197,13 @@ int write_report(const ReportRequest& request, Format format) {
     if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
     if (!to_standard_output)
         for (const auto& name : databases) check_page_file("-o", output, name);
-    const auto films = films_of(stores.front(), request.watched);
+    auto films = films_of(stores.front(), request.watched);
     std::size_t film_bytes = 0;
     for (const auto& film : films) film_bytes += film.bytes.size() / 3 * 4;
     if (!films.empty())
         std::cerr << fmt::format("{} films: {} of the page\n", films.size(), report::size_text(film_bytes));
+    for (const Store& store : stores)
+        for (auto& drawing : machines_of(store, store.campaigns().size())) films.push_back(std::move(drawing));
     if (to_standard_output) {  // the page is the answer: nothing else goes there
         report::write_page(std::cout, sources, films, request.models);
         return 0;

@@ -1,5 +1,5 @@
 // Pictures during a run, for commands that compute a case in this process: --vtk DIR for ParaView, --watch FILE.html
-// for any browser, --frames N for both.
+// for any browser, --frames N for both, --contacts FILE.csv for the contacts of one instant.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -23,6 +23,10 @@ struct PictureRequest {
     std::string folder;  ///< of VTK files; empty: none
     std::string page;    ///< page with the film; empty: none
     std::optional<std::int64_t> frames;
+    std::string contacts;     ///< table of contacts; empty: none
+    std::string contacts_at;  ///< its time; empty: the end
+
+    [[nodiscard]] bool any() const { return !folder.empty() || !page.empty() || !contacts.empty(); }
 };
 
 void declare_pictures(Parser& parser, PictureRequest& request);
@@ -44,6 +48,7 @@ public:
 
 private:
     void shoot(const Scene& scene);
+    void list_contacts(const Scene& scene);
 
     PictureRequest request_;
     campaign::Case question_;
@@ -51,6 +56,9 @@ private:
     std::unique_ptr<report::Film> film_;
     bool any_ = false;
     std::size_t page_bytes_ = 0;
+    std::optional<double> contacts_at_;           // s
+    std::optional<std::size_t> listed_contacts_;  // in the table
+    double listed_at_ = 0;                        // s
 };
 
 }  // namespace grainsweep::cli

@@ -16,9 +16,11 @@ namespace fs = std::filesystem;
 campaign::CaseResult answer_by_program(std::shared_ptr<const campaign::Program> program, const campaign::Case& question,
                                        std::int64_t attempt, std::optional<double> limit_seconds, const fs::path& keep,
                                        const PictureRequest& pictures) {
-    if (!pictures.folder.empty() || !pictures.page.empty())
-        throw campaign::input_error(pictures.folder.empty() ? "--watch" : "--vtk", "",
-                                    "a program has no pictures of its case; --keep DIR keeps its files");
+    if (pictures.any())
+        throw campaign::input_error(!pictures.folder.empty() ? "--vtk"
+                                    : !pictures.page.empty() ? "--watch"
+                                                             : "--contacts",
+                                    "", "a program has no pictures of its case; --keep DIR keeps its files");
     fs::path wanted = keep.empty() ? keep : fs::absolute(keep);
     if (!wanted.empty() && !wanted.has_filename()) wanted = wanted.parent_path();
     if (std::error_code none; !wanted.empty() && fs::exists(fs::symlink_status(wanted, none)))

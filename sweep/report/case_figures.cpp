@@ -1,10 +1,16 @@
 // cases, map, against: the cases themselves.
+#include "solver/plain_text.hpp"
+#include "sweep/campaign/input_error.hpp"
 #include "sweep/report/figure_kinds.hpp"
 #include "sweep/study/cell_means.hpp"
 #include "sweep/study/effects.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -26,6 +32,20 @@ bool is_factor(const FigureSubject& subject, const std::string& name) {
     return std::ranges::count(subject.responses.factors, name, &FactorColumn::name) > 0;
 }
 
+/// Returns the variable along the horizontal axis, with the requested axis.
+Variable across_variable(const FigureSubject& subject, const std::string& name) {
+    auto variable = named_variable(subject, "--across", name);
+    if (!subject.across_log || subject.lines) return variable;  // lines have their own axis
+    if (!variable.levels.empty())
+        throw campaign::input_error("--across-axis", "", fmt::format("'{}' has levels, and no axis of numbers", name));
+    if (*subject.across_log && !(variable.low > 0))
+        throw campaign::input_error(
+            "--across-axis", "'log'",
+            fmt::format("'{}' reaches down to {:.4g}: it has no logarithmic axis", name, variable.low));
+    variable.log = *subject.across_log;
+    return variable;
+}
+
 Chosen chosen_for_cases(const FigureSubject& subject) {
     std::vector<std::string> order;
     for (const auto* factor : by_influence(subject)) order.push_back(factor->name);
@@ -37,7 +57,7 @@ Chosen chosen_for_cases(const FigureSubject& subject) {
     const auto up = !subject.up.empty() ? subject.up : subject.response.name;
     const bool chosen = !subject.across.empty() || !subject.up.empty();
     const auto colour = !subject.colour.empty() ? subject.colour : chosen ? std::string() : next(across);
-    Chosen variables{named_variable(subject, "--across", across), named_variable(subject, "--up", up), std::nullopt};
+    Chosen variables{across_variable(subject, across), named_variable(subject, "--up", up), std::nullopt};
     if (!colour.empty()) variables.colour = named_variable(subject, "--colour", colour);
     return variables;
 }
@@ -63,7 +83,91 @@ void add_failed(plot::Figure& figure, plot::Panel& panel, const std::optional<pl
     if (std::ranges::count(figure.keys, "failed cases", &plot::Key::text) == 0) figure.keys.push_back(failed_key());
 }
 
+/// Numbers of a factor whose levels are numbers, in the order of the levels; empty: words.
+std::vector<double> numbers_of(const std::vector<std::string>& levels) {
+    std::vector<double> numbers;
+    for (const auto& level : levels) {
+        const auto number = number_in(level);
+        if (!number) return {};
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+/// Returns a factor with levels that are numbers as a factor of numbers, so that its axis has their distances.
+FactorColumn with_numbers(FactorColumn factor) {
+    const auto numbers = numbers_of(factor.levels);
+    if (numbers.empty()) return factor;
+    for (double& value : factor.values)
+        if (std::isfinite(value)) value = numbers[static_cast<std::size_t>(value)];
+    const auto range = finite_range(numbers);
+    factor.levels.clear();
+    factor.low = range.low, factor.high = range.high;
+    return factor;
+}
+
+/// Adds the means of a response over a factor in the rows where `counts`: dots, joined, with their errors.
+void add_line(plot::Panel& panel, const FigureSubject& subject, const FactorColumn& across, const Variable& up,
+              const EffectErrors& errors, const std::function<bool(std::size_t)>& counts, plot::Colour tone) {
+    auto values = subject.responses.judged(subject.responses.observable(up.name));
+    std::vector<double> chosen(values.begin(), values.end());
+    for (std::size_t row = 0; row < chosen.size(); ++row)
+        if (!counts(row)) chosen[row] = std::numeric_limits<double>::quiet_NaN();
+    const auto shown = variable_of(across);
+    plot::Line line{{}, {}, tone, 1.2};
+    plot::Whiskers whiskers{{}, {}, {}, tone};
+    for (const auto& bin : main_effect(across, chosen, errors)) {
+        line.x.push_back(shown.shown(bin.at));
+        line.y.push_back(up.shown(bin.mean));
+        whiskers.at.push_back(line.x.back());
+        whiskers.value.push_back(line.y.back());
+        whiskers.half_width.push_back(up.quantity().factor * bin.error);
+    }
+    plot::Points dots{line.x, line.y, {tone}, plot::Points::Shape::dot, 2};
+    panel.marks.emplace_back(std::move(line));
+    panel.marks.emplace_back(std::move(whiskers));
+    panel.marks.emplace_back(std::move(dots));
+}
+
+plot::Figure draw_lines(const FigureSubject& subject) {
+    const auto chosen = chosen_for_cases(subject);
+    if (!is_factor(subject, chosen.across.name))
+        throw campaign::input_error("--across", fmt::format("'{}'", chosen.across.name),
+                                    "lines run over a factor: " + campaign::listed(factor_panels(subject)));
+    const auto& observables = subject.responses.observables;
+    if (std::ranges::find(observables, chosen.up.name, &ResponseColumn::name) == observables.end())
+        throw campaign::input_error("--up", fmt::format("'{}'", chosen.up.name), "lines are means of an observable");
+    auto across = with_numbers(factor_named(subject, chosen.across.name));
+    if (subject.across_log) {
+        if (!across.continuous() || (*subject.across_log && !(across.low > 0)))
+            throw campaign::input_error("--across-axis", "", fmt::format("'{}' has no such axis", across.name));
+        across.log = *subject.across_log;
+    }
+    const auto& up = chosen.up;
+    const auto errors = effect_errors(subject.responses, subject.responses.observable(up.name));
+    plot::Figure figure;
+    plot::Panel panel{variable_of(across).axis(0.04), up.axis(0.04)};
+    const bool by_level = chosen.colour && !chosen.colour->levels.empty();
+    if (!by_level && !subject.colour.empty())
+        throw campaign::input_error("--colour", fmt::format("'{}'", subject.colour),
+                                    "lines differ by a factor with levels, and this one has none");
+    if (by_level) {
+        figure.keys = chosen.colour->keys(plot::Key::Kind::line);
+        for (std::size_t k = 0; k < chosen.colour->levels.size(); ++k)
+            add_line(
+                panel, subject, across, up, errors,
+                [&, k](std::size_t row) { return chosen.colour->values[row] == static_cast<double>(k); },
+                plot::category(k));
+    } else {
+        add_line(
+            panel, subject, across, up, errors, [](std::size_t) { return true; }, plot::blue);
+    }
+    figure.panels = {std::move(panel)};
+    return figure;
+}
+
 plot::Figure draw_cases(const FigureSubject& subject, const PanelNames&) {
+    if (subject.lines) return draw_lines(subject);
     const auto [across, up, colour] = chosen_for_cases(subject);
     plot::Figure figure;
     plot::Panel panel{across.axis(), up.axis()};
@@ -189,7 +293,7 @@ FigureKind cases_figure() {
     return {"cases",      "one variable against another, a point per case, coloured by a third",
             cases_panels, draw_cases,
             true,         true,
-            true};
+            true,         true};
 }
 
 FigureKind map_figure() {

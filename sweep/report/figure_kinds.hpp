@@ -24,6 +24,7 @@ struct FigureKind {
     bool has_choice = false;  ///< has the options across and up
     bool has_colour = false;  ///< has the option colour
     bool has_axis = false;    ///< has the option axis
+    bool has_lines = false;   ///< has the option lines
 };
 
 // Rows, by file.

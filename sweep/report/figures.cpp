@@ -42,6 +42,9 @@ void refuse_useless_choice(const FigureSubject& subject, const FigureKind& kind)
     if (!kind.has_choice && !subject.across.empty()) refuse("--across", subject.across);
     if (!kind.has_choice && !subject.up.empty()) refuse("--up", subject.up);
     if (!kind.has_colour && !subject.colour.empty()) refuse("--colour", subject.colour);
+    if (!kind.has_lines && subject.across_log) refuse("--across-axis", *subject.across_log ? "log" : "linear");
+    if (!kind.has_lines && subject.lines)
+        throw campaign::input_error("--lines", "", fmt::format("the figure '{}' has no such choice", kind.name));
     if (!kind.has_axis && subject.log) refuse("--axis", *subject.log ? "log" : "linear");
 }
 

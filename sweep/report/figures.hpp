@@ -23,6 +23,9 @@ struct FigureSubject {
     std::string across = {}, up = {}, colour = {};
     /// Whether the axis of the response is logarithmic; empty: where what a figure shows of it spans decades.
     std::optional<bool> log = {};
+    /// Whether the axis of `across` is logarithmic; empty: as its factor is divided.
+    std::optional<bool> across_log = {};
+    bool lines = false;  ///< means over `across` with their errors, joined: a line per level of `colour`
 };
 
 struct FigureInfo {

@@ -169,6 +169,23 @@ std::string vtp(const WallSurface& wall, double time) {
     return file("PolyData", "", time, inside, appended);
 }
 
+std::string vtp(const ContactLines& contacts, double time) {
+    const std::size_t n = contacts.ends.size();
+    Appended appended;
+    std::vector<std::array<double, 3>> points;
+    std::vector<std::array<std::int32_t, 2>> lines;
+    for (const auto& [from, to] : contacts.ends) {
+        const auto first = static_cast<std::int32_t>(points.size());
+        lines.push_back({first, first + 1});
+        points.push_back(from), points.push_back(to);
+    }
+    std::string inside = poly_piece(points.size(), 0, n, 0);
+    inside += "<Points>\n" + column(appended, "Points", points) + "</Points>\n";
+    inside += "<CellData>\n" + appended_columns(appended, contacts, "contacts", n) + "</CellData>\n";
+    inside += cells(appended, "Lines", lines) + "</Piece>\n";
+    return file("PolyData", "", time, inside, appended);
+}
+
 std::string_view extension_of(const FlowField& field) {
     check(field);
     return std::ranges::all_of(field.faces, equal_cells) ? ".vti" : ".vtr";

@@ -2,7 +2,7 @@
 //
 // XML with appended raw binary, little endian, 32-bit floats, each block after its length in bytes (64 bits).
 // https://docs.vtk.org, "VTK XML formats".
-//   VTP  particles: one point each and one cell for all of them; walls: lines and triangles
+//   VTP  particles: one point each and one cell for all of them; walls: lines and triangles; contacts: a line each
 //   VTI  a flow on equal cells
 //   VTR  a flow on clustered cells, without resampling, which would lose resolution; all filters of ParaView accept
 //        both
@@ -21,6 +21,8 @@ namespace grainsweep::report {
 /// Returns the bytes of the file. Throws std::invalid_argument if a column has another length than the positions.
 [[nodiscard]] std::string vtp(const Snapshot& snapshot, double time);
 [[nodiscard]] std::string vtp(const WallSurface& wall, double time);
+/// Returns a file of lines with a value of every column for each; the length of a column is checked likewise.
+[[nodiscard]] std::string vtp(const ContactLines& contacts, double time);
 
 /// Returns ".vti" if the cells are equal along each axis (to 1e-9 of it), else ".vtr".
 [[nodiscard]] std::string_view extension_of(const FlowField& field);

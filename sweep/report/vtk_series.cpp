@@ -15,6 +15,8 @@ namespace grainsweep::report {
 namespace {
 
 constexpr std::string_view particles = "particles";
+constexpr std::string_view contacts = "contacts";
+constexpr std::string_view contacts_part = "contacts of particles";  // no name of a wall has blanks
 
 void write_file(const std::filesystem::path& path, const std::string& bytes) {
     std::error_code none;
@@ -78,6 +80,12 @@ void VtkSeries::add(const Snapshot& snapshot, double time) {
         const std::string file = file_of("", ".vtp");
         write_file(folder_ / file, vtp(snapshot, time));
         list(particles, file);
+    }
+    if (snapshot.contacts) {
+        // The number is in the middle, so that no wall of this name has the file.
+        const std::string file = fmt::format("{}_{:04}_{}.vtp", name_, written_, contacts);
+        write_file(folder_ / file, vtp(*snapshot.contacts, time));
+        list(contacts_part, file);
     }
     for (const auto& wall : snapshot.walls) {
         auto& [shown, file] = walls_[wall.name];

@@ -17,9 +17,9 @@ public:
     VtkSeries(std::filesystem::path folder, std::string name);
 
     /// Writes the files of the moment, and NAME.pvd, which names all files so far. Particles are in NAME_0000.vtp,
-    /// NAME_0001.vtp, ...; a flow is in NAME_FIELD_0000.vti or .vtr. A wall is in NAME_WALL_0000.vtp, with the number
-    /// of its last movement, so a fixed wall needs one file. Makes the folder if there is none; the first moment
-    /// removes an older series of this name. Throws SystemError on failure.
+    /// NAME_0001.vtp, ...; their contacts in NAME_0000_contacts.vtp; a flow is in NAME_FIELD_0000.vti or .vtr. A wall
+    /// is in NAME_WALL_0000.vtp, with the number of its last movement, so a fixed wall needs one file. Makes the folder
+    /// if there is none; the first moment removes an older series of this name. Throws SystemError on failure.
     void add(const Snapshot& snapshot, double time);
     /// Keeps only these moments, and removes the files that no other one needs; indices in ascending order.
     void keep(const std::vector<std::size_t>& moments);

@@ -49,6 +49,23 @@ Json about_case(const campaign::Case& question, const campaign::CaseResult& resu
         {"results", results}};
 }
 
+Json about_machine(const SceneInfo& machine, const Inputs& inputs, const std::string& message) {
+    Json shown = Json::array();
+    for (const auto& parameter : machine.parameters)
+        if (const auto found = inputs.find(parameter.name); found != inputs.end())
+            shown.push_back(entry(parameter.name, to_json(to_cell(found->second)), parameter.unit));
+    std::string title = machine.shown();
+    std::ranges::replace(title, '_', ' ');
+    return {{"title", title},
+            {"name", machine.shown()},
+            {"case", ""},
+            {"drawing", true},
+            {"subtitle", "the machine before it runs: walls move, particles stay where they are filled in"},
+            {"message", message},
+            {"inputs", shown},
+            {"results", Json::array()}};
+}
+
 std::string watch_page(const Film& film, const Json& about) {
     if (!film.shows_anything()) throw std::invalid_argument("a film without particles, walls or a flow");
     const auto files = page_files();

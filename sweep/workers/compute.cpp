@@ -170,20 +170,28 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera, Mean& used) {
     Shutter shutter(camera, scene);
     ThreadChoice threads;
     double slice = first_slice;
+    bool awaited = camera.at_moment != nullptr;
+    const auto look_at_moment = [&] {
+        if (awaited) camera.at_moment(scene);
+        awaited = false;
+    };
     while (!scene.finished() && scene.health().stable()) {
         const auto start = Clock::now();
-        const bool cut = shutter.next() < scene.time() + slice;
+        const double next = std::min(shutter.next(), awaited ? camera.moment : std::numeric_limits<double>::infinity());
+        const bool cut = next < scene.time() + slice;
         const int count = scene.use_threads(threads.next(allowed_threads()));
         const double work = scene.particle_steps();
-        scene.advance(cut ? shutter.next() : scene.time() + slice);
+        scene.advance(cut ? next : scene.time() + slice);
         const double took = std::max(seconds_since(start), 1e-6);
         if (took >= least_timed_seconds) threads.note(scene.particle_steps() - work, took);
         used.add(count, took);
         if (!cut) slice *= std::clamp(slice_seconds / took, 0.25, 4.0);
         shutter.look(scene);
+        if (scene.time() >= camera.moment) look_at_moment();
         if (!watch(scene)) return false;
     }
     shutter.last(scene);
+    look_at_moment();
     return true;
 }
 

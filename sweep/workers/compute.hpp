@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct Camera {
     std::function<void(const Scene&)> shoot;  ///< must not change the scene
     /// Keeps only these of the pictures so far; indices in ascending order.
     std::function<void(const std::vector<std::size_t>&)> keep;
+    /// Called once, at the first time step from `moment` (s) on, or at the end of a case that ends before.
+    std::function<void(const Scene&)> at_moment{};
+    double moment = std::numeric_limits<double>::infinity();
 };
 
 /// Computes a case. The outcome is `skipped` if the answer is proven without a run. It is `rejected` if the scene

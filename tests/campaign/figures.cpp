@@ -88,8 +88,40 @@ TEST_F(Figures, VariablesAreChosen) {
                 drawn("mixed.db", "map", "b.pdf", {"--across", "x2", "--up", "x1"}));
 }
 
+/// A lattice with three replicates: a line per level, with the scatter of the replicates.
+const char* levels = R"({"campaign": "levels", "scene": "rehearsal", "factors": [
+  {"name": "x1", "levels": [0.01, 0.1, 1]}, {"name": "x2", "levels": [0.2, 0.8]}],
+  "fixed": {"noise": 0.02}, "design": {"kind": "lattice"}, "replicates": 3})";
+
+TEST_F(Figures, LinesJoinMeansOfALevel) {
+    run(levels, "levels");
+    const std::vector<std::string> chosen = {"--across", "x1", "--up", "y", "--colour", "x2"};
+    auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), chosen.begin(), chosen.end());
+        return more;
+    };
+    const auto points = drawn("levels.db", "cases", "a.svg", chosen);
+    const auto lines = drawn("levels.db", "cases", "b.svg", with({"--lines"}));
+    const auto logarithmic = drawn("levels.db", "cases", "c.svg", with({"--lines", "--across-axis", "log"}));
+    EXPECT_TRUE(points != lines);
+    EXPECT_TRUE(lines != logarithmic);
+    expect_refused({"figure", "levels.db", "map", "-o", "f.svg", "--lines"},
+                   "--lines: the figure 'map' has no such choice");
+    expect_refused({"figure", "levels.db", "map", "-o", "f.svg", "--across-axis", "log"},
+                   "the figure 'map' has no such choice");
+    expect_refused({"figure", "levels.db", "cases", "-o", "f.svg", "--across-axis", "lin"}, "must be log or linear");
+    expect_refused({"figure", "levels.db", "cases", "-o", "f.svg", "--lines", "--across", "y"},
+                   "lines run over a factor: x1, x2");
+    expect_refused({"figure", "levels.db", "cases", "-o", "f.svg", "--lines", "--up", "x2", "--across", "x1"},
+                   "lines are means of an observable");
+}
+
 TEST_F(Figures, WrongUsesAreOneSentenceAndWriteNothing) {
     run(mixed, "mixed");
+    expect_refused({"figure", "mixed.db", "cases", "-o", "f.pdf", "--across", "x1", "--across-axis", "log"},
+                   "'x1' reaches down to 0");
+    expect_refused({"figure", "mixed.db", "cases", "-o", "f.pdf", "--lines", "--colour", "x2"},
+                   "lines differ by a factor with levels");
     expect_refused({"figure", "mixed.db", "efects", "-o", "f.pdf"}, "Did you mean 'effects'?");
     expect_refused({"figure", "mixed.db", "effects:x3", "-o", "f.pdf"},
                    "the panels of 'effects' are x1, x2, behaviour");

@@ -10,6 +10,8 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -148,6 +150,9 @@ TEST(MachineCampaigns, ACaseIsReplayedFromTheDatabaseAlone) {
     EXPECT_THAT(explained.out, HasSubstr("bin"));
     EXPECT_THAT(explained.out, HasSubstr("friction"));
     EXPECT_EQ(run_program({"report", "m.db"}, empty.path()).code, 0);
+    std::ifstream page(empty.path() / "m.html", std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(page), {});
+    EXPECT_NE(text.find(R"(data-case="" data-says="the machine before it runs")"), std::string::npos);
     EXPECT_TRUE(fs::exists(empty / "m.html"));
     EXPECT_EQ(run_program({"verify", "m.db"}, empty.path()).code, 0);
     EXPECT_EQ(run_program({"status", "m.db"}, empty.path()).code, 0);

@@ -1,12 +1,15 @@
 // --vtk of solve and replay, through the real executable.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/support/process.hpp"
 
@@ -88,6 +91,83 @@ TEST(Pictures, OfAStoredCase) {
     EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
     EXPECT_NE(replayed.out.find("equal to the last bit"), std::string::npos);
     EXPECT_EQ(moments(folder / "film/tpms_discharge.pvd").size(), 3U);
+}
+
+/// A heavy sphere on a floor, and a light one on it.
+const char* pile = R"json({"name": "pile",
+  "domain": {"low": [-0.1, -0.1, -0.01], "high": [0.1, 0.1, 0.1]},
+  "materials": {"rock": {"density": 2500, "youngs_modulus": "50 MPa", "poisson_ratio": 0.25}},
+  "contacts": {"restitution": 0.1, "friction": 0.3},
+  "species": {"ball": {"diameter": "4 mm"}},
+  "walls": {"floor": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}},
+  "fill": [{"species": "ball", "spheres": [{"at": [0, 0, 0.002]}, {"at": [0, 0, 0.006]}, {"at": [0.05, 0, 0.05]}]}],
+  "phases": [{"name": "rest", "for": 0.4}],
+  "measure": {"height": {"mean_height": {}, "as": "last"}}})json";
+
+TEST(Pictures, ContactsOfOneInstantAreATable) {
+    const Folder folder;
+    folder.write("pile.json", pile);
+    const auto seen = run_program(
+        {"solve", "pile.json", "--contacts", "early.csv", "--contacts-at", "50ms", "--vtk", "film", "--frames", "3"},
+        folder.path());
+    ASSERT_EQ(seen.code, 0) << seen.err;
+    EXPECT_NE(seen.out.find("early.csv: 2 contacts at 0.05"), std::string::npos) << seen.out;
+    std::istringstream table(contents(folder / "early.csv"));
+    std::string header, line;
+    std::getline(table, header);
+    EXPECT_EQ(header,
+              "first,second,wall,x,y,z,to_x,to_y,to_z,normal_force,overlap,slides,tangential_force,force_x,"
+              "force_y,force_z");
+    const double weight = 2500 * 3.14159265 / 6 * 0.004 * 0.004 * 0.004 * 9.81;
+    int of_floor = 0, of_pair = 0;
+    while (std::getline(table, line)) {
+        std::vector<std::string> cells;
+        std::istringstream row(line);
+        for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+        ASSERT_EQ(cells.size(), 16u);
+        const bool floor = cells[2] == "floor";
+        ++(floor ? of_floor : of_pair);
+        EXPECT_EQ(cells[1].empty(), floor) << line;
+        EXPECT_NEAR(std::stod(cells[9]) / weight, floor ? 2 : 1, 0.05) << line;
+        // To the floor, or to the centre of the other sphere.
+        EXPECT_NEAR(floor ? std::stod(cells[8]) : std::abs(std::stod(cells[8]) - std::stod(cells[5])),
+                    floor ? 0 : 0.004, 1e-4)
+            << line;
+    }
+    EXPECT_EQ(of_floor, 1);
+    EXPECT_EQ(of_pair, 1);
+    EXPECT_NE(contents(folder / "film/pile_0002_contacts.vtp").find("NumberOfLines=\"3\""), std::string::npos);
+    // At the end all have come to rest.
+    EXPECT_NE(run_program({"solve", "pile.json", "--contacts", "end.csv"}, folder.path())
+                  .out.find("end.csv: 3 contacts at 0.4"),
+              std::string::npos);
+    const auto late =
+        run_program({"solve", "pile.json", "--contacts", "late.csv", "--contacts-at", "3"}, folder.path());
+    EXPECT_NE(late.out.find(", where the case ended"), std::string::npos) << late.out;
+    const auto expect_refused = [&](std::vector<std::string> options, const char* sentence) {
+        options.insert(options.begin(), {"solve", "pile.json"});
+        const auto ended = run_program(options, folder.path());
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
+    };
+    expect_refused({"--contacts-at", "1"}, "--contacts-at: got 1; needs --contacts.");
+    expect_refused({"--contacts", "c.csv", "--contacts-at", "3kg"}, "must be a time, such as 0.2s or 150ms");
+    expect_refused({"--contacts", "pile.json"}, "this file exists and is not a table of contacts");
+}
+
+TEST(Pictures, AMachineIsDrawnWhoseFillingDoesNotFit) {
+    const Folder folder;
+    json machine = json::parse(pile);
+    machine["name"] = "full";
+    machine["fill"] = json::parse(R"([{"species": "ball", "count": 1000,
+        "in": {"box": {"low": [0, 0, 0.01], "high": [0.02, 0.02, 0.03]}}}])");
+    folder.write("full.json", machine.dump().c_str());
+    const auto full = run_program({"draw", "full.json", "-o", "full.html"}, folder.path());
+    EXPECT_EQ(full.code, 0) << full.err;
+    EXPECT_NE(full.err.find("grainsweep: full: drawn without particles: ball: "), std::string::npos) << full.err;
+    EXPECT_NE(full.err.find("of 1000 particles fit into the region"), std::string::npos) << full.err;
+    EXPECT_NE(full.out.find("with 0 particles"), std::string::npos) << full.out;
+    EXPECT_TRUE(std::filesystem::exists(folder / "full.html"));
 }
 
 TEST(Pictures, OfNothingAreRefused) {

@@ -1,4 +1,5 @@
-// Installed machines that convey, against conservation of mass and the theory of plastic impacts of a point mass.
+// Installed machines that convey and mix, against conservation of mass and the theory of plastic impacts of a point
+// mass.
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "tests/support/machines.hpp"
@@ -7,6 +8,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 namespace grainsweep::tests::machine_conveying_test {
 
@@ -48,6 +51,67 @@ TEST(MachineConveying, NoGrainLargerThanTheApertureIsScreened) {
     EXPECT_EQ(seen.at("under_coarse"), 0);
     EXPECT_GT(seen.at("passed_fine"), 0.95);
     EXPECT_GT(seen.at("passed_near"), 0.8);
+}
+
+/// Larger grains than by default: fewer of them.
+const Inputs coarse_vanes = {
+    {"diameter", 0.005}, {"clearance", 0.006}, {"particles", std::int64_t{2200}}, {"settle_time", 0.3}};
+
+TEST(MachineConveying, AVaneFeederDeliversSpeedTimesVolumeOfPocketsTimesSolidFraction) {
+    const double pi = std::numbers::pi, density = 2500;
+    const double pockets = pi * (0.046 * 0.046 - 0.01 * 0.01) * 0.024;  // m3, between hub and casing
+    double filling_before = 1;
+    for (const double rpm : {60.0, 200.0}) {
+        Inputs changed = coarse_vanes;
+        changed["speed"] = rpm;
+        const auto seen = answer_with("vane_feeder", changed).scalars;
+        const double solid = seen.at("solid_fraction");
+        EXPECT_NEAR(seen.at("rate") / (rpm / 60 * pockets * density * solid), 1, 0.1) << rpm;
+        EXPECT_TRUE(solid > 0.4 && solid < 0.6) << solid;
+        // Pockets that open for a shorter time fill less.
+        EXPECT_LT(seen.at("filling"), filling_before);
+        filling_before = seen.at("filling");
+        // A grain between the edge of the inlet and a vane 1 mm away would overlap each by 0.4 diameters.
+        EXPECT_LT(seen.at("max_wall_overlap"), 0.15) << rpm;
+    }
+}
+
+TEST(MachineConveying, AVaneFeederWarnsOfGrainsThatDoNotPassItsClearance) {
+    const auto machine = campaign::installed_machine("vane_feeder");
+    const auto kinds = [&](double clearance) {
+        Inputs changed = coarse_vanes;
+        changed["clearance"] = clearance;
+        std::set<std::string> all;
+        for (const Warning& warning : campaign::machine_spec(*machine, inputs_of(*machine, changed)).warnings)
+            all.insert(warning.kind);
+        return all;
+    };
+    EXPECT_TRUE(kinds(0.001).contains("pinched grains"));
+    EXPECT_FALSE(kinds(0.006).contains("pinched grains"));
+    EXPECT_FALSE(kinds(0.006).contains("wide clearance"));
+    EXPECT_TRUE(kinds(0.015).contains("wide clearance"));
+}
+
+TEST(MachineConveying, RibbonsMixByTurnsAtATorqueThatSpeedHardlyChanges) {
+    double mixed_before = 0, torque_before = 0;
+    for (const double rpm : {60.0, 120.0}) {
+        const auto seen = answer_with(
+            "ribbon_mixer",
+            {{"speed", rpm}, {"diameter", 0.006}, {"particles", std::int64_t{1200}}, {"revolutions", std::int64_t{3}}});
+        const double apart = seen.series.at("mixing").front().value, mixed = seen.scalars.at("lacey");
+        EXPECT_LT(apart, 0.25) << rpm;
+        EXPECT_GT(mixed, 0.6) << rpm;
+        EXPECT_EQ(seen.scalars.at("lost"), 0);
+        EXPECT_LT(seen.scalars.at("max_wall_overlap"), 0.2) << "no grain is pinched between ribbon and trough";
+        const double torque = seen.scalars.at("torque");
+        EXPECT_LT(torque, 0) << "the powder resists";
+        EXPECT_NEAR(seen.scalars.at("power") / (-torque * rpm / 60 * 2 * std::numbers::pi), 1, 1e-9);
+        if (mixed_before > 0) {
+            EXPECT_NEAR(mixed, mixed_before, 0.1);
+            EXPECT_NEAR(torque / torque_before, 1, 0.2);
+        }
+        mixed_before = mixed, torque_before = torque;
+    }
 }
 
 }  // namespace grainsweep::tests::machine_conveying_test

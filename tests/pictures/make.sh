@@ -153,6 +153,11 @@ machines() {
             *) "$program" draw "$name" -o "$name.html" ;;
         esac
         sed -i 's#</head>#<style>header, .watch-bar, .watch-choices, .watch-legends {display: none !important}</style></head>#' "$name.html"
+        if [ "$name" = vane_feeder ]; then  # the rotor, not the tall hopper
+            sed -i 's#<meta http-equiv="Content-Security-Policy"[^>]*>##; s#</body>#<script>setTimeout(() => { \
+const { camera } = grainsweepWatch.player; camera.closer(0.35); camera.shift(0, -0.33); grainsweepWatch.player.draw(); }, 2000)</script></body>#' \
+                "$name.html"
+        fi
         shoot "$name.html#t=0.6" "machine_$name" 640 480 0.6
     done
 }

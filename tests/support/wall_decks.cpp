@@ -122,8 +122,8 @@ WallDeck drum_deck() {
     deck.start.spheres = lattice(std::llround(0.35 * pi * radius * radius * length * 0.58 / sphere_volume(grain)),
                                  grain, 0.1, {0, -radius, -radius + 0.1 * grain}, {length, radius, radius},
                                  [radius](const Vec3& x) { return std::hypot(x[1], x[2]) < radius - 0.6 * grain; });
-    deck.start.walls.emplace_back(dem::Cylinder{.axis = {1, 0, 0}, .radius = radius},
-                                  std::vector<geometry::Motion>{dem::Rotation{.axis = {1, 0, 0}, .speed = -omega}});
+    const geometry::Motion turn = dem::Rotation{.axis = {1, 0, 0}, .speed = -omega};
+    deck.start.walls.emplace_back(dem::Cylinder{.axis = {1, 0, 0}, .radius = radius}, std::vector{turn});
     // LIGGGHTS takes the speed at the centre of the sphere for that of the wall's surface.
     deck.running = primitive(
         "drum", fmt::format("xcylinder {:.17g} 0. 0. shear y {:.17g}", radius, -omega * radius / (radius - grain / 2)));

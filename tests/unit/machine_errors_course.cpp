@@ -160,7 +160,8 @@ constexpr WrongMachine wrong[] = {
      "$.measure.mixing.lacey.cells: ", "'lacey' has 'of', 'in', 'cell', 'origin' or 'least'. Did you mean 'cell'?"},
     {"/measure/mixing/as", R"("seres")", "$.measure.mixing.as: ", "Did you mean 'series'?"},
     {"/measure/mixing/as", R"("profile")", "$.measure.mixing.as: ",
-     "must be 'mean', 'last', 'first', 'sd', 'min', 'max', 'largest_magnitude', 'change', 'slope', 'integral' or 'series'."},
+     "must be 'mean', 'last', 'first', 'sd', 'min', 'max', 'largest_magnitude', 'change', 'slope', 'integral' or "
+     "'series'."},
     {"/measure/mixing/during", R"("trun")",
      "$.measure.mixing.during: ", "must be 'fall', 'turn' or 'stop'. Did you mean 'turn'?"},
     {"/measure/mixing/shares", "[0.9, 0.1]", "$.measure.mixing.shares: ", "the first share must be the smaller one."},

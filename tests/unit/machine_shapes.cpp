@@ -1,12 +1,18 @@
 // Shapes of a machine that are made of triangles: areas, faces that are left out, places.
+#include "solver/geometry/weld.hpp"
 #include "solver/machine/shapes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <numbers>
 #include <set>
 #include <stdexcept>
+#include <string>
 
 namespace grainsweep::tests::machine_shapes_test {
 
@@ -98,6 +104,66 @@ endsolid one
     EXPECT_NEAR(mesh.extent(2).low, 1, 1e-12);
     EXPECT_THROW((void)machine::stl_mesh("no stl", 1, 0, {}), std::invalid_argument);
     EXPECT_THROW((void)machine::mesh_of({{Vec3{}, Vec3{}, Vec3{}}}, 0, {}), std::invalid_argument) << "without area";
+}
+
+using machine::Perforated;
+
+TEST(MachineShapes, APerforatedPlateHasHolesAndNoOtherGap) {
+    constexpr double hole = 5e-3, pitch = 8.3e-3, width = 0.033;
+    const double corner = hole / 2 / std::cos(std::numbers::pi / 32);
+    const double hole_area = 16 * corner * corner * std::sin(2 * std::numbers::pi / 32);
+    struct Plate {
+        Perforated::Pattern pattern;
+        double length;
+        int holes;
+    };
+    for (const auto& [pattern, length, holes] :
+         {Plate{Perforated::Pattern::square, 0.1, 36}, Plate{Perforated::Pattern::square, 4 * pitch, 12},
+          Plate{Perforated::Pattern::triangular, 0.1, 46}, Plate{Perforated::Pattern::triangular, 0.047, 18}}) {
+        const Triangles plate =
+            machine::triangles_of(Perforated{{0.1, 0.2, 0.3}, {length, 0, 0}, {0, 0, width}, hole, pitch, pattern});
+        EXPECT_NEAR(area_of(plate), length * width - holes * hole_area, 1e-12);
+        EXPECT_NEAR(norm(vector_area(plate)), area_of(plate), 1e-12) << "no triangle is turned over";
+        // Every side belongs to two triangles, but for those of holes and of the plate's own edges.
+        const auto surface = geometry::weld(plate).surface;
+        std::map<std::array<std::int32_t, 2>, int> sides;
+        for (const auto& triangle : surface.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+                ++sides[{a, b}];
+            }
+        int at_holes = 0;
+        for (const auto& [side, count] : sides) {
+            ASSERT_LE(count, 2);
+            const Vec3 middle = 0.5 * (surface.corners[static_cast<std::size_t>(side[0])] +
+                                       surface.corners[static_cast<std::size_t>(side[1])]) -
+                                Vec3{0.1, 0.2, 0.3};
+            const bool outer = std::min({middle[0], length - middle[0], middle[2], width - middle[2]}) < 1e-9;
+            if (count == 1 && !outer) ++at_holes;
+        }
+        EXPECT_EQ(at_holes, 32 * holes);
+    }
+}
+
+TEST(MachineShapes, WrongPerforatedPlatesAreRefused) {
+    const auto why = [](const Perforated& plate) {
+        try {
+            (void)machine::triangles_of(plate);
+        } catch (const std::invalid_argument& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    using enum Perforated::Pattern;
+    EXPECT_EQ(why({{}, {1, 0, 0}, {0.1, 1, 0}, 0.1, 0.2, square}),
+              "\"along\" and \"across\" of a plate must be at a right angle");
+    EXPECT_EQ(why({{}, {1, 0, 0}, {0, 1, 0}, 0.1, 1.5, square}), "the plate is smaller than a pitch");
+    EXPECT_EQ(why({{}, {1, 0, 0}, {0, 1, 0}, 0.2, 0.2, square}),
+              "holes must leave a web between them: less than 0.99 pitches wide, and 0.86 in a triangular pattern");
+    EXPECT_EQ(why({{}, {1, 0, 0}, {0, 1, 0}, 0.19, 0.2, square}), "");
+    EXPECT_NE(why({{}, {1, 0, 0}, {0, 1, 0}, 0.19, 0.2, triangular}), "");
+    EXPECT_EQ(why({{}, {1, 0, 0}, {0, 1, 0}, 0.001, 0.01, square}),
+              "the plate has more than 5000 holes: make it periodic");
 }
 
 }  // namespace grainsweep::tests::machine_shapes_test

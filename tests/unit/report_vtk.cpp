@@ -143,6 +143,29 @@ TEST(Vtp, OfAWallHoldsItsLinesAndTriangles) {
     EXPECT_EQ(r.offsets, (std::vector<std::int64_t>{2, 3, 6}));
 }
 
+TEST(Vtp, OfContactsHoldsALineForEach) {
+    ContactLines contacts;
+    contacts.ends = {{{{0, 0, 0}, {1, 0, 0}}}, {{{0, 0, 0}, {0, 0, -0.5}}}};
+    contacts.scalars["first"] = {0, 0};
+    contacts.scalars["second"] = {7, -1};
+    contacts.scalars["normal_force"] = {0.25, 2};
+    contacts.vectors["force"] = {{-0.25, 0, 0}, {0, 0, 2}};
+    const std::string file = report::vtp(contacts, 0.5);
+    const Read r = read(file);
+    EXPECT_NE(file.find("NumberOfVerts=\"0\" NumberOfLines=\"2\" NumberOfStrips=\"0\" NumberOfPolys=\"0\""),
+              std::string::npos);
+    EXPECT_LT(file.find("<CellData>"), file.find("Name=\"normal_force\"")) << "a value per line";
+    EXPECT_EQ(r.points, 4U);
+    EXPECT_EQ(r.time, 0.5);
+    EXPECT_EQ(r.columns.at("Points"), (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, -0.5F}));
+    EXPECT_EQ(r.connectivity, (std::vector<std::int64_t>{0, 1, 2, 3}));
+    EXPECT_EQ(r.offsets, (std::vector<std::int64_t>{2, 4}));
+    EXPECT_EQ(r.columns.at("second"), (std::vector<float>{7, -1}));
+    EXPECT_EQ(r.columns.at("force"), (std::vector<float>{-0.25F, 0, 0, 0, 0, 2}));
+    contacts.scalars["first"].pop_back();
+    EXPECT_THROW((void)report::vtp(contacts, 0), std::invalid_argument);
+}
+
 FlowField two_cells(std::vector<double> x) {
     FlowField field;
     field.name = "flow";

@@ -105,11 +105,12 @@ void ClearEngine::judge_passages(const Contacts& contacts) {
 /// Reports frozen spheres in walls that forces move. Between two rebuilds a wall moves by less than a radius.
 void ClearEngine::judge_frozen() {
     std::vector<std::uint32_t> frozen;
-    for (std::uint32_t i = 0; i < p_.size(); ++i)
-        if (!mobile(i)) frozen.push_back(i);
-    for (std::size_t w = 0; w < walls_.size() && !frozen.empty(); ++w) {
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
         const MovingWall& wall = walls_[w].wall;
         if (!wall.free() || !wall.present()) continue;
+        frozen.clear();
+        for (std::uint32_t i = 0; i < p_.size(); ++i)
+            if (!mobile(i) && wall.wall().touches(p_.kind[i])) frozen.push_back(i);
         if (const auto entry = wall.reaches(frozen, p_.position, radii(), deepest_frozen))
             report(flaw_of_frozen(w), frozen[*entry]);
     }

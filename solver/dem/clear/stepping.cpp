@@ -373,9 +373,11 @@ void ClearEngine::list_walls(std::span<const std::uint32_t> fresh_index) {
         contacts.near.clear();
         if (!contacts.wall.present()) continue;
         contacts.wall.find(all, p_.position, radii(), skin_ + beyond_wall_, within);
-        for (const WallTouch& touch : within)
-            if (contacts.near.empty() || contacts.near.back() != all[touch.entry])
-                contacts.near.push_back(all[touch.entry]);
+        for (const WallTouch& touch : within) {
+            const std::uint32_t i = all[touch.entry];
+            const bool again = !contacts.near.empty() && contacts.near.back() == i;
+            if (!again && contacts.wall.wall().touches(p_.kind[i])) contacts.near.push_back(i);
+        }
         contacts.built = wall_time();
         contacts.pose_when_built = contacts.wall.pose();
         carry_touches(contacts, before, fresh_index);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -191,19 +192,23 @@ std::string unsound_contact(const FaultView& s, bool advanced) {
 }
 
 std::string describe_frozen(const FaultView& s) {
-    std::vector<std::uint32_t> frozen;
+    std::vector<std::uint32_t> all, frozen;
     std::vector<Vec3> position(static_cast<std::size_t>(s.field.count));
     std::vector<double> radius(position.size());
     for (std::uint32_t i = 0; i < position.size(); ++i) {
         const Record& r = s.field.records[i];
         if (r.inverse_mass > 0) continue;
-        frozen.push_back(i);
+        all.push_back(i);
         position[i] = position_of(r, s.scale);
         radius[i] = radius_of(r, s.scale);
     }
     for (std::size_t w = 0; w < s.walls.count(); ++w) {
-        if (!s.walls[w].free() || !s.walls[w].present()) continue;
-        if (const auto entry = s.walls[w].reaches(frozen, position, {0, radius}, deepest_frozen))
+        const MovingWall& wall = s.walls[w];
+        if (!wall.free() || !wall.present()) continue;
+        frozen.clear();
+        std::ranges::copy_if(all, std::back_inserter(frozen),
+                             [&](std::uint32_t i) { return wall.wall().touches(s.field.kind[i]); });
+        if (const auto entry = wall.reaches(frozen, position, {0, radius}, deepest_frozen))
             return flaw_of_frozen(w) + where_and_when(s, static_cast<std::int32_t>(frozen[*entry]));
     }
     return {};

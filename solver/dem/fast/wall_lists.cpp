@@ -15,8 +15,9 @@ struct Mobile {
     std::vector<std::uint32_t> index;
     std::vector<Vec3> position;
     std::vector<double> radius;
+    const std::uint8_t* kind;  // of each
 
-    Mobile(const Field& f, const Scale& scale, const Parts& parts) {
+    Mobile(const Field& f, const Scale& scale, const Parts& parts) : kind(f.kind) {
         const auto n = static_cast<std::size_t>(f.count);
         position.resize(n);
         radius.resize(n);
@@ -51,8 +52,10 @@ struct Mobile {
         });
         std::vector<std::uint32_t> all;
         for (int part = 0; part < parts.count(); ++part)
-            for (const WallTouch& touch : within[static_cast<std::size_t>(part)])
-                all.push_back(index[static_cast<std::size_t>(share(part).begin) + touch.entry]);
+            for (const WallTouch& touch : within[static_cast<std::size_t>(part)]) {
+                const std::uint32_t i = index[static_cast<std::size_t>(share(part).begin) + touch.entry];
+                if (wall.wall().touches(kind[i])) all.push_back(i);
+            }
         return all;
     }
 };

@@ -70,7 +70,7 @@ void WallTouches::list(const Field& f, const Walls& walls, const Scale& scale, d
             if_pieced(wall, [&](const auto& shape) {
                 for (std::int32_t i = range.begin; i < range.end; ++i) {
                     const Record& r = f.records[i];
-                    if (!(r.inverse_mass > 0)) continue;
+                    if (!(r.inverse_mass > 0 && wall.wall().touches(f.kind[i]))) continue;
                     mine.of_one.clear();
                     each_image(wall, r, scale, far, [&](const Vec3& x) {
                         shape.near(x, radius_of(r, scale) + far, mine.of_image);

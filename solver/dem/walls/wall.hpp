@@ -6,6 +6,8 @@
 #include "solver/geometry/shapes.hpp"
 
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,6 +45,7 @@ struct Wall {
     std::vector<geometry::Motion> motions;
     Surface surface;
     std::vector<Material> materials;  ///< one for its contacts with each kind of spheres, if there are several kinds
+    std::uint8_t passing = 0;         ///< kinds of spheres that pass through it as if it were not there, bit by bit
     bool present = true;              ///< false: no particle touches it until Engine::change_walls makes it present
     bool integrated = false;          ///< its load is integrated over every step (WallLoad::impulse)
 
@@ -51,6 +54,8 @@ struct Wall {
     requires(std::constructible_from<Shape, S> && !std::same_as<std::remove_cvref_t<S>, Wall>)
         Wall(S&& of, std::vector<geometry::Motion> in_motion = {}, Surface with = {})  // NOLINT: a shape is a wall
         : shape(std::forward<S>(of)), motions(std::move(in_motion)), surface(with) {}
+
+    [[nodiscard]] bool touches(std::size_t kind) const { return (passing >> kind & 1U) == 0; }
 };
 
 /// Returns whether two walls differ at most in motions and presence.

@@ -60,6 +60,7 @@ void write_body(const Wall& wall, Put&& put) {
         put(static_cast<std::uint64_t>(part.has_value()));
         put(part.value_or(0));
     });
+    put(static_cast<std::uint64_t>(wall.passing));
     put(static_cast<std::uint64_t>(wall.materials.size()));
     for (const Material& m : wall.materials) {
         for_each_number(m, put);
@@ -105,6 +106,9 @@ template <class Get>
         get(given), get(value);
         if (given != 0) part = value;
     });
+    std::uint64_t passing = 0;
+    get(passing);
+    wall.passing = static_cast<std::uint8_t>(passing);
     std::uint64_t materials = 0;
     get(materials);
     for (std::uint64_t k = 0; k < materials; ++k) {

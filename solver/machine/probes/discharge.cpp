@@ -49,7 +49,8 @@ private:
 };
 
 constexpr std::array discharge_options = {
-    of_option, option("from", Field::Kind::region, "", "the region that they left, by centres; default: the domain")};
+    species_option,
+    option("from", Field::Kind::region, "", "the region that they left, by centres; default: the domain")};
 
 template <Discharge of>
 std::unique_ptr<machine::Probe> make_discharge(const Options& given) {

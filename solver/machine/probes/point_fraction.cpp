@@ -24,7 +24,8 @@ Neighbourhood spheres_in(const Frame& frame, const Selection& selection) {
     const double largest = state.radius.empty() ? 1 : std::ranges::max(state.radius);
     Neighbourhood found(frame.domain, 2 * largest);
     for (std::size_t i = 0; i < spheres.size(); ++i)
-        if (state.mobile[i] != 0 && selection.species_counts(spheres, i)) found.add(state.position[i], state.radius[i]);
+        if (state.mobile[i] != 0 && selection.is_of(spheres, spheres.id(i)))
+            found.add(state.position[i], state.radius[i]);
     return found;
 }
 

@@ -55,7 +55,7 @@ private:
 
 constexpr std::array<std::string_view, 3> quantities = {"solid_volume", "velocity", "share"};
 constexpr std::array profile_options = {
-    of_option,
+    species_option,
     in_option,
     option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
     option("from", Field::Kind::quantity, "m", "where the first bin begins", true),

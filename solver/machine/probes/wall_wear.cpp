@@ -69,10 +69,10 @@ private:
 constexpr Field worn_wall = option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true);
 constexpr Field worn_in =
     option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
-constexpr std::array wear_options = {worn_wall, of_option, worn_in};
+constexpr std::array wear_options = {worn_wall, species_option, worn_in};
 constexpr std::array wear_profile_options = {
     worn_wall,
-    of_option,
+    species_option,
     worn_in,
     option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
     option("from", Field::Kind::quantity, "m", "where the first bin begins", true),

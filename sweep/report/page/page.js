@@ -209,6 +209,7 @@ function comparedLine(campaign, response, other) {
 function render() {
   if (selected && selected.index !== chosen.campaign) closeCase();
   const model = open(chosen.campaign), { campaign } = model;
+  if (filmPlayer) filmPlayer.showMachine(campaign.name);
   const response = campaign.observables[chosen.observable], other = compared(response);
   const settled = response && response.history.count > 0;  // values in the prefix of the design
   const answered = settled || (response && model.responses[chosen.observable].values.some(Number.isFinite));

@@ -5,6 +5,8 @@ const wallColours = {
   hot_wall: [0.85, 0.2, 0.15, 0.2], cold_wall: [0.15, 0.4, 0.9, 0.2], blade: [0.55, 0.62, 0.72, 0.5],
   base: [0.66, 0.68, 0.71, 0.5], cell: [0.45, 0.62, 0.82, 0.3],
 };
+// Copies of a repeated wall are called NAME_1, NAME_2, ...
+const wallGroup = (name) => name.replace(/_[0-9]+$/, "");
 const wallColour = (name) => wallColours[name] || [0.6, 0.63, 0.68, 0.28];
 
 class Painter {
@@ -16,7 +18,7 @@ class Painter {
     this.gl = gl;
     this.programs = programs(gl);
     this.extent = extent;
-    this.show = { frozen: true, walls: true, slice: -1, plane: 1, size: 1, cut: null, chosen: -1, colours: [0, 1] };
+    this.show = { frozen: true, walls: true, hidden: new Set(), slice: -1, plane: 1, size: 1, cut: null, chosen: -1, colours: [0, 1] };
     if (film.spheres > 0) this.prepareSpheres();
     this.prepareWalls();
     this.prepareSlices();
@@ -227,7 +229,7 @@ class Painter {
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
     gl.depthMask(false);
     for (const wall of this.walls) {
-      if (frame < wall.first || frame >= wall.first + wall.frames) continue;
+      if (frame < wall.first || frame >= wall.first + wall.frames || this.show.hidden.has(wallGroup(wall.name))) continue;
       if (wall.moves) this.moveWall(wall, frame, next, between);
       this.attribute(input.corner, wall.places, 3, gl.FLOAT, false, 0, 0, 0);
       this.attribute(input.normal, wall.normals, 3, gl.FLOAT, false, 0, 0, 0);

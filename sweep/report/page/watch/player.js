@@ -72,6 +72,8 @@ class Player {
     if (film.walls.length > 0) {
       this.wallTick = tick("walls", true, (on) => { painter.show.walls = on; this.draw(); });
       shown.push(this.wallTick);
+      const named = this.wallsByName();
+      if (named) shown.push(named);
     }
     if (film.spheres > 0 && film.mobile.includes(0)) {
       this.frozenTick = tick("frozen spheres", true, (on) => { painter.show.frozen = on; this.draw(); });
@@ -84,6 +86,14 @@ class Player {
     const looks = Object.keys(views).map((name, k) => button(name, () => this.look(name), { title: `key ${k + 1}` }));
     shown.push(el("span", { class: "watch-views" }, looks), button("save picture", () => this.savePicture(), { title: "save this view as a PNG file" }));
     return el("div", { class: "watch-choices" }, shown);
+  }
+
+  // A switch for each wall; the copies of a repeated one share theirs.
+  wallsByName() {
+    const names = [...new Set(this.film.walls.map((wall) => wallGroup(wall.name)))].sort(), { hidden } = this.painter.show;
+    if (names.length < 2) return null;
+    const ticks = names.map((name) => tick(words(name), true, (on) => { if (on) hidden.delete(name); else hidden.add(name); this.draw(); }));
+    return el("details", { class: "watch-walls" }, el("summary", {}, "walls by name"), el("div", {}, ticks));
   }
 
   // Small spheres are enlarged; the factor stands beside the slider.
@@ -180,8 +190,9 @@ class Player {
 
   look(name) { this.camera.look(name); this.draw(); }
 
+  // A picture that stands is one of a simulated time; only a playing film moves between two of them.
   show(moment) {
-    this.moment = Math.min(this.film.frames - 1, Math.max(0, moment));
+    this.moment = Math.min(this.film.frames - 1, Math.max(0, Math.round(moment)));
     this.slider.value = this.moment;
     this.draw();
   }
@@ -260,7 +271,11 @@ class Player {
 
   // ---- playing
 
-  toggle() { if (this.playing) this.pause(); else this.start(); }
+  toggle() {
+    if (!this.playing) { this.start(); return; }
+    this.pause();
+    this.show(this.moment);
+  }
 
   start() {
     if (this.film.frames < 2) return;
@@ -379,6 +394,7 @@ class Player {
 
   // With the film beside it.
   savePicture() {
+    if (!this.playing) this.show(this.moment);
     this.paint();
     saveTogether(`${this.film.header.about.name || "particles"}.png`, [...this.stages.querySelectorAll(".watch-canvas")]);
   }

@@ -6,6 +6,25 @@ for (const script of document.querySelectorAll("script[data-film]")) {
 }
 let player = null;
 
+// The machine of the shown campaign, above its figures.
+let drawn = { campaign: null };
+async function showMachine(campaign) {
+  if (drawn.campaign === campaign) return;
+  if (drawn.player) drawn.player.free();
+  if (drawn.place) drawn.place.remove();
+  const mine = drawn = { campaign }, film = films.get(`${campaign}/`);
+  if (!film) return;
+  const stage = el("div", { class: "watch-inset" });
+  mine.place = el("section", { class: "watch-machine", "aria-label": film.says }, stage);
+  document.getElementById("page").before(mine.place);
+  try {
+    const read = await readFilm(film.script.textContent);
+    if (drawn === mine) mine.player = new Player(stage, read);
+  } catch (error) {
+    stage.replaceChildren(el("p", { class: "watch-problem" }, `This drawing cannot be shown: ${error.message}`));
+  }
+}
+
 function close() {
   if (player) player.free();
   player = null;
@@ -32,4 +51,4 @@ function showFilm({ campaign, case_id: id }) {
 }
 document.addEventListener("grainsweep:case", (event) => showFilm(event.detail));
 document.addEventListener("grainsweep:closed", () => showFilm({}));
-window.grainsweepWatch = { hasFilm: (campaign, id) => films.has(`${campaign}/${id}`), films: () => [...films.values()] };
+window.grainsweepWatch = { hasFilm: (campaign, id) => films.has(`${campaign}/${id}`), films: () => [...films.values()].filter((film) => film.id !== ""), showMachine };

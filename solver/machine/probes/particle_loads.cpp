@@ -1,0 +1,123 @@
+// Loads of contacts on particles: the sum of the forces, and of the moments about the particles' own centres of mass.
+//
+// Of several particles together. Contacts between two of them add no force. Weight is not included, so a particle at
+// rest bears the opposite of its weight.
+#include "solver/machine/contact_place.hpp"
+#include "solver/machine/probe.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::cross;
+using geometry::operator+;
+using geometry::operator*;
+
+constexpr std::array<std::string_view, 3> partner_words = {"all", "particles", "walls"};
+
+/// Contacts of particles that count, with partners of one kind.
+class LoadedParticles {
+public:
+    explicit LoadedParticles(const Options& options) : selection_(options), from_(options.word("from", "all")) {}
+
+    /// Calls visit(contact, sphere, sign) for each sphere that bears the contact: the force acts on it times `sign`.
+    template <class Visit>
+    void each(const Frame& frame, Visit&& visit) const {
+        for (const auto& contact : frame.contacts) {
+            if (from_ == (contact.second < 0 ? "particles" : "walls")) continue;
+            if (holds(frame, contact.first)) visit(contact, contact.first, 1.0);
+            if (contact.second >= 0 && holds(frame, contact.second)) visit(contact, contact.second, -1.0);
+        }
+    }
+    /// Returns whether a particle that counts is present.
+    [[nodiscard]] bool any(const Frame& frame) const {
+        for (std::size_t i = 0; i < frame.size(); ++i)
+            if (selection_.holds(frame, i)) return true;
+        return false;
+    }
+
+private:
+    [[nodiscard]] bool holds(const Frame& frame, std::int32_t sphere) const {
+        return selection_.holds(frame, particle_place_of(frame, sphere));
+    }
+
+    Selection selection_;
+    std::string from_;
+};
+
+Vec3 force_of(const dem::ContactForce& contact) {
+    return contact.normal_force * contact.normal + contact.tangential_force;
+}
+
+/// Returns the moment of a contact about the centre of mass of the particle that a sphere is, or is a member of.
+Vec3 moment_on(const Frame& frame, const dem::ContactForce& contact, std::int32_t sphere, double sign) {
+    const dem::State& spheres = frame.spheres();
+    const std::size_t at = place_of(frame, sphere);
+    const double arm = spheres.radius[at] - contact.overlap / 2;
+    Vec3 lever = -sign * arm * contact.normal;
+    if (frame.members != nullptr) {
+        const Vec3& centre = frame.state.position[particle_place_of(frame, sphere)];
+        lever = lever + frame.domain.separation(spheres.position[at], centre);
+    }
+    return sign * (cross(lever, force_of(contact)) + contact.rolling_moment);
+}
+
+class ParticleForce final : public machine::Probe {
+public:
+    explicit ParticleForce(const Options& options) : loaded_(options), along_(options.vector("along")) {}
+    double look(const Frame& frame) override {
+        if (!loaded_.any(frame)) return undefined;
+        double sum = 0;
+        loaded_.each(frame, [&](const dem::ContactForce& contact, std::int32_t, double sign) {
+            sum += sign * geometry::dot(force_of(contact), along_);
+        });
+        return sum;
+    }
+
+private:
+    LoadedParticles loaded_;
+    Vec3 along_;
+};
+
+class ParticleTorque final : public machine::Probe {
+public:
+    explicit ParticleTorque(const Options& options) : loaded_(options), axis_(options.vector("axis")) {}
+    double look(const Frame& frame) override {
+        if (!loaded_.any(frame)) return undefined;
+        double sum = 0;
+        loaded_.each(frame, [&](const dem::ContactForce& contact, std::int32_t sphere, double sign) {
+            sum += geometry::dot(moment_on(frame, contact, sphere, sign), axis_);
+        });
+        return sum;
+    }
+
+private:
+    LoadedParticles loaded_;
+    Vec3 axis_;
+};
+
+constexpr Field partner_option =
+    option("from", Field::Kind::word, "", "contacts with 'all', 'particles' or 'walls'; default: 'all'", false, {},
+           partner_words);
+constexpr std::array particle_force_options = {
+    of_option, in_option, option("along", Field::Kind::direction, "", "the direction of the component", true),
+    partner_option};
+constexpr std::array particle_torque_options = {
+    of_option, in_option, option("axis", Field::Kind::direction, "", "the axis, right hand", true), partner_option};
+
+}  // namespace
+
+ProbeInfo particle_force() {
+    return {"particle_force",          "N", "force of contacts on particles, a component", particle_force_options,
+            make_probe<ParticleForce>, true};
+}
+ProbeInfo particle_torque() {
+    return {"particle_torque",
+            "N m",
+            "moment of contacts on particles about their centres of mass, a component",
+            particle_torque_options,
+            make_probe<ParticleTorque>,
+            true};
+}
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,128 @@
+// "phases" of a machine: their order, groups that repeat, lengths and conditions.
+#include "sweep/campaign/machine_reading.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace grainsweep::campaign {
+namespace {
+
+machine::Until read_until(const Cursor& place, const MachineReading& reading) {
+    const Section section(place, machine_keys::until());
+    const auto rest = section.find("at_rest"), empty = section.find("empty"), stops = section.find("flow_stops"),
+               measure = section.find("measure");
+    if (static_cast<int>(rest.has_value()) + static_cast<int>(empty.has_value()) + static_cast<int>(stops.has_value()) +
+            static_cast<int>(measure.has_value()) !=
+        1)
+        place.refuse("a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\" and \"measure\"");
+    if (!measure)
+        for (const char* key : {"above", "below"})
+            if (const auto end = section.find(key)) end->refuse("it belongs to \"measure\"");
+    if (rest) {
+        if (!rest->flag()) rest->refuse("must be true");
+        if (!(geometry::norm(reading.spec.gravity) > 0)) rest->refuse("without gravity nothing comes to rest");
+        return machine::AtRest{};
+    }
+    if (empty) return machine::Empty{reading.scope.region(*empty)};
+    if (stops) {
+        machine::FlowStops condition;
+        reading.scope.read(Section(*stops, machine_keys::flow_stops()), machine_keys::flow_stops(), &condition);
+        return condition;
+    }
+    const std::size_t number = measure_named(*measure, reading);
+    const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
+    return machine::Passes{number, value, above};
+}
+
+/// Calls visit(section) for every phase, in the order in which they happen; a group repeats its phases.
+template <class Visit>
+void each_phase(const Cursor& list, MachineReading& reading, const Visit& visit) {
+    for (const auto& place : list.elements()) {
+        const Section section(place, machine_keys::phase());
+        const auto group = section.find("phases"), repeat = section.find("repeat"), as = section.find("as");
+        if (!group) {
+            for (const auto& other : {repeat, as})
+                if (other) other->refuse("it belongs to a group: beside \"phases\"");
+            visit(section);
+            continue;
+        }
+        for (const Field& key : machine_keys::phase())
+            if (const auto other = section.find(key.name);
+                other && key.name != "phases" && key.name != "repeat" && key.name != "as")
+                other->refuse("a group of phases has only \"phases\", \"repeat\" and \"as\"");
+        if (!repeat) throw input_error(place.path(), "", "key 'repeat' is missing");
+        if (reading.scope.whole(*repeat, {0, most_repeats}) == 0)
+            repeat->refuse("a group of phases happens at least once");
+        if (group->elements().empty()) group->refuse("a group needs a phase");
+        for_every_one(section, reading, [&](std::int64_t, std::int64_t) { each_phase(*group, reading, visit); });
+    }
+}
+
+}  // namespace
+
+machine::Phases MachineReading::phases_in(const Cursor& place) const {
+    machine::Phases all;
+    for (const std::size_t name : scope.places_in(place, phases, "phase"))
+        all.insert(all.end(), copies[name].begin(), copies[name].end());
+    std::ranges::sort(all);
+    return all;
+}
+
+machine::Phases read_during(const Section& section, const MachineReading& reading) {
+    const auto place = section.find("during");
+    return place ? reading.phases_in(*place) : machine::Phases{};
+}
+
+void read_phase_names(const Section& top, MachineReading& reading) {
+    const Cursor all = top.at("phases");
+    std::vector<std::string> paths;  // of the names
+    each_phase(all, reading, [&](const Section& section) {
+        const auto given = section.find("name");
+        if (!given) throw input_error(section.place().path(), "", "key 'name' is missing: by which others name it");
+        const Cursor& name = *given;
+        require_name(name, name.text());
+        const auto found = std::ranges::find(reading.phases, name.text());
+        const auto number = static_cast<std::size_t>(found - reading.phases.begin());
+        if (found == reading.phases.end()) {
+            reading.phases.push_back(name.text());
+            reading.copies.emplace_back();
+            paths.push_back(section.place().path());
+        } else if (paths[number] != section.place().path()) {
+            name.refuse("a phase of this name is there twice");
+        }
+        if (reading.phase_paths.size() == most_repeats)
+            all.refuse(fmt::format("a machine has at most {} phases, repeated ones included", most_repeats));
+        reading.copies[number].push_back(reading.phase_paths.size());
+        reading.phase_paths.push_back(section.place().path());
+    });
+    if (reading.phases.empty()) all.refuse("a machine needs a phase");
+}
+
+void read_phases(const Section& top, MachineReading& reading) {
+    each_phase(top.at("phases"), reading, [&](const Section& section) {
+        const Cursor& place = section.place();
+        const auto given = section.find("for"), until = section.find("until"), most = section.find("at_most");
+        if (given.has_value() == until.has_value() || until.has_value() != most.has_value())
+            place.refuse("a phase lasts \"for\" a time, or \"until\" something and \"at_most\" a time");
+        machine::Phase phase;
+        phase.name = section.at("name").text();
+        phase.duration = reading.scope.number(given ? *given : *most, "s", no_negative_number);
+        if (const auto frames = section.find("frames")) {
+            phase.frames = reading.scope.whole(*frames, {1, 1e6});
+            phase.frames_given = true;
+        }
+        if (until && !until->json().is_array()) phase.until.push_back(read_until(*until, reading));
+        if (until && until->json().is_array())
+            for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
+        if (until && phase.until.empty()) until->refuse("must name a condition");
+        reading.scope.read(section, machine_keys::phase(), &phase);
+        if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");
+        if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
+        if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
+        reading.spec.phases.push_back(std::move(phase));
+    });
+}
+
+}  // namespace grainsweep::campaign

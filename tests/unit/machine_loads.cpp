@@ -1,0 +1,96 @@
+// Loads of pressed and driven walls that change with time, against the integral of their course.
+#include "tests/support/machines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace grainsweep::tests::machine_loads_test {
+
+using nlohmann::json;
+
+/// A plate of 0.1 kg that nothing touches, beside one grain.
+json lone_plate(const char* motion) {
+    json machine = json::parse(R"json({
+      "name": "plate",
+      "gravity": [0, 0, 0],
+      "domain": {"low": [-1, -1, -1], "high": [1, 1, 1]},
+      "materials": {"rock": {"density": 2500, "youngs_modulus": "5 MPa", "poisson_ratio": 0.25}},
+      "species": {"sand": {"diameter": "3 mm"}},
+      "walls": {"plate": {"rectangle": {"corner": [-0.01, -0.01, 0], "along": [0.02, 0, 0], "across": [0, 0.02, 0]}}},
+      "fill": [{"species": "sand", "spheres": [{"at": [0.5, 0.5, 0.5]}]}],
+      "phases": [{"name": "wait", "for": 0.1, "frames": 1}, {"name": "push", "for": 0.4, "frames": 1}],
+      "measure": {
+        "way": {"wall_position": {"wall": "plate", "along": [0, 0, 1]}, "as": "last"},
+        "turned": {"wall_angle": {"wall": "plate", "axis": [0, 0, 1]}, "as": "last"}
+      }
+    })json");
+    machine["walls"]["plate"]["motion"] = {json::parse(motion)};
+    return machine;
+}
+
+double seen_in(const char* motion, const char* measure, const char* precision) {
+    return answer_of(spec_of(lone_plate(motion), {{"precision", precision}})).scalars.at(measure);
+}
+
+TEST(MachineLoads, APressFollowsTheCourseOfItsForce) {
+    // F = 0.05 N/s t from the phase on: way = 0.05 t^3/(6 m).
+    const double expected = 0.05 * std::pow(0.4, 3) / (6 * 0.1);
+    for (const char* precision : {"double", "mixed"}) {
+        const double table =
+            seen_in(R"json({"press": {"along": [0, 0, 1], "times": [0, 1], "forces": [0, 0.05], "mass": 0.1,
+            "speed_at_most": 1}, "from": "push"})json",
+                    "way", precision);
+        EXPECT_NEAR(table / expected, 1, 2e-3) << precision;
+        const double expression =
+            seen_in(R"json({"press": {"along": [0, 0, 1], "force": "0.05*t", "every": 0.05, "until": 1,
+            "mass": 0.1, "speed_at_most": 1}, "from": "push"})json",
+                    "way", precision);
+        EXPECT_NEAR(expression, table, 1e-9) << precision;
+    }
+}
+
+TEST(MachineLoads, BeforeAndAfterItsTimesALoadIsThatOfTheEnds) {
+    // 0.02 N until 0.2 s, then falling to 0 at 0.3 s.
+    const double m = 0.1, f = 0.02, speed = f * 0.2 / m + f * 0.1 / (2 * m);
+    const double way = f / (2 * m) * 0.04 + f * 0.2 / m * 0.1 + f / m * (0.01 / 2 - 0.001 / (6 * 0.1)) + speed * 0.1;
+    EXPECT_NEAR(seen_in(R"json({"press": {"along": [0, 0, 1], "times": [0.2, 0.3], "forces": [0.02, 0], "mass": 0.1,
+                    "speed_at_most": 1}, "from": "push"})json",
+                        "way", "double") /
+                    way,
+                1, 2e-3);
+}
+
+TEST(MachineLoads, ADriveFollowsTheCourseOfItsTorque) {
+    const double expected = 1e-4 * std::pow(0.4, 3) / (6 * 1e-5);
+    for (const char* precision : {"double", "mixed"})
+        EXPECT_NEAR(seen_in(R"json({"drive": {"axis": [0, 0, 1], "times": [0, 2], "torques": [0, 2e-4], "inertia": 1e-5,
+                        "speed_at_most": 10}, "from": "push"})json",
+                            "turned", precision) /
+                        expected,
+                    1, 2e-3)
+            << precision;
+}
+
+TEST(MachineLoads, ACheckpointKeepsTheCourse) {
+    const json machine =
+        lone_plate(R"json({"press": {"along": [0, 0, 1], "force": "0.05*sin(20*t)", "every": 0.01, "until": 0.5,
+        "mass": 0.1, "speed_at_most": 1
+}
+})json");
+    for (const char* precision : {"double", "mixed"}) {
+        const auto spec = spec_of(machine, {{"precision", precision}});
+        machine::Run first(spec, 1), second(spec, 1);
+        first.advance(0.2);
+        std::vector<std::byte> saved;
+        first.save(saved);
+        second.restore(saved);
+        second.advance(1e9);
+        Observations observations;
+        second.observe(observations);
+        EXPECT_EQ(text_of(observations), text_of(answer_of(spec))) << precision;
+    }
+}
+
+}  // namespace grainsweep::tests::machine_loads_test
