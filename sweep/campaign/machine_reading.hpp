@@ -67,7 +67,9 @@ void refuse_rolling_shapes(const Section& top, const MachineReading& reading);
 /// Returns the index of a measurement of one value, by its name.
 [[nodiscard]] std::size_t measure_named(const Cursor& place, const MachineReading& reading);
 [[nodiscard]] std::string_view unit_of_measure(const MachineReading& reading, std::size_t measure);
-/// Reads "shares", "while" and "since" of a measurement, after all measurements have their numbers.
+/// Reads "scale" of a measurement or its time.
+void read_scale(const Cursor& place, const MachineReading& reading, machine::Scale& into);
+/// Reads what counts of a measurement and how it is shown, after all measurements have their numbers.
 void read_counting(const Cursor& place, const MachineReading& reading, machine::Measure& into);
 /// Returns names and observables of "measure", in the order of the names.
 [[nodiscard]] std::vector<ObservableSpec> machine_observables(const Section& top);
