@@ -20,7 +20,8 @@ public:
         double momentum = 0, mass = 0, fastest = 0;
         selection_.each(frame, [&](std::size_t i) {
             const auto& of = what == VelocityOf::spin ? frame.state.angular_velocity : frame.state.velocity;
-            const double component = geometry::dot(of[i], along_), own = frame.mass(i);
+            const double component = geometry::dot(of[i], along_);
+            const double own = what == VelocityOf::fastest ? 1 : frame.mass(i);
             momentum += own * component;
             mass += own;
             fastest = std::max(fastest, component);
