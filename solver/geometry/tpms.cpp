@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 
 namespace grainsweep::geometry {
 namespace {
@@ -52,26 +50,6 @@ double tpms_value(TpmsCell cell, const std::array<double, 3>& bar) {
                    (w.c2x * w.c2y + w.c2y * w.c2z + w.c2z * w.c2x);
     }
     return 0;
-}
-
-TpmsShell::TpmsShell(TpmsCell cell, int side, double edge, double thickness)
-    : cell_(cell), side_(side), edge_(edge), level_(0) {
-    if (side != 1 && side != -1) throw std::invalid_argument("the kept side of a TPMS cell is +1 or -1");
-    if (!(edge > 0) || !(thickness > 0) || !(thickness < edge / 2))
-        throw std::invalid_argument("the shell of a TPMS cell must be thicker than 0 and thinner than half the edge");
-    level_ = traits(cell).shell_gradient * std::sin(std::numbers::pi * thickness / edge);
-}
-
-double TpmsShell::value(const std::array<double, 3>& point) const {
-    std::array<double, 3> bar{};
-    for (std::size_t k = 0; k < 3; ++k) bar[k] = std::numbers::pi * (2 * point[k] / edge_ - 1);
-    return tpms_value(cell_, bar);
-}
-
-TpmsRegion TpmsShell::classify(const std::array<double, 3>& point) const {
-    const double f = side_ * value(point);
-    if (f > level_) return TpmsRegion::kept;
-    return f < -level_ ? TpmsRegion::deleted : TpmsRegion::wall;
 }
 
 }  // namespace grainsweep::geometry

@@ -1,4 +1,4 @@
-// Triply periodic minimal surfaces as level sets, and the solid shell around them.
+// Triply periodic minimal surfaces as level sets, and the thickness of a shell around them.
 //
 // A cell is the cube [0, L]^3. With bar coordinates X = pi (2 x / L - 1) in [-pi, pi] the surface is f(X) = 0:
 //   schwarz_p  cos X + cos Y + cos Z
@@ -28,46 +28,22 @@ struct TpmsTraits {
     std::string_view name;
     int kept_side;          ///< default sign of f on the side that is filled with powder
     double shell_gradient;  ///< G: C = G sin(pi t / L)
+    double steepest;        ///< largest |grad f| anywhere, rounded up
 };
 
 /// Traits of the six cells, in the order of the study's table 2.
 inline constexpr std::array<TpmsTraits, 6> tpms_cells = {{
-    {TpmsCell::schwarz_p, "schwarz_p", +1, 1.0},
-    {TpmsCell::gyroid, "gyroid", +1, 1.4142135623730951},
-    {TpmsCell::diamond, "diamond", +1, 1.0},
-    {TpmsCell::iwp, "iwp", -1, 3.3166},
-    {TpmsCell::frd, "frd", -1, 2.483},
-    {TpmsCell::i2y, "i2y", -1, 3.246},
+    {TpmsCell::schwarz_p, "schwarz_p", +1, 1.0, 1.7321},
+    {TpmsCell::gyroid, "gyroid", +1, 1.4142135623730951, 1.7321},
+    {TpmsCell::diamond, "diamond", +1, 1.0, 1.2248},
+    {TpmsCell::iwp, "iwp", -1, 3.3166, 5.1962},
+    {TpmsCell::frd, "frd", -1, 2.483, 7.041},
+    {TpmsCell::i2y, "i2y", -1, 3.246, 6.9283},
 }};
 
 [[nodiscard]] const TpmsTraits& traits(TpmsCell cell);
 
 /// Returns f at the bar coordinates X, Y, Z (any real numbers; the period is 2 pi).
 [[nodiscard]] double tpms_value(TpmsCell cell, const std::array<double, 3>& bar);
-
-/// Region of a point: in the shell (|f| <= C), on the kept side, or on the other side.
-enum class TpmsRegion { wall, kept, deleted };
-
-/// Shell of one cell of edge L and thickness t (same unit).
-class TpmsShell {
-public:
-    /// side: +1 or -1, the sign of f on the kept side. Throws std::invalid_argument unless
-    /// 0 < thickness < edge/2 (above it C would decrease).
-    TpmsShell(TpmsCell cell, int side, double edge, double thickness);
-
-    /// Returns f at a point of the cell, in the unit of the edge.
-    [[nodiscard]] double value(const std::array<double, 3>& point) const;
-    [[nodiscard]] TpmsRegion classify(const std::array<double, 3>& point) const;
-    /// Returns C, half the range of f inside the shell.
-    [[nodiscard]] double level() const { return level_; }
-    [[nodiscard]] int side() const { return side_; }
-    [[nodiscard]] double edge() const { return edge_; }
-
-private:
-    TpmsCell cell_;
-    int side_;
-    double edge_;
-    double level_;
-};
 
 }  // namespace grainsweep::geometry

@@ -1,11 +1,13 @@
 #include "solver/machine/drawing.hpp"
 
+#include "solver/geometry/level_surface.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/scenes/dem_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace grainsweep::machine {
 namespace {
@@ -39,17 +41,6 @@ void add_circle(WallSurface& frame, const Vec3& centre, const Vec3& axis, double
     for (std::int32_t k = 0; k < sides; ++k) add_line(frame, corner(k), corner(k + 1));
 }
 
-void add_box(WallSurface& frame, const Bounds& box) {
-    for (unsigned corner = 0; corner < 8; ++corner)
-        for (std::size_t k = 0; k < 3; ++k) {
-            if ((corner >> k & 1U) != 0) continue;
-            Vec3 from{}, to{};
-            for (std::size_t a = 0; a < 3; ++a) from[a] = to[a] = (corner >> a & 1U) != 0 ? box.high[a] : box.low[a];
-            to[k] = box.high[k];
-            add_line(frame, from, to);
-        }
-}
-
 /// A cylinder along an axis as far as it is in the domain.
 Region::Round within(Region::Round round, const geometry::Domain& domain) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -71,7 +62,7 @@ void add_region(WallSurface& frame, const Region& region, const geometry::Domain
             seen.low[k] = std::max(seen.low[k], domain.low[k]);
             seen.high[k] = std::min(seen.high[k], domain.high[k]);
         }
-        add_box(frame, seen);
+        add_box(seen.low, seen.high, frame);
     } else if (const auto* given = std::get_if<Region::Round>(&region.is)) {
         const Region::Round cut = within(*given, domain);
         const Region::Round* round = &cut;
@@ -91,7 +82,7 @@ void add_region(WallSurface& frame, const Region& region, const geometry::Domain
             surface_of(dem::Wall(geometry::Plane{half->point, half->normal}), "", domain.low, domain.high, 0);
         for (std::size_t k = 0; k < polygon.corners.size(); ++k)
             add_line(frame, polygon.corners[k], polygon.corners[(k + 1) % polygon.corners.size()]);
-    } else {
+    } else if (!std::holds_alternative<Region::LevelSet>(region.is)) {  // the box beside it shows where
         const auto* all = std::get_if<Region::All>(&region.is);
         const auto* any = std::get_if<Region::Any>(&region.is);
         const auto& parts = all != nullptr ? all->of : any != nullptr ? any->of : std::get<Region::Not>(region.is).of;
@@ -129,6 +120,20 @@ void add_particles(Snapshot& picture, const Filled& filled) {
 
 }  // namespace
 
+void add_cells(Snapshot& picture, const Spec& spec) {
+    constexpr int grid = 36;
+    for (const auto& fill : spec.fills) {
+        const auto* cut = std::get_if<Cut>(&fill);
+        const auto* set = cut != nullptr && cut->glued ? std::get_if<Region::LevelSet>(&cut->in.is) : nullptr;
+        if (set == nullptr) continue;
+        const Region above{Region::LevelSet{set->cell, set->edge, 0, 1, set->at}};
+        const Vec3 high{cut->edge, cut->edge, cut->edge};
+        auto surface = geometry::level_surface([&](const Vec3& x) { return above.depth(x); }, {}, high, grid);
+        picture.walls.push_back({"cell", std::move(surface.corners), std::move(surface.triangles), {}});
+        add_box({}, high, picture.walls.back());
+    }
+}
+
 double longest_time(const Spec& spec) {
     double end = 0;
     for (const Phase& phase : spec.phases) end += phase.duration;
@@ -158,6 +163,7 @@ Snapshot drawing(const Spec& spec, const Filled& filled, double time) {
     for (const auto& fill : spec.fills)
         if (const auto* region = std::get_if<Fill>(&fill))
             add_frame(picture, "fill_" + std::to_string(++fills), region->in, spec.domain);
+    add_cells(picture, spec);
     for (const Feed& feed : spec.feeds) add_frame(picture, feed.name, feed.through, spec.domain);
     for (const Measure& measure : spec.measures) {
         if (const auto region = measure.options.region("in")) add_frame(picture, measure.name, *region, spec.domain);

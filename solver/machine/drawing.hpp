@@ -10,6 +10,8 @@ namespace grainsweep::machine {
 
 /// Draws the machine, assuming the longest duration of every phase. `time`: s since the start.
 [[nodiscard]] Snapshot drawing(const Spec& spec, const Filled& filled, double time);
+/// Adds the middle surfaces of shells of level sets that glued spheres fill, with the edges of their packing.
+void add_cells(Snapshot& picture, const Spec& spec);
 /// Returns the time at which the last phase ends, s.
 [[nodiscard]] double longest_time(const Spec& spec);
 

@@ -3,14 +3,18 @@
 #include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/particles/near_pairs.hpp"
+#include "solver/particles/packing.hpp"
+#include "solver/particles/reach.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace grainsweep::machine {
 namespace {
@@ -19,12 +23,35 @@ constexpr double golden = 1 / std::numbers::phi;
 constexpr std::uint64_t first_orientations = std::uint64_t{1} << 40U;  // streams behind those of Draws::uniform()
 
 using geometry::norm;
+using geometry::operator*;
 using kit::require;
 using kit::sentence;
 
 class Filler {
 public:
-    Filler(const Spec& spec, std::uint64_t seed, Filled& into) : spec_(spec), seed_(seed), into_(into) {}
+    Filler(const Spec& spec, std::uint64_t seed, Artefacts* artefacts, Filled& into)
+        : spec_(spec), seed_(seed), artefacts_(artefacts), into_(into) {}
+
+    void operator()(const Cut& cut) {
+        const double d = spec_.species[cut.species].diameter;
+        const auto& packing = packing_of(cut, cut.edge / d);
+        std::vector<Vec3> centres;  // diameters
+        for (const Vec3& x : packing.positions)
+            if (cut.in.contains(d * x)) centres.push_back(x);
+        if (!cut.name.empty()) {
+            into_.counts[cut.name + "_particles"] = static_cast<std::int64_t>(centres.size());
+            into_.counts[cut.name + "_packing"] = static_cast<std::int64_t>(packing.positions.size());
+        }
+        require(cut.glued || !centres.empty(),
+                spec_.species[cut.species].name +
+                    ": no sphere of the packing has its centre in the region, which leaves no space for a mobile "
+                    "particle");
+        if (cut.tight) leave_out_of_reach(centres, d, 1 - *cut.tight);
+        for (const Vec3& x : centres)
+            into_.add(spec_, cut.species, {.position = d * x, .radius = d / 2, .mobile = !cut.glued}, {1, 0, 0, 0});
+        begin_ = into_.spheres.size();
+        ++number_;
+    }
 
     void operator()(const std::vector<Placed>& placed) {
         for (const Placed& one : placed) {
@@ -82,6 +109,45 @@ private:
         std::size_t begin, end;
     };
 
+    /// The packing of a cut; the next cut may be from the same one.
+    const particles::Packing& packing_of(const Cut& cut, double edge) {
+        if (!cut.centres.empty()) {
+            key_.clear();
+            return packing_ = particles::read_packing(cut.centres, edge);
+        }
+        const auto seed = cut.seed > 0 ? static_cast<std::uint64_t>(cut.seed) : seed_;
+        const particles::PackingRequest request{.edge = edge, .fraction = cut.fraction, .seed = seed};
+        const std::string key = particles::packing_key(request);
+        if (std::exchange(key_, key) == key) return packing_;
+        if (const auto kept = artefacts_ != nullptr ? artefacts_->get(key) : std::nullopt) {
+            try {
+                packing_ = particles::decode_packing(*kept);
+                if (packing_.edge == edge && !packing_.positions.empty()) return packing_;
+            } catch (const std::invalid_argument&) {  // packed anew below
+            }
+        }
+        packing_ = particles::random_close_packing(request);
+        if (artefacts_ != nullptr) artefacts_->put(key, particles::encode(packing_));
+        return packing_;
+    }
+
+    /// Keeps the glued centres that a mobile sphere can touch, and the outermost ones along each axis, so that the box
+    /// around all spheres does not change. In diameters d; `closest` as in particles/reach.hpp.
+    void leave_out_of_reach(std::vector<Vec3>& glued, double d, double closest) const {
+        if (glued.empty()) return;
+        std::vector<Vec3> mobile;
+        for (const dem::Sphere& sphere : into_.spheres)
+            if (sphere.mobile) mobile.push_back((1 / d) * sphere.position);
+        auto stays = particles::reachable(glued, mobile, closest);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto [low, high] = std::ranges::minmax_element(glued, {}, [axis](const Vec3& x) { return x[axis]; });
+            stays[static_cast<std::size_t>(low - glued.begin())] = true;
+            stays[static_cast<std::size_t>(high - glued.begin())] = true;
+        }
+        std::size_t next = 0;
+        std::erase_if(glued, [&](const Vec3&) { return !stays[next++]; });
+    }
+
     [[nodiscard]] std::size_t filling_of(std::size_t i) const {
         for (std::size_t k = 0; k < loose_.size(); ++k)
             if (i >= loose_[k].begin && i < loose_[k].end) return k;
@@ -98,7 +164,10 @@ private:
 
     const Spec& spec_;
     std::uint64_t seed_;
+    Artefacts* artefacts_;
     Filled& into_;
+    std::string key_;
+    particles::Packing packing_;
     std::uint64_t number_ = 0;
     std::size_t begin_ = 0;
     std::vector<Range> loose_;
@@ -131,6 +200,10 @@ void require_out_of_wall(const Spec& spec, std::size_t number, const dem::Moving
 }
 
 }  // namespace
+
+void require_packing(std::string_view csv) {
+    (void)particles::read_packing(csv, std::numeric_limits<double>::infinity());
+}
 
 void require_out_of_walls(const Spec& spec) {
     constexpr std::size_t many = 100;  // spheres for which walls are prepared
@@ -269,10 +342,10 @@ bool Obstacles::touch(const Vec3& centre, double radius) const {
     return !touches.empty();
 }
 
-Filled filled(const Spec& spec, std::uint64_t seed) {
+Filled filled(const Spec& spec, std::uint64_t seed, Artefacts* artefacts) {
     Filled all;
-    Filler filler(spec, seed, all);
-    for (const auto& fill : spec.fills) std::visit(filler, fill);
+    Filler filler(spec, seed, artefacts, all);
+    for (const auto& fill : spec.fills) std::visit([&](const auto& one) { filler(one); }, fill);
     filler.require_apart();
     return all;
 }

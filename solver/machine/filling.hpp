@@ -3,8 +3,12 @@
 
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/machine/spec.hpp"
+#include "solver/scenes/scene.hpp"
 
 #include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::machine {
@@ -19,6 +23,8 @@ struct Filled {
     std::vector<std::uint8_t> species;  ///< of each sphere
     std::vector<dem::Body> bodies{};    ///< clumps that move
     std::vector<std::int32_t> named{};  ///< index of the (first) sphere of each named particle
+    /// Numbers of spheres that cuts with a name have, also of those left out, and that their whole packings have.
+    std::map<std::string, std::int64_t> counts{};
 
     /// Adds a particle of a species; of a clump `sphere` is the sphere of equal volume, and `orientation` that of the
     /// frame in which its shape is described. One that does not move becomes single spheres.
@@ -27,8 +33,12 @@ struct Filled {
 
 /// Fills the machine, one filling after the other. Particles lie completely in their region, and touch no wall that is
 /// present in the first phase and no particle of another filling. The result depends on the spec and the seed alone.
-/// Throws std::invalid_argument with one sentence if a filling does not fit.
-[[nodiscard]] Filled filled(const Spec& spec, std::uint64_t seed);
+/// Throws std::invalid_argument with one sentence if a filling does not fit. `artefacts` may have its packings;
+/// nullptr: they are made.
+[[nodiscard]] Filled filled(const Spec& spec, std::uint64_t seed, Artefacts* artefacts = nullptr);
+
+/// Throws std::invalid_argument with one sentence unless a text is the file of a packing, of any edge.
+void require_packing(std::string_view csv);
 
 /// Throws std::invalid_argument with one sentence if a placed sphere starts deeper in a wall than deepest_at_start.
 void require_out_of_walls(const Spec& spec);

@@ -66,12 +66,27 @@ double duration_of(const Spec& spec, const Phases& during) {
     return seconds;
 }
 
+/// Returns the expected number of spheres of a cut, from a grid of points.
+double count_of(const Spec& spec, const Cut& cut) {
+    constexpr int grid = 20;
+    int inside = 0;
+    const auto place = [&](int k) { return cut.edge * (k % grid + 0.5) / grid; };
+    for (int k = 0; k < grid * grid * grid; ++k)
+        inside += cut.in.contains({place(k), place(k / grid), place(k / grid / grid)}) ? 1 : 0;
+    const double edge = cut.edge / spec.species[cut.species].diameter;
+    const double all = cut.centres.empty() ? cut.fraction * 6 / std::numbers::pi * std::pow(edge, 3)
+                                           : static_cast<double>(std::ranges::count(cut.centres, '\n')) - 1;
+    return all * inside / std::pow(grid, 3);
+}
+
 /// Returns the number of spheres that would cost as much as the particles at the start.
 double spheres_at_start(const Spec& spec) {
     double count = 0;
     for (const auto& fill : spec.fills) {
         if (const auto* region = std::get_if<Fill>(&fill))
             count += static_cast<double>(region->count) * cost_in(spec, region->mix);
+        else if (const auto* cut = std::get_if<Cut>(&fill))
+            count += cut->glued ? 0 : count_of(spec, *cut);
         else
             for (const Placed& one : std::get<std::vector<Placed>>(fill)) count += cost_of(spec.species[one.species]);
     }
@@ -254,7 +269,7 @@ void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
         const Phase& phase = spec.phases[p];
         const bool waits = std::ranges::all_of(phase.until, [](const Until& until) {
             return std::holds_alternative<AtRest>(until) || std::holds_alternative<FlowStops>(until) ||
-                   std::holds_alternative<Empty>(until);
+                   std::holds_alternative<Empty>(until) || std::holds_alternative<Quiet>(until);
         });
         if (phase.until.empty() || !waits) continue;
         const auto feed =

@@ -135,6 +135,16 @@ constexpr std::array all_reductions = {
     ReductionInfo{"series", "value at every frame", Shape::series},
     ReductionInfo{"profile", "mean over the frames, bin by bin", Shape::profile},
     ReductionInfo{"last_profile", "at the last frame", Shape::profile, nullptr, nullptr, {}, true},
+    ReductionInfo{"profiles",
+                  "at every frame, with its time; bins with the value 0 are left out",
+                  Shape::profile,
+                  nullptr,
+                  nullptr,
+                  {},
+                  false,
+                  nullptr,
+                  nullptr,
+                  true},
 };
 
 }  // namespace

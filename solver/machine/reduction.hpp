@@ -29,6 +29,7 @@ struct ReductionInfo {
     /// The same for a probe whose value is integrated over the steps. Null: values at frames are used.
     double (*of_intervals)(std::span<const FrameInterval>) = nullptr;
     double (*error_of_intervals)(std::span<const FrameInterval>) = nullptr;
+    bool every = false;  ///< of a profile: all frames, with their times
 };
 
 [[nodiscard]] std::span<const ReductionInfo> reduction_catalogue();

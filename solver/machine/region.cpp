@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <numbers>
+#include <tuple>
 
 namespace grainsweep::machine {
 
@@ -34,12 +37,27 @@ constexpr std::array half_fields = {
     fields::vector<&HalfRegion::point>("point", "m", "on the plane"),
     needed(fields::direction<&HalfRegion::normal>("normal", "direction, into the region")),
 };
+constexpr auto cell_words = [] {
+    std::array<std::string_view, geometry::tpms_cells.size()> words;
+    for (std::size_t k = 0; k < words.size(); ++k) words[k] = geometry::tpms_cells[k].name;
+    return words;
+}();
+constexpr std::array level_set_rows = {
+    fields::choice<&LevelSetRegion::cell>("cell", "the surface", cell_words, "\"schwarz_p\""),
+    needed(fields::quantity<&LevelSetRegion::edge>("edge", "m", "of a cubic cell")),
+    fields::quantity<&LevelSetRegion::shell>("shell", "m", "largest thickness of the shell around the surface"),
+    fields::quantity<&LevelSetRegion::side>("side", "1",
+                                            "0: the shell; 1 or -1: where the level set has this sign, outside of it"),
+    fields::vector<&LevelSetRegion::at>("at", "m", "lowest corner of a cell"),
+};
 using AnyKind = decltype(Region::is);
 constexpr std::array region_rows = {
     fields::alternative<AnyKind, BoxRegion>("box", "a box", box_fields_of_region),
     fields::alternative<AnyKind, RoundRegion>("cylinder", "a cylinder, hollow or not", round_fields),
     fields::alternative<AnyKind, BallRegion>("ball", "a ball", ball_fields),
     fields::alternative<AnyKind, HalfRegion>("half_space", "one side of a plane", half_fields),
+    fields::alternative<AnyKind, LevelSetRegion>(
+        "level_set", "the shell of a triply periodic minimal surface, or one side of it, without end", level_set_rows),
     fields::alternative<AnyKind, AllRegions>("all", "a list of regions: where all of them are"),
     fields::alternative<AnyKind, AnyRegion>("any", "a list of regions: where one of them is"),
     fields::alternative<AnyKind, NotRegion>("not", "a region: outside of it"),
@@ -67,6 +85,19 @@ double depth_in(const Region::Ball& ball, const Vec3& x) {
 
 double depth_in(const Region::Half& half, const Vec3& x) {
     return dot(x - half.point, half.normal);
+}
+
+double level_of(const Region::LevelSet& set) {
+    return geometry::traits(set.cell).shell_gradient * std::sin(std::numbers::pi * set.shell / set.edge);
+}
+
+/// By the steepest gradient of f. Points of the shell's surface belong to the shell.
+double depth_in(const Region::LevelSet& set, const Vec3& x) {
+    Vec3 bar{};
+    for (std::size_t k = 0; k < 3; ++k) bar[k] = std::numbers::pi * (2 * (x[k] - set.at[k]) / set.edge - 1);
+    const double f = geometry::tpms_value(set.cell, bar), level = level_of(set);
+    const double inside = set.side == 0 ? level - std::abs(f) : set.side * f - std::nextafter(level, infinity);
+    return inside * set.edge / (2 * std::numbers::pi * geometry::traits(set.cell).steepest);
 }
 
 double depth_in(const Region::All& all, const Vec3& x) {
@@ -113,6 +144,10 @@ Bounds bounds_of(const Region::Half& half) {
         if (half.normal[k] == -1) bounds.high[k] = half.point[k];
     }
     return bounds;
+}
+
+Bounds bounds_of(const Region::LevelSet&) {
+    return everywhere;
 }
 
 Bounds bounds_of(const Region::All& all) {
@@ -167,6 +202,13 @@ const char* flaw_of(const Region::Half& half) {
     return is_unit(half.normal) ? "" : "the normal of a half space must not be 0";
 }
 
+const char* flaw_of(const Region::LevelSet& set) {
+    if (set.side != 0 && std::abs(set.side) != 1) return "\"side\" of a level set is 1, -1, or 0 for its shell";
+    if (!(set.edge > 0)) return "a level set needs an edge above 0";
+    return set.shell >= 0 && set.shell < set.edge / 2 ? ""
+                                                      : "the shell of a level set must be thinner than half the edge";
+}
+
 template <class Combined>
 const char* flaw_of(const Combined& combined) {
     if (combined.of.empty()) return "a combination of regions needs one";
@@ -179,6 +221,45 @@ const char* flaw_of(const Combined& combined) {
 
 std::span<const Type> region_types() {
     return region_rows;
+}
+
+/// Diameter of the largest disc in the face z = 0 of the unit cube, on a grid of its points.
+static double widest_disc(const Region& region) {
+    constexpr std::size_t points = 256, far = 4 * points;
+    // Steps along its row to the nearest point outside; more than any distance where there is none.
+    std::vector<std::size_t> steps(points * points, far);
+    for (std::size_t row = 0; row < points; ++row) {
+        std::size_t* const here = &steps[row * points];
+        const auto at = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / points; };
+        for (std::size_t k = 0; k < points; ++k)
+            here[k] = !region.contains({at(k), at(row), 0}) ? 0 : k > 0 ? here[k - 1] + 1 : far;
+        for (std::size_t k = points - 1; k-- > 0;) here[k] = std::min(here[k], here[k + 1] + 1);
+    }
+    // Then over all rows: squared distance = steps along that row squared + rows between squared.
+    std::size_t largest = 0;
+    for (std::size_t place = 0; place < points * points; ++place) {
+        std::size_t nearest = steps[place] * steps[place];
+        for (std::size_t row = 0; row < points && nearest > largest; ++row) {
+            const std::size_t along = steps[row * points + place % points], own = place / points;
+            const std::size_t across = row > own ? row - own : own - row;
+            nearest = std::min(nearest, along * along + across * across);
+        }
+        largest = std::max(largest, nearest);
+    }
+    return std::min(1.0, 2 * std::sqrt(static_cast<double>(largest)) / points);
+}
+
+std::span<const Field> level_set_fields() {
+    return level_set_rows;
+}
+
+double LevelSetRegion::opening() const {
+    static std::map<std::tuple<geometry::TpmsCell, double, double>, double> known;
+    static std::mutex guard;
+    const std::lock_guard lock(guard);
+    const auto [found, fresh] = known.try_emplace({cell, side, shell / edge}, 0);
+    if (fresh) found->second = widest_disc({{LevelSetRegion{cell, 1, shell / edge, side}}});
+    return edge * found->second;
 }
 
 double Region::depth(const Vec3& x) const {

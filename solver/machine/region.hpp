@@ -5,6 +5,7 @@
 #pragma once
 
 #include "solver/field.hpp"
+#include "solver/geometry/tpms.hpp"
 #include "solver/geometry/vector.hpp"
 
 #include <optional>
@@ -41,6 +42,18 @@ struct HalfRegion {
     Vec3 point{};
     Vec3 normal{0, 0, 1};  ///< unit
 };
+/// Shell around a triply periodic minimal surface f = 0 (geometry/tpms.hpp), or the space on one side of the shell.
+struct LevelSetRegion {
+    geometry::TpmsCell cell = geometry::TpmsCell::schwarz_p;
+    double edge = 0;   ///< of a cubic cell, m
+    double shell = 0;  ///< largest thickness of the shell, m
+    double side = 0;   ///< 0: the shell; +1 or -1: where f has this sign, outside the shell
+    Vec3 at{};         ///< lowest corner of a cell
+
+    /// Returns the diameter of the largest disc of the region in the lower face of a cell, with its centre in the face,
+    /// m; 0 if the face is closed. The error is below edge/256. Remembers it, because it takes milliseconds.
+    [[nodiscard]] double opening() const;
+};
 struct AllRegions {
     std::vector<Region> of;
 };
@@ -57,17 +70,23 @@ struct Region {
     using Round = RoundRegion;
     using Ball = BallRegion;
     using Half = HalfRegion;
+    using LevelSet = LevelSetRegion;
     using All = AllRegions;
     using Any = AnyRegion;
     using Not = NotRegion;
-    std::variant<Box, Round, Ball, Half, All, Any, Not> is;
+    std::variant<Box, Round, Ball, Half, LevelSet, All, Any, Not> is;
 
     /// Returns the depth of a point, m.
     [[nodiscard]] double depth(const Vec3& x) const;
-    [[nodiscard]] bool contains(const Vec3& x) const { return depth(x) >= 0; }
+    [[nodiscard]] bool contains(const Vec3& x) const {
+        const auto* box = std::get_if<Box>(&is);
+        if (box == nullptr) return depth(x) >= 0;
+        const auto along = [&](std::size_t k) { return x[k] >= box->low[k] && x[k] <= box->high[k]; };
+        return along(0) && along(1) && along(2);
+    }
     /// Returns a box around the region; infinite where the region is infinite.
     [[nodiscard]] Bounds bounds() const;
-    /// Returns its volume, m3; empty for half spaces and combinations.
+    /// Returns its volume, m3; empty for half spaces, level sets and combinations.
     [[nodiscard]] std::optional<double> volume() const;
     /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] const char* flaw() const;
@@ -76,5 +95,6 @@ struct Region {
 /// Returns the alternatives of Region::is with the fields that a file sets. Combinations have none: they are made of
 /// regions.
 [[nodiscard]] std::span<const Type> region_types();
+[[nodiscard]] std::span<const Field> level_set_fields();
 
 }  // namespace grainsweep::machine

@@ -1,9 +1,11 @@
 #include "solver/machine/run.hpp"
 
+#include "solver/machine/drawing.hpp"
 #include "solver/machine/frames.hpp"
 #include "solver/machine/plan.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/kit/checkpoint.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 #include "solver/scenes/kit/slices.hpp"
 
 #include <algorithm>
@@ -18,7 +20,7 @@ namespace {
 using geometry::dot;
 using geometry::norm;
 
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0004ULL;  // "grnsmc", version 4
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0005ULL;  // "grnsmc", version 5
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
@@ -35,10 +37,22 @@ double falling_time(const Spec& spec) {
     return std::sqrt(mean_diameter(spec) / norm(spec.gravity));
 }
 
+/// Whole steps of the time between two frames of a phase.
+std::int64_t every_steps(const Phase& phase, double step) {
+    return std::max<std::int64_t>(1, std::llround(std::min(std::floor(phase.every / step), 1e15)));
+}
+
 }  // namespace
 
-Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_.measures.size()) {
-    const Filled start = filled(spec_, seed);
+Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
+    : spec_(std::move(spec)), records_(spec_.measures.size()) {
+    const Filled start = filled(spec_, seed, artefacts);
+    counts_ = start.counts;
+    for (Phase& phase : spec_.phases)
+        if (phase.every > 0) phase.frames = (steps_in(phase.duration) - 1) / every_steps(phase, spec_.time_step) + 1;
+    for (const auto& fill : spec_.fills)
+        if (const auto* cut = std::get_if<Cut>(&fill); cut != nullptr && cut->tight)
+            tight_ = std::min(*cut->tight, tight_.value_or(*cut->tight));
     dem::Setup setup = setup_of(spec_, start);
     for (const Feed& feed : spec_.feeds)
         for (const auto& [number, share] : feed.mix) {
@@ -91,6 +105,7 @@ std::int64_t Run::steps_in(double seconds) const {
 }
 
 std::int64_t Run::step_of_frame(std::int64_t frame) const {
+    if (phase().every > 0) return phase_begin_ + std::min(frame * every_steps(phase(), spec_.time_step), phase_steps());
     const double share = share_of_frame(frame, phase().frames, scattered_[phase_]);
     return phase_begin_ + std::llround(share * static_cast<double>(phase_steps()));
 }
@@ -170,6 +185,7 @@ void Run::begin_phase() {
     peak_wall_overlap_ = peak_wall_overlap();
     engine_->forget_peak_overlap();
     if (phase_ > 0) engine_->change_walls(walls_in(spec_, phase_, times_));
+    seen_at_ = -1;
     judge_walls_that_appear();
     if (!health().stable()) return;
     feed();
@@ -203,6 +219,7 @@ void Run::stop_here() {
     if (step_ > phase_begin_) feed();
     const bool framed = frame_ <= phase().frames && step_ == step_of_frame(frame_);
     if (framed) take_frame();
+    if (!health().stable()) return;
     const std::uint8_t condition = checks_here(framed) ? ended_by() : std::uint8_t{0};
     if (condition > 0 && !framed) take_frame();
     if (condition > 0 || step_ == phase_begin_ + phase_steps()) end_phase(condition);
@@ -242,10 +259,14 @@ std::vector<dem::Wall> Run::walls_now() const {
 void Run::add(const Filled& added) {
     if (added.spheres.empty()) return;
     engine_->add(added.spheres, added.bodies);
+    seen_at_ = -1;
     enlist(added);
 }
 
 Frame Run::look(Contacts contacts) {
+    if (step_ == seen_at_ && (contacts == Contacts::none || contacts == seen_)) return frame();
+    seen_at_ = contacts == Contacts::of_step ? -1 : step_;
+    seen_ = contacts;
     engine_->state(spheres_);
     if (has_clumps()) gather_particles();
     contacts_.clear();
@@ -277,8 +298,9 @@ void Run::take_frame() {
     for (std::size_t m = 0; m < probes_.size(); ++m) {
         const Measure& measure = spec_.measures[m];
         if (!holds(measure.during, phase_)) continue;
+        if (frame_ % measure.every != 0 && frame_ < phase().frames && step_ < phase_begin_ + phase_steps()) continue;
         Record& record = records_[m];
-        const double value = probes_[m]->look(frame);
+        double value = probes_[m]->look(frame);
         // The end of a phase is the beginning of the next one.
         const double before = std::exchange(record.looked, frame.time);
         if (before == frame.time) continue;
@@ -287,23 +309,41 @@ void Run::take_frame() {
             if (frame_ > 0 && std::isfinite(integral))
                 record.intervals.push_back({frame.time, frame.time - before, integral - since});
         }
+        if (measure.relative && find_probe(measure.probe)->over.empty()) {
+            if (record.first.empty()) record.first = {value};
+            value /= record.first.front();
+        }
         if (std::isfinite(value)) record.samples.push_back({.time = frame.time, .value = value});
         if (find_probe(measure.probe)->over.empty()) continue;
         std::vector<Sample> profile;
         probes_[m]->profile(frame, profile);
-        record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
-        record.bins.resize(profile.size(), 0.0);
-        record.last.assign(profile.size(), undefined);
-        for (std::size_t b = 0; b < profile.size(); ++b) {
-            record.bins[b] = profile[b].bin;
-            if (!std::isfinite(profile[b].value)) continue;
-            record.last[b] = profile[b].value;
-            record.sums[b] += profile[b].value;
-            record.counts[b] += 1;
-        }
+        add_profile(measure, profile, frame.time, record);
     }
+    if (tight_ && fault_.empty() && peak_overlap() > *tight_)
+        fault_ = kit::sentence(
+            "two particles overlapped by %.3g of a diameter before %.4g s: more than the %.3g up to which the glued "
+            "particles that were left out cannot be touched",
+            peak_overlap(), time(), *tight_);
     // Of frames closer than the time step one is taken.
     while (++frame_ <= phase().frames && step_of_frame(frame_) <= step_) continue;
+}
+
+void Run::add_profile(const Measure& measure, std::span<const Sample> profile, double time, Record& record) {
+    const bool first = measure.relative && record.first.size() != profile.size();
+    if (first) record.first.clear();
+    record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
+    record.bins.resize(profile.size(), 0.0), record.last.assign(profile.size(), undefined);
+    for (std::size_t b = 0; b < profile.size(); ++b) {
+        record.bins[b] = profile[b].bin;
+        if (first) record.first.push_back(profile[b].value);
+        const double value = measure.relative ? profile[b].value / record.first[b] : profile[b].value;
+        if (!std::isfinite(value)) continue;
+        record.last[b] = value;
+        record.sums[b] += value;
+        record.counts[b] += 1;
+        if (find_reduction(measure.reduction)->every && value != 0)
+            record.samples.push_back({.time = time, .bin = profile[b].bin, .value = value});
+    }
 }
 
 double Run::mass_in(const Region& region) {
@@ -344,10 +384,27 @@ bool Run::holds_now(std::size_t condition) {
         watched_[condition] = mass;
         return time() - calm_since >= flow->quiet;
     }
+    if (const auto* quiet = std::get_if<Quiet>(&until)) return is_quiet(*quiet, condition);
     const auto& passes = std::get<Passes>(until);
     const double value = watching_[phase_][condition]->look(
         look(find_probe(spec_.measures[passes.measure].probe)->contacts ? Contacts::present : Contacts::none));
     return passes.above ? value > passes.value : value < passes.value;
+}
+
+bool Run::is_quiet(const Quiet& quiet, std::size_t condition) {
+    const Frame frame = look(Contacts::none);
+    double inside = 0, fast = 0;
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+        if (frame.state.mobile[i] == 0 || !quiet.region.contains(frame.state.position[i])) continue;
+        ++inside;
+        fast += norm(frame.state.velocity[i]) < quiet.speed ? 0 : 1;
+    }
+    const double few = std::max(1.0, std::floor(quiet.share * inside));
+    if (fast > few || !(std::abs(inside - watched_[condition]) <= few)) {
+        calm_since_[condition] = time();
+        watched_[condition] = inside;
+    }
+    return time() - calm_since_[condition] >= quiet.time;
 }
 
 double Run::progress() const {
@@ -374,6 +431,7 @@ Snapshot Run::snapshot() const {
         if (walls[w].present)
             picture.walls.push_back(
                 surface_of(walls[w], spec_.walls[w].name, spec_.domain.low, spec_.domain.high, engine_->wall_time()));
+    add_cells(picture, spec_);
     return picture;
 }
 
@@ -404,7 +462,7 @@ void Run::fields(State& run, Visit&& visit) {
     if (run.has_clumps()) visit(run.particle_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),
-            visit(record.looked), visit(record.intervals), visit(record.integral);
+            visit(record.first), visit(record.looked), visit(record.intervals), visit(record.integral);
 }
 
 void Run::save(Bytes& into) const {
@@ -441,6 +499,7 @@ void Run::restore(std::span<const std::byte> from) {
         in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size() &&
                    record.bins.size() == record.last.size());
     engine_->restore(kit::engine_at_end(in));
+    seen_at_ = -1;
     engine_->state(spheres_);
     in.require(spheres_.id.empty() || static_cast<std::size_t>(spheres_.id.back()) < species_.size());
     in.require(!has_clumps() ||

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,7 +24,8 @@ namespace grainsweep::machine {
 
 class Run final : public Scene {
 public:
-    Run(Spec spec, std::uint64_t seed);
+    /// `artefacts` may have packings; nullptr: they are made.
+    Run(Spec spec, std::uint64_t seed, Artefacts* artefacts = nullptr);
 
     void advance(double until) override;
     int use_threads(int count) override { return engine_->set_threads(count); }
@@ -45,6 +47,7 @@ private:
     struct Record {
         std::vector<Sample> samples;
         std::vector<double> bins, sums, counts, last;  // of a profile
+        std::vector<double> first;                     // of a relative value, or of each bin
         double looked = undefined;                     // time of the last frame, s
         std::vector<FrameInterval> intervals;          // between frames, of a value that is integrated
         double integral = undefined;                   // since the start, at the last frame
@@ -77,6 +80,9 @@ private:
     /// Returns whether the conditions of the phase are checked in this step.
     [[nodiscard]] bool checks_here(bool framed);
     [[nodiscard]] bool holds_now(std::size_t condition);
+    [[nodiscard]] bool is_quiet(const Quiet& quiet, std::size_t condition);
+    /// Adds the bins of a measurement at this frame to its record.
+    static void add_profile(const Measure& measure, std::span<const Sample> profile, double time, Record& record);
     enum class Contacts { none, present, of_step };
     [[nodiscard]] Frame look(Contacts contacts);
     [[nodiscard]] Frame frame() const;
@@ -129,7 +135,11 @@ private:
     double judged_wall_overlap_ = 0;            // likewise
     std::string fault_;                         // of a wall that appears in particles
     std::int64_t glued_ = 0;
-    std::int64_t lost_first_ = 0;  // particles that left in the first phase
+    std::map<std::string, std::int64_t> counts_;  // of Filled
+    std::optional<double> tight_;                 // least of the cuts
+    std::int64_t seen_at_ = -1;       // step of the last look, whose state is still the present one; -1: none
+    Contacts seen_ = Contacts::none;  // of that look
+    std::int64_t lost_first_ = 0;     // particles that left in the first phase
     PhaseTimes times_;
     std::vector<std::uint8_t> ended_by_;  // by phase: number of the condition, from 1; 0: its time
     std::vector<Record> records_;

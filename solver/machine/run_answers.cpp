@@ -55,12 +55,15 @@ std::string Run::remark() const {
 
 void Run::observe(const Measure& measure, const Record& record, Observations& into) const {
     const ReductionInfo& reduction = *find_reduction(measure.reduction);
+    const Scale& scale = measure.scale;
     if (reduction.shape == Shape::profile) {
         std::vector<Sample> profile;
-        for (std::size_t b = 0; b < record.bins.size(); ++b) {
+        if (reduction.every) profile = record.samples;
+        for (std::size_t b = 0; b < record.bins.size() && !reduction.every; ++b) {
             const double value = reduction.last ? record.last[b] : record.sums[b] / record.counts[b];
             if (std::isfinite(value)) profile.push_back({.bin = record.bins[b], .value = value});
         }
+        for (Sample& one : profile) one.time /= scale.time, one.bin /= scale.bin, one.value /= scale.value;
         if (!profile.empty()) into.series[measure.name] = std::move(profile);
         return;
     }
@@ -69,22 +72,26 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
     for (const While& only : measure.only)
         samples = while_between(samples, records_[only.measure].samples, only.low, only.high);
     if (reduction.shape == Shape::series) {
-        for (Sample& sample : samples) sample.time -= measure.since ? times_.begin[*measure.since] : 0;
+        for (Sample& sample : samples) {
+            sample.time = (sample.time - (measure.since ? times_.begin[*measure.since] : 0)) / scale.time;
+            sample.value /= scale.value;
+        }
         if (!samples.empty()) into.series[measure.name] = std::move(samples);
         return;
     }
     if (const std::vector<FrameInterval> over = ending_at(record.intervals, samples); !over.empty()) {
-        into.scalars[measure.name] = reduction.of_intervals(over);
+        into.scalars[measure.name] = reduction.of_intervals(over) / scale.value;
         if (reduction.error_of_intervals == nullptr) return;
         if (const double error = reduction.error_of_intervals(over); std::isfinite(error))
-            into.scalars[measure.name + "_error"] = error;
+            into.scalars[measure.name + "_error"] = error / scale.value;
         return;
     }
     if (reduction.last && !record.samples.empty() && record.samples.back().time != record.looked) return;
-    if (const double value = reduction.of(samples); std::isfinite(value)) into.scalars[measure.name] = value;
+    if (const double value = reduction.of(samples); std::isfinite(value))
+        into.scalars[measure.name] = value / scale.value;
     if (reduction.error == nullptr) return;
     if (const double error = reduction.error(samples); std::isfinite(error))
-        into.scalars[measure.name + "_error"] = error;
+        into.scalars[measure.name + "_error"] = error / scale.value;
 }
 
 void Run::observe(Observations& into) const {
@@ -94,6 +101,7 @@ void Run::observe(Observations& into) const {
     into.scalars["max_overlap"] = peak_overlap();
     into.scalars["max_wall_overlap"] = peak_wall_overlap();
     into.scalars["smallest_step"] = spec_.time_step / static_cast<double>(engine_->work().most_parts);
+    for (const auto& [name, count] : counts_) into.scalars[name] = static_cast<double>(count);
     for (std::size_t k = 0; k < feeders_.size(); ++k) {
         into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();
         into.scalars[spec_.feeds[k].name + "_waiting"] = std::max(0.0, feeders_[k].waiting());
@@ -111,7 +119,7 @@ void Run::observe(Observations& into) const {
     for (std::size_t m = 0; m < spec_.measures.size(); ++m) observe(spec_.measures[m], records_[m], into);
     for (const TimeOf& time_of : spec_.times)
         if (const auto time = crossing_time(records_[time_of.measure].samples, time_of.value, time_of.above))
-            into.scalars[time_of.name] = *time;
+            into.scalars[time_of.name] = *time / time_of.scale.value;
     for (const Derived& derived : spec_.derived) {
         const bool known =
             std::ranges::all_of(derived.needs, [&](const auto& name) { return into.scalars.contains(name); });

@@ -150,6 +150,8 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     setup.material.density = spec.densities.front();
     if (spec.densities.size() > 1) setup.kinds = {spec.densities, spec.pairs};
     setup.gravity = spec.gravity;
+    setup.shaking = spec.shaking;
+    setup.frozen = spec.glued;
     setup.time_step = spec.time_step;
     setup.step_share = spec.step_share;
     setup.spheres = filled.spheres;
@@ -224,6 +226,8 @@ double fastest_of(const Spec& spec) {
         if (const auto* region = std::get_if<Fill>(&fill)) {
             consider(region->in);
             initial = std::max(initial, norm(region->velocity) + region->shaken);
+        } else if (const auto* cut = std::get_if<Cut>(&fill)) {
+            if (!cut->glued) consider({Region::Box{{}, {cut->edge, cut->edge, cut->edge}}});
         } else {
             for (const Placed& placed : std::get<std::vector<Placed>>(fill)) {
                 initial = std::max(initial, norm(placed.sphere.velocity));
@@ -266,6 +270,7 @@ geometry::Domain domain_around(const Spec& spec, const std::array<bool, 3>& give
         if (const auto* region = std::get_if<Fill>(&fill)) include(region->in);
         if (const auto* placed = std::get_if<std::vector<Placed>>(&fill))
             for (const Placed& one : *placed) widen(all, one.sphere.position);
+        if (const auto* cut = std::get_if<Cut>(&fill)) include({Region::Box{{}, {cut->edge, cut->edge, cut->edge}}});
     }
     for (const Feed& feed : spec.feeds) include(feed.through);
     geometry::Domain domain{all.low, all.high, {}};

@@ -94,6 +94,21 @@ struct Placed {
     bool named = false;                                 ///< probes may select it alone
 };
 
+/// Spheres cut from a random close packing of equal ones in a cube: those with centres in a region.
+struct Cut {
+    std::string name;  ///< of its observables; empty: none
+    std::size_t species = 0;
+    double edge = 0;         ///< of the cube, whose lowest corner is the origin, m
+    double fraction = 0.62;  ///< of the volume
+    double seed = 0;         ///< of the packing; 0: that of the case
+    std::string centres;     ///< contents of the packing's file (particles/packing.hpp); empty: it is made
+    Region in;
+    bool glued = false;
+    /// Of glued spheres those that no mobile one can touch are left out, as long as overlaps stay below this share of
+    /// the diameter; a larger one ends the case as not sound. Empty: all are there.
+    std::optional<double> tight{};
+};
+
 struct Feed {
     std::string name;
     Mix mix;
@@ -115,13 +130,21 @@ struct FlowStops {
     Region region;
     double quiet = 0;
 };
+/// Condition: for a time at most a share of the mobile particles in a region, or one, was faster than a speed at each
+/// check, and the number of all in it changed by no more.
+struct Quiet {
+    Region region;
+    double speed = 0;  ///< m/s
+    double share = 0;
+    double time = 0;  ///< s
+};
 /// Condition: a measurement is above or below a value.
 struct Passes {
     std::size_t measure = 0;
     double value = 0;
     bool above = true;
 };
-using Until = std::variant<AtRest, Empty, FlowStops, Passes>;
+using Until = std::variant<AtRest, Empty, FlowStops, Quiet, Passes>;
 
 struct Phase {
     std::string name;
@@ -129,6 +152,7 @@ struct Phase {
     std::optional<double> expected;  ///< s, if the phase may end early; used only to predict the cost
     std::vector<Until> until;        ///< the first condition that holds ends the phase
     std::int64_t frames = 100;       ///< intervals between measurements
+    double every = 0;                ///< s, of these, in whole time steps; 0: the phase is divided evenly
     bool frames_given = false;       ///< by the user: they are equal then, even in step with a motion (frames.hpp)
     bool ends_at_frames = false;     ///< its conditions are checked only at frames
 };
@@ -137,6 +161,11 @@ struct Phase {
 struct While {
     std::size_t measure = 0;
     double low = 0, high = 0;
+};
+
+/// Units in which a measurement is shown: values, times and bins are divided by these.
+struct Scale {
+    double value = 1, time = 1, bin = 1;
 };
 
 struct Measure {
@@ -148,6 +177,9 @@ struct Measure {
     std::optional<std::pair<double, double>> shares;  ///< only values between these shares of the first one count
     std::vector<While> only;
     std::optional<std::size_t> since;  ///< the times of a series are measured from the beginning of this phase
+    bool relative = false;             ///< values are divided by the first one, of a profile bin by bin
+    std::int64_t every = 1;  ///< measured at each frame whose number is a multiple, and at the last of a phase
+    Scale scale;
 };
 
 /// Result: first time at which a measurement is above or below a value.
@@ -156,6 +188,7 @@ struct TimeOf {
     std::size_t measure = 0;
     double value = 0;
     bool above = true;
+    Scale scale;
 };
 
 /// Result calculated from other observables; absent if one of these is absent.
@@ -167,14 +200,16 @@ struct Derived {
 
 struct Spec {
     Vec3 gravity{0, 0, -9.81};
+    dem::Shaking shaking;  ///< of the whole machine, in whose frame everything is given
     geometry::Domain domain;
     /// Materials of particles. One that several species have is there several times if a wall tells these apart.
     std::vector<std::string> materials;
     std::vector<double> densities;     ///< of each, kg/m3
     std::vector<dem::Material> pairs;  ///< of their contacts, at dem::place_of_pair()
+    dem::Surface glued;                ///< how contacts with glued particles differ; only with one material
     std::vector<Species> species;
     std::vector<MachineWall> walls;
-    std::vector<std::variant<Fill, std::vector<Placed>>> fills;
+    std::vector<std::variant<Fill, std::vector<Placed>, Cut>> fills;
     std::vector<Feed> feeds;
     std::vector<Phase> phases;
     std::vector<Measure> measures;

@@ -31,7 +31,6 @@ Inputs SceneInfo::defaults() const {
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
         powder_spreading_scene(),
-        tpms_discharge_scene(),
         rehearsal_scene(),
         thermovibration_scene(),
     };

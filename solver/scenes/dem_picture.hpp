@@ -19,4 +19,8 @@ namespace grainsweep {
 [[nodiscard]] WallSurface surface_of(const dem::Wall& wall, std::string name, const geometry::Vec3& low,
                                      const geometry::Vec3& high, double time);
 
+/// Adds the eight corners and twelve edges of the box; returns the index of the corner `low`. A corner lies at the high
+/// end of axis a if bit a of its index minus the returned index is set.
+std::int32_t add_box(const std::array<double, 3>& low, const std::array<double, 3>& high, WallSurface& surface);
+
 }  // namespace grainsweep

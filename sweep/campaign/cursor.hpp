@@ -59,6 +59,9 @@ public:
     /// Returns the value of a required key.
     [[nodiscard]] Cursor at(std::string_view key) const;
 
+    /// Returns the keys of the object, or of the entries, at a key.
+    [[nodiscard]] std::span<const Field> members(std::string_view key) const { return row(key).members; }
+
     // Return the value of a key, checked against its row of the table; `standard` if it is absent.
     [[nodiscard]] double number(std::string_view key, double standard) const;
     [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t standard) const;

@@ -25,7 +25,7 @@ constexpr std::size_t most_machine_files = 1000;
 constexpr double most_steps = 1e12;  // of a phase
 
 /// Calls visit(pointer) for every text of the document that names a file: "stl" of walls, "file" in "sizes" of species,
-/// "stl" and "spheres" in their "shape", "spheres" of fillings.
+/// "stl" and "spheres" in their "shape", "spheres" of fillings, "file" in their "packing".
 template <class Visit>
 void for_each_file(const Json& document, const Visit& visit) {
     const auto of = [&](const Json::json_pointer& place) {
@@ -48,7 +48,7 @@ void for_each_file(const Json& document, const Visit& visit) {
         // Beside an stl it is a number, or an expression.
         if (!document.contains(species / "shape" / "stl")) of(species / "shape" / "spheres");
     }
-    for (const auto& fill : entries("fill")) of(fill / "spheres");
+    for (const auto& fill : entries("fill")) of(fill / "spheres"), of(fill / "packing" / "file");
 }
 
 /// "/walls/shell/stl" as a place for messages.
@@ -103,7 +103,7 @@ Json answering_part(const Machine& machine) {
             hashes.push_back(content_hash(machine.files.find(name)->second));
         identity[place] = std::move(hashes);
     });
-    identity.erase("name"), identity.erase("summary"), identity.erase("main");
+    identity.erase("name"), identity.erase("summary"), identity.erase("main"), identity.erase("accuracy");
     if (identity.contains("parameters"))
         for (auto& parameter : identity["parameters"])
             parameter.erase("meaning"), parameter.erase("bounds"), parameter.erase("above");
@@ -159,6 +159,8 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     reading.stiffness_scale = input_number(inputs, stiffness_parameter);
     reading.spec.gravity = gravity_of(top, reading.scope);
     read_phase_names(top, reading);
+    (void)reading.scope.read(top, "shaking", &reading.spec.shaking);
+    reading.spec.method.rest_speed = reading.scope.number(top, "rest_speed", "m/s", 0, no_negative_number);
     read_materials(top, reading);
     read_species(top, reading);
     add_species_numbers(top, reading.spec, reading.scope);
@@ -197,6 +199,7 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
     const auto summary = top.find("summary");
     machine->summary = summary ? summary->text() : machine->name;
     machine->parameters = read_machine_parameters(top);
+    machine->accuracy = read_machine_accuracy(top, machine->parameters);
     machine->observables = machine_observables(top);
     for_each_file(*machine->document, [&](const Json::json_pointer& pointer) {
         const Cursor place = cursor_at(*machine->document, root, pointer);
@@ -224,8 +227,9 @@ std::string_view MachineReading::contents(const Cursor& place) const {
     if (const auto given = chosen.find(name); given != chosen.end()) return given->second;
     const auto found = files.find(name);
     if (found == files.end())
-        place.refuse(name == place.text() ? fmt::format("there is no file '{}'", name)
-                                          : fmt::format("the case names no file here, but '{}'", name));
+        place.refuse(file_word(name)        ? fmt::format("the contents of {} are not given", file_word(name)->path)
+                     : name == place.text() ? fmt::format("there is no file '{}'", name)
+                                            : fmt::format("the case names no file here, but '{}'", name));
     return found->second;
 }
 

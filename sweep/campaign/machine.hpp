@@ -35,6 +35,7 @@ struct Machine {
     std::map<std::string, std::string, std::less<>> files;  ///< contents, by the name in the document
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
+    std::map<std::string, Inputs, std::less<>> accuracy;  ///< as of SceneInfo
 };
 
 /// Function that returns the contents of a file that the document names. Throws std::invalid_argument if there is none.

@@ -47,6 +47,20 @@ std::uint8_t all_but(const Cursor& only, const MachineReading& reading) {
     return static_cast<std::uint8_t>(passing);
 }
 
+/// Reads "glued" of "contacts". A property as in other contacts is none of its own.
+void read_glued(const Section& contacts, MachineReading& reading, const dem::Material& others) {
+    dem::Surface& glued = reading.spec.glued;
+    const auto place = reading.scope.read(contacts, "glued", &glued);
+    if (place && reading.of_particles.size() > 1)
+        place->place().refuse("glued particles differ by their material if there are several");
+    const auto keep = [](std::optional<double>& own, double other) {
+        if (own == other) own.reset();
+    };
+    keep(glued.restitution, others.restitution), keep(glued.friction, others.friction);
+    keep(glued.rolling_friction, others.rolling_friction), keep(glued.cohesion, others.cohesion);
+    keep(glued.surface_energy, others.surface_energy);
+}
+
 }  // namespace
 
 void read_materials(const Section& top, MachineReading& reading) {
@@ -71,6 +85,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
     if (const auto place = top.find("contacts")) {
         const Section section(*place, machine_keys::contacts());
         reading.scope.read(section, machine_keys::contacts(), &standard);
+        read_glued(section, reading, standard);
         if (const auto pairs = section.find("pairs")) {
             if (!pairs->json().is_object()) pairs->refuse("must be an object of pairs: \"glass steel\"");
             for (const auto& [name, value] : pairs->json().items()) {

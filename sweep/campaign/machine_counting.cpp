@@ -50,9 +50,17 @@ std::string_view unit_of_measure(const MachineReading& reading, std::size_t meas
     return machine::find_probe(reading.spec.measures[measure].probe)->unit;
 }
 
+void read_scale(const Cursor& place, const MachineReading& reading, machine::Scale& into) {
+    if (place.json().contains("scale"))
+        reading.scope.read(Section(place["scale"], machine_keys::scale()), machine_keys::scale(), &into);
+}
+
 void read_counting(const Cursor& place, const MachineReading& reading, machine::Measure& into) {
     if (place.json().contains("shares")) read_shares(place["shares"], reading, into);
     if (place.json().contains("while")) read_while(place["while"], reading, into);
+    if (place.json().contains("relative")) into.relative = place["relative"].flag();
+    if (place.json().contains("every")) into.every = reading.scope.whole(place["every"], {1, 1e6});
+    read_scale(place, reading, into.scale);
     if (!place.json().contains("since")) return;
     const Cursor since = place["since"];
     if (into.reduction != "series") since.refuse("only a series has times");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -210,7 +211,8 @@ void read_measures(const Section& top, MachineReading& reading) {
         const Section section(place, machine_keys::time_of());
         const std::size_t of = measure_named(section.at("time_of"), reading);
         const auto [threshold, above] = threshold_of(section, reading, unit_of_measure(reading, of));
-        spec.times.push_back({name, of, threshold, above});
+        spec.times.push_back({name, of, threshold, above, {}});
+        read_scale(place, reading, spec.times.back().scale);
     }
     // Expressions may use parameters, "let", measurements, and one another.
     std::vector<std::string> known;
@@ -231,6 +233,13 @@ void read_measures(const Section& top, MachineReading& reading) {
 }
 
 namespace {
+
+/// Returns "unit" or "over" of a measurement's "scale".
+std::string scale_text(const Cursor& place, std::string_view key, const std::string& standard) {
+    if (!place.json().contains("scale")) return standard;
+    const auto given = Section(place["scale"], machine_keys::scale()).find(key);
+    return given ? given->text() : standard;
+}
 
 /// Why a measurement of one value has none.
 std::string why_nothing(const Cursor& place) {
@@ -285,7 +294,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                            "something in the expression has no value"});
         if (kind == EntryKind::time_of)
             all.push_back({name,
-                           "s",
+                           scale_text(place, "unit", "s"),
                            meaning_of(place, "first time at which a measurement passes a value"),
                            Shape::scalar,
                            {},
@@ -294,10 +303,12 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         const auto& probe = probe_of(place);
         const auto& reduction = reduction_of(place, probe);
         const auto meaning = meaning_of(place, fmt::format("{}: {}", probe.meaning, reduction.meaning));
-        const std::string over = reduction.shape == Shape::series    ? "time, s"
-                                 : reduction.shape == Shape::profile ? std::string(probe.over)
-                                                                     : std::string();
-        const std::string unit = std::string(probe.unit) + std::string(reduction.unit);
+        std::string over = reduction.shape == Shape::series    ? "time, s"
+                           : reduction.shape == Shape::profile ? std::string(probe.over)
+                                                               : std::string();
+        const bool relative = place.json().contains("relative") && place["relative"].flag();
+        std::string unit = relative ? "1" : std::string(probe.unit) + std::string(reduction.unit);
+        unit = scale_text(place, "unit", unit), over = scale_text(place, "over", over);
         all.push_back(
             {name, unit, meaning, reduction.shape, over, reduction.shape == Shape::scalar ? why_nothing(place) : ""});
         if (reduction.error != nullptr)
@@ -318,6 +329,18 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
     automatic("max_overlap", "deepest overlap of two particles over the diameter of the smaller one");
     automatic("max_wall_overlap", "deepest overlap of a particle with a wall over its diameter");
     automatic("smallest_step", "shortest time step; steps are halved where loaded contacts demand it", "s");
+    if (const auto fills = top.find("fill"))
+        for (const auto& fill : fills->elements())
+            if (fill.json().is_object() && fill.json().contains("name") && fill.json().contains("packing")) {
+                const std::string name = fill["name"].text();
+                all.push_back({name + "_particles",
+                               "1",
+                               "spheres cut from the packing, also those left out",
+                               Shape::scalar,
+                               {},
+                               {}});
+                all.push_back({name + "_packing", "1", "spheres of the whole packing", Shape::scalar, {}, {}});
+            }
     if (const auto feeds = top.find("feed")) {
         std::set<std::string> feeders;
         for (const auto& feed : feeds->elements()) {

@@ -13,7 +13,7 @@ using MachineKey = Field::Kind;
 
 constexpr std::array<std::string_view, 6> spread_words = {"monodisperse", "uniform",        "lognormal",
                                                           "weibull_wide", "weibull_narrow", "file"};
-constexpr std::array<std::string_view, 2> file_words = {"sizes", "stl"};
+constexpr std::array<std::string_view, 3> file_words = {"sizes", "stl", "packing"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
 constexpr std::array<std::string_view, 4> as_words = {"lattice", "random", "rain", "packed"};
 
@@ -22,6 +22,8 @@ constexpr auto parameter_keys = std::to_array<Field>({
      "unit of its values; in expressions NAME is the value in SI units and NAME_UNIT the one "
      "in this unit",
      "\"1\""},
+    {"counted_in", MachineKey::text,
+     "instead of a unit, of a pure number: what it counts, as shown, such as \"particle diameters\""},
     needed({"default", MachineKey::value, "value where a campaign does not set it"}),
     {"bounds", MachineKey::array, "[low, high], null: open"},
     {"above", MachineKey::quantity, "a lower bound that is no value itself, in its unit"},
@@ -32,7 +34,8 @@ constexpr auto parameter_keys = std::to_array<Field>({
      "is 1 or 0 in expressions"},
     {"file",
      MachineKey::word,
-     "it is a file, of sizes or an stl: \"{NAME}\" where a file is named stands for it; its default is a word",
+     "it is a file, of sizes, an stl or a packing: \"{NAME}\" where a file is named stands for it; its default is a "
+     "word",
      {},
      {},
      file_words},
@@ -56,7 +59,7 @@ constexpr auto domain_keys = std::to_array<Field>({
 constexpr std::array material_keys = {
     Field{"density", MachineKey::quantity, "kg/m3; of materials of particles"},
     needed(fields::quantity<&dem::Elasticity::youngs_modulus>("youngs_modulus", "Pa", "", {1e3, 1e13})),
-    fields::quantity<&dem::Elasticity::poisson_ratio>("poisson_ratio", "1", "Poisson's ratio", {0, 0.49}),
+    fields::quantity<&dem::Elasticity::poisson_ratio>("poisson_ratio", "1", "Poisson's ratio", {0, 0.5}),
 };
 
 constexpr auto size_keys = std::to_array<Field>({
@@ -112,6 +115,15 @@ constexpr auto species_keys = std::to_array<Field>({
      "not"},
 });
 
+using machine::Cut;
+constexpr std::array packing_keys = {
+    needed(fields::quantity<&Cut::edge>("edge", "m", "of the cube, from the origin on", positive_number)),
+    fields::quantity<&Cut::fraction>("fraction", "1", "of its volume that spheres fill", {0.05, 0.635}),
+    fields::quantity<&Cut::seed>("seed", "1", "which packing; 0: another one for each case", {0, 9.0e15}),
+    Field{"file", MachineKey::text,
+          "instead: a CSV file with the header x,y,z, centres in diameters; or \"{NAME}\" of a parameter that is one"},
+};
+
 using machine::Fill;
 constexpr std::array fill_keys = {
     Field{"species", MachineKey::text, "the species; or a mix"},
@@ -134,6 +146,16 @@ constexpr std::array fill_keys = {
     Field{"spheres", MachineKey::value,
           "particles one by one: a list, or a CSV file with the header x,y,z and diameter, vx,vy,vz, wx,wy,wz, of a "
           "shape qw,qx,qy,qz, as far as known"},
+    holding({"packing", MachineKey::object,
+             "spheres of one random close packing of equal ones in a cube: those with their centres in the region"},
+            packing_keys),
+    Field{
+        "tight", MachineKey::quantity,
+        "with packing and glued: spheres that no mobile one can touch are left out, as long as no overlap exceeds this "
+        "share of a diameter; beyond it the case is not sound"},
+    Field{"name", MachineKey::text,
+          "with packing: of its observables NAME_particles and NAME_packing, the numbers of spheres in the region and "
+          "in the whole packing"},
     Field{"when", MachineKey::quantity, "0: it is left out", "1"},
 };
 
@@ -175,10 +197,21 @@ constexpr std::array flow_stops_keys = {
     needed(fields::quantity<&FlowStops::quiet>("quiet", "s", "", positive_number)),
 };
 
+using machine::Quiet;
+constexpr std::array quiet_keys = {
+    needed(fields::region<&Quiet::region>("in", "the region")),
+    needed(fields::quantity<&Quiet::speed>("speed", "m/s", "", positive_number)),
+    fields::quantity<&Quiet::share>("share", "1", "of the particles in the region that may move; always one", {0, 1}),
+    needed(fields::quantity<&Quiet::time>("for", "s", "", positive_number)),
+};
+
 constexpr auto until_keys = std::to_array<Field>({
     {"at_rest", MachineKey::flag, "kinetic energy below a thousandth of m g d per particle for sqrt(d/g)"},
     {"empty", MachineKey::region, "no particle in a region"},
     holding({"flow_stops", MachineKey::object, "the mass in a region stays the same for a time"}, flow_stops_keys),
+    holding({"quiet", MachineKey::object,
+             "for a time at most a share of the particles in a region was faster, and their number changed by no more"},
+            quiet_keys),
     {"measure", MachineKey::text, "a measurement passes a value: above or below"},
     {"above", MachineKey::quantity, "of measure"},
     {"below", MachineKey::quantity, "of measure"},
@@ -196,6 +229,8 @@ constexpr std::array phase_keys = {
         no_negative_number),
     Field{"frames", MachineKey::quantity, "it is measured at its beginning and after each of so many equal intervals",
           "100"},
+    fields::quantity<&Phase::every>("every", "s", "instead of frames: from one to the next, rounded down to steps",
+                                    positive_number),
     fields::flag<&Phase::ends_at_frames>("ends_at_frames",
                                          "true: its conditions are looked at when it is measured, and not in between"),
     Field{"phases", MachineKey::array,
@@ -204,6 +239,16 @@ constexpr std::array phase_keys = {
     Field{"as", MachineKey::text, "of a group: name that counts them in expressions, from 0"},
 };
 
+using machine::Scale;
+constexpr std::array scale_keys = {
+    fields::quantity<&Scale::value>("value", "1", "values are divided by it; of a time_of the time", positive_number),
+    Field{"unit", MachineKey::text, "unit of the values, as shown"},
+    fields::quantity<&Scale::time>("time", "s", "times are divided by it", positive_number),
+    fields::quantity<&Scale::bin>("bin", "1", "bins are divided by it", positive_number),
+    Field{"over", MachineKey::text, "what times or bins are, with their unit, as shown"},
+};
+
+using machine::Measure;
 constexpr auto measure_keys = std::to_array<Field>({
     {"as", MachineKey::word, "what becomes of the values at the frames; default: mean, of a profile profile"},
     {"during", MachineKey::words, "phases in which it is measured; default: all"},
@@ -213,6 +258,9 @@ constexpr auto measure_keys = std::to_array<Field>({
     {"unless", MachineKey::text,
      "an expression of measurements: where it is not 0, this value and its error are undefined, such as a rate that a "
      "jam cut short"},
+    fields::flag<&Measure::relative>("relative", "true: values are divided by the first one, of a profile bin by bin"),
+    {"every", MachineKey::quantity, "measured at each n-th frame of a phase, and at its last", "1"},
+    holding({"scale", MachineKey::object, "units in which it is shown"}, scale_keys),
     {"since", MachineKey::text, "of a series: the phase from whose beginning its times count; default: the start"},
     {"meaning", MachineKey::text, "in words"},
 });
@@ -221,8 +269,22 @@ constexpr auto time_of_keys = std::to_array<Field>({
     needed({"time_of", MachineKey::text, "a measurement: the first time at which it passes a value, s"}),
     {"above", MachineKey::quantity, "the value"},
     {"below", MachineKey::quantity, "the value"},
+    holding({"scale", MachineKey::object, "the unit in which it is shown: value and unit"}, scale_keys),
     {"meaning", MachineKey::text, "in words"},
 });
+
+constexpr std::array shaking_keys = {
+    needed(fields::vector<&dem::Shaking::amplitude>("amplitude", "m", "of the displacement, a sine")),
+    needed(fields::quantity<&dem::Shaking::frequency>("frequency", "Hz", "", no_negative_number)),
+};
+
+constexpr std::array glued_keys = {
+    fields::quantity<&dem::Surface::restitution>("restitution", "1", "", {0, 1, true, false}),
+    fields::quantity<&dem::Surface::friction>("friction", "1", "", {0, 10}),
+    fields::quantity<&dem::Surface::rolling_friction>("rolling_friction", "1", "", {0, 1}),
+    fields::quantity<&dem::Surface::cohesion>("cohesion", "J/m3", "", {0, 1e9}),
+    fields::quantity<&dem::Surface::surface_energy>("surface_energy", "J/m2", "", {0, 100}),
+};
 
 constexpr auto expression_keys = std::to_array<Field>({
     needed({"expression", MachineKey::text, "of other measurements, parameters and \"let\""}),
@@ -302,6 +364,9 @@ std::span<const Field> contacts() {
     static const auto keys = [] {
         std::vector<Field> all(dem::contact_fields().begin(), dem::contact_fields().end());
         all.insert(all.end(), dem::law_fields().begin(), dem::law_fields().end());
+        all.push_back(holding({"glued", MachineKey::object,
+                               "what differs in contacts with glued particles, if all particles are of one material"},
+                              glued_keys));
         all.push_back(
             holding({"pairs", MachineKey::named, "\"MATERIAL MATERIAL\": what differs between these two", "{}"},
                     dem::contact_fields()));
@@ -318,10 +383,17 @@ std::span<const Field> top() {
                 parameter_keys),
         Field{"let", MachineKey::object,
               "by name: expressions that other expressions may use; those that use numbers of species are known from "
-              "\"walls\" on",
+              "\"walls\" on; or {\"opening\": a level set}: the diameter of the largest disc of it in the lower face "
+              "of a cell, m",
               "{}"},
         holding({"checks", MachineKey::array, "what a case is refused for, or warned of", "[]"}, check_keys),
         Field{"gravity", MachineKey::value, "[x, y, z] in m/s2, or size, tilt and azimuth", "[0, 0, -9.81]"},
+        holding({"shaking", MachineKey::object, "the machine vibrates as a whole; everything is in its frame"},
+                shaking_keys),
+        Field{"rest_speed", MachineKey::quantity,
+              "m/s: powder slower than this for 256 time steps, with nothing faster near and no net force of half its "
+              "weight, is not advanced; only in precision mixed, without moving walls and shaking",
+              "0"},
         holding({"domain", MachineKey::object,
                  "the box outside of which particles are gone; default: around walls, fillings and feeds at all times",
                  "{}"},
@@ -334,6 +406,8 @@ std::span<const Field> top() {
         holding({"feed", MachineKey::array, "particles added while it runs", "[]"}, feed_keys),
         needed(holding({"phases", MachineKey::array, "what happens, one after the other"}, phase_keys)),
         needed({"measure", MachineKey::object, "by name: what a case answers"}),
+        Field{"accuracy", MachineKey::object,
+              "by the words fast, balanced, fine, reference: values of parameters; default: those of every machine"},
         Field{"main", MachineKey::text,
               "the measurement that reports and tables show first; default: the first by name"},
     };
@@ -379,8 +453,8 @@ std::span<const Field> until() {
 std::span<const Field> check() {
     return check_keys;
 }
-std::span<const Field> flow_stops() {
-    return flow_stops_keys;
+std::span<const Field> scale() {
+    return scale_keys;
 }
 std::span<const Field> measure() {
     return measure_keys;
@@ -430,15 +504,20 @@ std::span<const Type> all() {
         all.push_back({"follow", "", follow()});
         const Type others[] = {
             {"A filling", "", fill_keys, fields::initial<Fill>},
+            {"packing, of a filling", "", packing_keys, fields::initial<Cut>},
             {"A sphere of a filling", "", sphere_keys, fields::initial<dem::Sphere>},
             {"A feed", "", feed_keys, fields::initial<Feed>},
             {"A phase", "", phase_keys, fields::initial<Phase>},
             {"until, of a phase", "", until_keys},
             {"flow_stops", "", flow_stops_keys},
+            {"quiet", "", quiet_keys, fields::initial<Quiet>},
             {"A check", "", check_keys},
             {"A measurement", "", measure_keys},
+            {"scale, of a measurement", "", scale_keys, fields::initial<Scale>},
             {"The time of a measurement", "", time_of_keys},
             {"An expression of measurements", "", expression_keys},
+            {"shaking", "", shaking_keys},
+            {"glued, of contacts", "", glued_keys},
         };
         all.insert(all.end(), std::begin(others), std::end(others));
         return all;

@@ -26,7 +26,7 @@ namespace grainsweep::campaign::machine_keys {
 [[nodiscard]] std::span<const Field> phase();
 [[nodiscard]] std::span<const Field> until();
 [[nodiscard]] std::span<const Field> check();
-[[nodiscard]] std::span<const Field> flow_stops();
+[[nodiscard]] std::span<const Field> scale();
 [[nodiscard]] std::span<const Field> measure();
 [[nodiscard]] std::span<const Field> time_of();
 [[nodiscard]] std::span<const Field> expression();

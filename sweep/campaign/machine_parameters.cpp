@@ -5,7 +5,9 @@
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 #include "sweep/campaign/quantity.hpp"
+#include "sweep/campaign/sections.hpp"
 
+#include "solver/machine/filling.hpp"
 #include "solver/machine/shapes.hpp"
 
 #include <fmt/format.h>
@@ -36,13 +38,16 @@ constexpr std::array<std::string_view, 25> si_units = {
 std::optional<std::string_view> calculating_unit(const std::string& unit, std::string& why) {
     static std::mutex mutex;
     static std::map<std::string, std::string_view, std::less<>> known;
+    static std::map<std::string, std::string, std::less<>> unknown;  // why
     const std::lock_guard lock(mutex);
     if (const auto found = known.find(unit); found != known.end()) return found->second;
+    if (const auto found = unknown.find(unit); found != unknown.end()) return why = found->second, std::nullopt;
     for (const auto si : si_units) {
         const auto converted = in_si(fmt::format("1 {}", unit), si);
         if (std::holds_alternative<double>(converted)) return known.emplace(unit, si).first->second;
         if (why.empty()) why = std::get<std::string>(converted);
     }
+    unknown.emplace(unit, why);
     return std::nullopt;
 }
 
@@ -59,13 +64,8 @@ double in_si_units(const Cursor& place, double value, const std::string& unit) {
     place.refuse(fmt::format("'{}' is no unit that a machine calculates with: {}", unit, why));
 }
 
-/// A number in the parameter's own unit.
-double own_number(const Cursor& place, const std::string& unit) {
-    return MachineScope().number(place, unit);
-}
-
 ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
-    for (const char* key : {"unit", "bounds", "above", "whole"})
+    for (const char* key : {"unit", "counted_in", "bounds", "above", "whole"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a word has none");
     Words words;
     for (const auto& word : section.at("words").elements()) {
@@ -81,7 +81,7 @@ ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
 
 /// A file, or the default word that stands for none.
 ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
-    for (const char* key : {"unit", "bounds", "above", "whole", "words"})
+    for (const char* key : {"unit", "counted_in", "bounds", "above", "whole", "words"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a file has none");
     const auto rows = machine_keys::parameter();
     const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Field::name)->words);
@@ -91,6 +91,8 @@ ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
     spec.default_value = none;
     if (kind == "sizes")
         spec.bounds = Words{{none}, true, [](std::string_view csv) { (void)particles::SizeTable::read(csv); }};
+    else if (kind == "packing")  // whatever its edge
+        spec.bounds = Words{{none}, true, [](std::string_view csv) { machine::require_packing(csv); }};
     else
         spec.bounds = Words{{none}, true, [](std::string_view stl) { (void)machine::stl_mesh(stl, 1, 0, {}); }};
     return spec;
@@ -108,8 +110,12 @@ std::vector<Relevance> relevance_of(const Section& section, const std::vector<Pa
         const auto* words = std::get_if<Words>(&other->bounds);
         Relevance one{name, Relevance::Condition::is_word, {}};
         if (words != nullptr && words->file_allowed) {
-            if (value.word(std::array<std::string_view, 1>{"set"}) == "set")
+            WordList known(words->allowed);
+            known.push_back("set");
+            if (const std::string word = value.word(known); word == "set")
                 one.condition = Relevance::Condition::is_file;
+            else
+                one.words.push_back(word);
         } else if (words != nullptr) {
             if (value.json().is_array())
                 for (const auto& word : value.elements()) one.words.push_back(word.word(words->allowed));
@@ -128,24 +134,31 @@ std::vector<Relevance> relevance_of(const Section& section, const std::vector<Pa
 }
 
 ParameterSpec number_parameter(const Section& section, ParameterSpec spec) {
-    const auto unit = section.find("unit");
-    spec.unit = unit ? unit->text() : "1";
-    (void)in_si_units(unit ? *unit : section.place(), 1, spec.unit);
-    Interval bounds;
+    const auto unit = section.find("unit"), counted = section.find("counted_in");
+    if (unit && counted) counted->refuse("beside \"unit\" it says too much");
+    if (counted || unit) spec.unit = counted ? counted->text() : unit->text();
+    if (std::string why; counted && calculating_unit(spec.unit, why))
+        counted->refuse(fmt::format("'{}' is a unit: write \"unit\"", spec.unit));
+    if (!counted) (void)in_si_units(unit ? *unit : section.place(), 1, spec.unit);
+    auto bounds = std::get<Interval>(spec.bounds);
+    const auto own_number = [&](const Cursor& place) {
+        return MachineScope().number(place, counted ? "1" : std::string_view(spec.unit));
+    };
     if (const auto ends = section.find("bounds")) {
         if (!ends->json().is_array() || ends->json().size() != 2) ends->refuse("must be a list: [low, high]");
-        if (const Cursor low = (*ends)[std::size_t{0}]; !low.json().is_null()) bounds.low = own_number(low, spec.unit);
-        if (const Cursor high = (*ends)[1]; !high.json().is_null()) bounds.high = own_number(high, spec.unit);
+        if (const Cursor low = (*ends)[std::size_t{0}]; !low.json().is_null()) bounds.low = own_number(low);
+        if (const Cursor high = (*ends)[1]; !high.json().is_null()) bounds.high = own_number(high);
         if (!(bounds.low <= bounds.high)) ends->refuse("the lower bound must not be above the upper one");
     }
     if (const auto above = section.find("above")) {
-        if (std::isfinite(bounds.low)) above->refuse("beside a lower bound in \"bounds\" it says too much");
-        bounds.low = own_number(*above, spec.unit);
+        if (section.find("bounds") && std::isfinite(bounds.low))
+            above->refuse("beside a lower bound in \"bounds\" it says too much");
+        bounds.low = own_number(*above);
         bounds.low_open = true;
         if (!(bounds.low < bounds.high)) above->refuse("must lie below the upper bound");
     }
     const Cursor standard = section.at("default");
-    const double value = own_number(standard, spec.unit);
+    const double value = own_number(standard);
     if (!bounds.contains(value))
         standard.refuse(fmt::format("must be a number{}, as its bounds say", in_words(bounds)));
     if (section.flag("whole", false)) {
@@ -239,6 +252,17 @@ double any_quantity(const Cursor& place) {
     place.refuse(why);
 }
 
+/// Reads {"opening": a level set}.
+double opening_in(const Cursor& place, const MachineScope& scope) {
+    if (!place.json().contains("opening") || place.json().size() != 1)
+        place.refuse("must be a number, an expression, or {\"opening\": a level set}");
+    machine::Region::LevelSet set;
+    scope.read(Section(place["opening"], machine::level_set_fields()), machine::level_set_fields(), &set);
+    if (const std::string flaw = machine::Region{set}.flaw(); !flaw.empty()) place.refuse(flaw);
+    if (set.side == 0 || !(set.shell > 0)) place.refuse("an opening is of one side of a shell: \"side\" 1 or -1");
+    return set.opening();
+}
+
 /// Adds the definitions of "let", except those with a name that is defined later. Refuses a circle.
 void evaluate_lets(const Section& top, const std::set<std::string>& to_come, MachineScope& scope) {
     const auto lets = top.find("let");
@@ -259,6 +283,11 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
     names.insert(names.end(), to_come.begin(), to_come.end());
     for (const auto& name : open) {
         const auto& text = lets->json()[name];
+        const Json leaves = text.is_object() ? text.flatten() : Json::object();
+        for (const auto& [place, leaf] : leaves.items())
+            if (const auto parsed = Formula::parse(leaf.is_string() ? leaf.get<std::string>() : "0", names);
+                const auto* formula = std::get_if<Formula>(&parsed))
+                used[name].insert(used[name].end(), formula->names().begin(), formula->names().end());
         if (!text.is_string() || is_one_quantity(text.get_ref<const std::string&>())) continue;
         const std::string plain = with_si_numbers(text.get_ref<const std::string&>());
         const auto parsed = Formula::parse(plain.empty() ? text.get<std::string>() : plain, names);
@@ -279,7 +308,10 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
         }
         const Cursor here = (*lets)[*ready];
         const bool quantity = here.json().is_string() && is_one_quantity(here.json().get_ref<const std::string&>());
-        scope.set_let(*ready, quantity ? any_quantity(here) : scope.number(here, "1"));
+        if (here.json().is_object())
+            scope.set_let(*ready, opening_in(here, scope));
+        else
+            scope.set_let(*ready, quantity ? any_quantity(here) : scope.number(here, "1"));
         open.erase(ready);
     }
 }
@@ -300,7 +332,6 @@ void require_name(const Cursor& place, std::string_view name) {
 std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
     std::vector<ParameterSpec> all;
     add_common(all);
-    const auto common = all;
     const auto place = top.find("parameters");
     if (!place) return all;
     if (!place->json().is_object()) place->refuse("must be an object of parameters by name");
@@ -310,25 +341,58 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
         require_name(here, name);
         if (name == "pi" || name == "nan")
             here.refuse(fmt::format("'{}' is a number in expressions; take another name", name));
-        if (std::ranges::find(common, name, &ParameterSpec::name) != common.end())
-            throw input_error(here.path(), "", "every machine has a parameter of this name; take another one");
         std::string lower = name;
         std::ranges::transform(lower, lower.begin(),
                                [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (!folded.insert(lower).second)
             throw input_error(here.path(), "", "two names that differ by case only are one name in SQL; rename one");
         const Section section(here, machine_keys::parameter());
-        const auto meaning = section.find("meaning");
-        ParameterSpec spec{name, "1", meaning ? meaning->text() : name, 0.0, Interval{}, {}};
+        const auto common = std::ranges::find(all, name, &ParameterSpec::name);
+        ParameterSpec spec = common != all.end() ? *common : ParameterSpec{name, "1", name, 0.0, Interval{}, {}};
+        if (const auto meaning = section.find("meaning")) spec.meaning = meaning->text();
+        if (common != all.end()) {  // another default, other bounds
+            for (const char* key : {"unit", "counted_in", "whole", "words", "file"})
+                if (section.find(key) || std::holds_alternative<Words>(spec.bounds))
+                    throw input_error(here.path(), "", "every machine has a parameter of this name; take another one");
+            *common = number_parameter(section, std::move(spec));
+            continue;
+        }
         all.push_back(section.find("file")    ? file_parameter(section, std::move(spec))
                       : section.find("words") ? word_parameter(section, std::move(spec))
                                               : number_parameter(section, std::move(spec)));
     }
     for (auto& parameter : all)
-        if (place->json().contains(parameter.name))
+        if (place->json().contains(parameter.name) && (*place)[parameter.name].json().contains("only_if"))
             parameter.relevant_if = relevance_of(Section((*place)[parameter.name], machine_keys::parameter()), all);
     refuse_names_twice(*place, all);
     std::ranges::sort(all, {}, &ParameterSpec::name);
+    return all;
+}
+
+std::map<std::string, Inputs, std::less<>> read_machine_accuracy(const Section& top,
+                                                                 const std::vector<ParameterSpec>& parameters) {
+    const auto numerics = [](double fraction, const char* precision) {
+        return Inputs{{"time_step_fraction", fraction}, {"precision", std::string(precision)}};
+    };
+    std::map<std::string, Inputs, std::less<>> all = {{"fast", numerics(0.35, "mixed")},
+                                                      {"balanced", numerics(0.2, "mixed")},
+                                                      {"fine", numerics(0.05, "mixed")},
+                                                      {"reference", numerics(0.05, "double")}};
+    const auto place = top.find("accuracy");
+    if (!place) return all;
+    all.clear();
+    const std::vector<std::string> levels = {"balanced", "fast", "fine", "reference"};
+    for (const auto& [level, here] : place->members("must be an object of levels")) {
+        if (std::ranges::find(levels, level) == levels.end())
+            here.refuse("a level is fast, balanced, fine or reference", nearest_word(level, levels));
+        for (const auto& [name, value] : here.members("must be an object of parameters and their values")) {
+            const auto found = std::ranges::find(parameters, name, &ParameterSpec::name);
+            if (found == parameters.end())
+                throw input_error(value.path(), "", "there is no such parameter",
+                                  nearest_word(name, names_of(parameters)));
+            all[level][name] = read_value(value, *found, {});
+        }
+    }
     return all;
 }
 
@@ -345,11 +409,11 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
         }
         const auto* whole = std::get_if<std::int64_t>(&value);
         const double number = whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value);
-        const double si = in_si_units(top.place(), number, parameter.unit);
-        scope.set(parameter.name, si);
         std::string none;
-        if (const auto unit = calculating_unit(parameter.unit, none); unit && parameter.unit != "1")
-            scope.set_unit(parameter.name, std::string(*unit));
+        const auto unit = calculating_unit(parameter.unit, none);  // none: it is a pure number
+        scope.set(parameter.name, unit ? in_si_units(top.place(), number, parameter.unit) : number);
+        if (!unit) continue;
+        if (parameter.unit != "1") scope.set_unit(parameter.name, std::string(*unit));
         if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
             scope.set(parameter.name + "_" + suffix, number);
     }

@@ -7,6 +7,7 @@
 
 #include "solver/machine/spec.hpp"
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ inline constexpr std::string_view stiffness_parameter = "stiffness_scale";
 
 /// Returns the parameters of the machine, and the parameters of every machine.
 [[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);
+/// Returns the values of parameters at each level of accuracy.
+[[nodiscard]] std::map<std::string, Inputs, std::less<>> read_machine_accuracy(
+    const Section& top, const std::vector<ParameterSpec>& parameters);
 /// Returns the names for expressions, for complete inputs: parameters in SI units, NAME_UNIT, NAME_is_WORD, and "let",
 /// whose expressions may use one another in any order. Expressions that need numbers of species are still missing.
 /// Refuses circular definitions.

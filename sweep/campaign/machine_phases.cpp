@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -12,11 +13,10 @@ namespace {
 machine::Until read_until(const Cursor& place, const MachineReading& reading) {
     const Section section(place, machine_keys::until());
     const auto rest = section.find("at_rest"), empty = section.find("empty"), stops = section.find("flow_stops"),
-               measure = section.find("measure");
-    if (static_cast<int>(rest.has_value()) + static_cast<int>(empty.has_value()) + static_cast<int>(stops.has_value()) +
-            static_cast<int>(measure.has_value()) !=
-        1)
-        place.refuse("a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\" and \"measure\"");
+               quiet = section.find("quiet"), measure = section.find("measure");
+    if (std::ranges::count_if(std::array{rest, empty, stops, quiet, measure},
+                              [](const auto& one) { return one.has_value(); }) != 1)
+        place.refuse("a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\", \"quiet\" and \"measure\"");
     if (!measure)
         for (const char* key : {"above", "below"})
             if (const auto end = section.find(key)) end->refuse("it belongs to \"measure\"");
@@ -26,12 +26,10 @@ machine::Until read_until(const Cursor& place, const MachineReading& reading) {
         return machine::AtRest{};
     }
     if (empty) return machine::Empty{reading.scope.region(*empty)};
-    if (stops) {
-        machine::FlowStops condition;
-        reading.scope.read(Section(*stops, machine_keys::flow_stops()), machine_keys::flow_stops(), &condition);
-        return condition;
-    }
+    if (machine::FlowStops condition; reading.scope.read(section, "flow_stops", &condition)) return condition;
+    if (machine::Quiet condition; reading.scope.read(section, "quiet", &condition)) return condition;
     const std::size_t number = measure_named(*measure, reading);
+    if (reading.spec.measures[number].relative) measure->refuse("a relative value ends no phase");
     const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
     return machine::Passes{number, value, above};
 }
@@ -118,6 +116,8 @@ void read_phases(const Section& top, MachineReading& reading) {
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
         if (until && phase.until.empty()) until->refuse("must name a condition");
         reading.scope.read(section, machine_keys::phase(), &phase);
+        if (phase.every > 0 && phase.frames_given) section.at("every").refuse("beside \"frames\" it says too much");
+        phase.frames_given = phase.frames_given || phase.every > 0;
         if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");
         if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");

@@ -205,6 +205,34 @@ std::vector<bool> walls_of_some_that_touch(const Section& top, const std::string
     return touches;
 }
 
+/// Refuses keys that have no effect beside another one.
+void refuse_beside(const Section& section, std::string_view key, std::initializer_list<const char*> others) {
+    for (const char* other : others)
+        if (const auto too = section.find(other)) too->refuse(fmt::format("beside \"{}\" it has no effect", key));
+}
+
+machine::Cut read_cut(const Section& fill, const Cursor& place, const MachineReading& reading) {
+    refuse_beside(fill, "packing", {"mix", "by", "count", "mass", "volume", "as", "velocity", "shaken", "spheres"});
+    const auto& scope = reading.scope;
+    machine::Cut cut;
+    cut.species = scope.place_in(fill.at("species"), reading.species, "species");
+    const auto equal = [&](const Species& one) {
+        return one.sizes.equal() && !one.shape && one.diameter == reading.spec.species[cut.species].diameter;
+    };
+    if (!std::ranges::all_of(reading.spec.species, equal)) place.refuse("a packing is of spheres that are all equal");
+    const auto file = scope.read(fill, "packing", &cut)->find("file");
+    const std::string name = file ? scope.text(*file) : std::string();
+    if (file && (name == file->text() || file_word(name))) cut.centres = reading.contents(*file);
+    cut.in = scope.region(fill.at("in"));
+    cut.glued = fill.flag("glued", false);
+    if (const auto tight = fill.find("tight")) {
+        if (!cut.glued) tight->refuse("only glued spheres are left out");
+        cut.tight = scope.number(*tight, "1", {0, 0.5, true, false});
+    }
+    if (const auto named = fill.find("name")) require_name(*named, cut.name = named->text());
+    return cut;
+}
+
 }  // namespace
 
 void read_species(const Section& top, MachineReading& reading) {
@@ -266,9 +294,15 @@ void read_fills(const Section& top, MachineReading& reading) {
     for (const auto& place : all->elements()) {
         const Section section(place, machine_keys::fill());
         if (!reading.scope.present(section)) continue;
+        if (const auto packing = section.find("packing")) {
+            reading.spec.fills.emplace_back(read_cut(section, *packing, reading));
+            continue;
+        }
+        for (const char* key : {"tight", "name"})
+            if (const auto alone = section.find(key)) alone->refuse("it belongs to \"packing\"");
         if (const auto spheres = section.find("spheres")) {
-            for (const char* key : {"mix", "by", "count", "mass", "volume", "in", "as", "velocity", "shaken"})
-                if (const auto too = section.find(key)) too->refuse("beside \"spheres\" it has no effect");
+            refuse_beside(section, "spheres",
+                          {"mix", "by", "count", "mass", "volume", "in", "as", "velocity", "shaken"});
             if (!section.find("species")) throw input_error(place.path(), "", "key 'species' is missing");
             const bool glued = section.flag("glued", false);
             const std::size_t species = reading.scope.place_in(section.at("species"), reading.species, "species");

@@ -106,7 +106,9 @@ void read_motion(const Cursor& place, const MachineReading& reading, machine::Ma
 [[nodiscard]] std::pair<double, bool> threshold_of(const Section& section, const MachineReading& reading,
                                                    std::string_view unit);
 [[nodiscard]] std::string_view unit_of_measure(const MachineReading& reading, std::size_t measure);
-/// Reads "shares", "while" and "since" of a measurement, after all measurements have their numbers.
+/// Reads "scale" of a measurement or its time.
+void read_scale(const Cursor& place, const MachineReading& reading, machine::Scale& into);
+/// Reads what counts of a measurement and how it is shown, after all measurements have their numbers.
 void read_counting(const Cursor& place, const MachineReading& reading, machine::Measure& into);
 /// Returns names and observables of "measure", in the order of the names.
 [[nodiscard]] std::vector<ObservableSpec> machine_observables(const Section& top);

@@ -44,17 +44,11 @@ SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::s
     scene.revision = machine_revision;
     scene.parameters = machine->parameters;
     scene.observables = machine->observables;
-    const auto numerics = [](double fraction, const char* precision) {
-        return Inputs{{"time_step_fraction", fraction}, {"precision", std::string(precision)}};
-    };
-    scene.accuracy = {{"fast", numerics(0.35, "mixed")},
-                      {"balanced", numerics(0.2, "mixed")},
-                      {"fine", numerics(0.05, "mixed")},
-                      {"reference", numerics(0.05, "double")}};
+    scene.accuracy = machine->accuracy;
     scene.stiffness = stiffness_parameter;
-    scene.maker = [machine](const Inputs& inputs, std::uint64_t seed, Artefacts&,
+    scene.maker = [machine](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
                             const Files& files) -> std::unique_ptr<Scene> {
-        return std::make_unique<machine::Run>(possible_spec(*machine, inputs, files), seed);
+        return std::make_unique<machine::Run>(possible_spec(*machine, inputs, files), seed, &artefacts);
     };
     scene.estimate_cost = [machine](const Inputs& inputs, const Files& files) {
         return machine::cost_of(possible_spec(*machine, inputs, files));

@@ -82,6 +82,10 @@ double MachineScope::number(const Cursor& place, std::string_view unit, const In
             const auto read = in_si(given, unit);
             if (const auto* why = std::get_if<std::string>(&read)) place.refuse(*why);
             value = std::get<double>(read);
+        } else if (const auto named = numbers_.find(given);
+                   named != numbers_.end() && std::isfinite(named->second) && bounds.contains(named->second)) {
+            require_unit(place, given, unit);
+            value = named->second;
         } else {
             const auto known = names();
             const auto parsed = Formula::parse(given, known);
@@ -253,6 +257,14 @@ void MachineScope::read(const Section& section, std::span<const Field> fields, v
                 throw std::logic_error("no reader for the kind of field " + std::string(field.name));
         }
     }
+}
+
+std::optional<Section> MachineScope::read(const Section& section, std::string_view key, void* object) const {
+    const auto place = section.find(key);
+    if (!place) return std::nullopt;
+    Section inner(*place, section.members(key));
+    read(inner, section.members(key), object);
+    return inner;
 }
 
 const Type* named_in(const Json& object, std::span<const Type> types) {

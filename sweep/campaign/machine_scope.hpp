@@ -61,6 +61,8 @@ public:
 
     /// Reads the fields of a section that have a place in an object; absent ones keep their value.
     void read(const Section& section, std::span<const Field> fields, void* object) const;
+    /// Reads the object at a key, if it is there, by the fields of its row; returns it.
+    std::optional<Section> read(const Section& section, std::string_view key, void* object) const;
     /// Makes a variant hold the alternative that a value names as its only key, and reads its fields. Refuses other
     /// values with the rule.
     const Type& read_alternative(const Cursor& place, std::span<const Type> types, void* variant,

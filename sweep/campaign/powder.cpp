@@ -35,10 +35,16 @@ constexpr double earth = 9.81;  // m/s2
 const std::vector<ParameterSpec>& powder_parameters() {
     static const std::vector<ParameterSpec> all = [] {
         constexpr kit::Powder p;
-        return kit::declared(p.density, p.youngs_modulus, p.poisson_ratio, p.restitution, p.friction,
-                             p.rolling_friction, p.rolling_law, p.tangential_limit, p.cohesion, p.cohesion_law,
-                             p.surface_energy, p.wall_friction, p.wall_rolling_friction, p.wall_restitution,
-                             p.wall_cohesion, p.wall_surface_energy);
+        constexpr auto area = kit::if_word("cohesion_law", "sjkr", "sjkr2", "paper");
+        constexpr auto energy = kit::if_word("cohesion_law", "jkr", "dmt");
+        constexpr auto at_walls = [](std::string_view name, std::string_view unit, double most, kit::When when = {}) {
+            return kit::Real{name, unit, "the same at walls; -1: as in the powder", -1, {-1, most}, {when}};
+        };
+        return kit::declared(
+            p.density, p.youngs_modulus, p.poisson_ratio, p.restitution, p.friction, p.rolling_friction, p.rolling_law,
+            p.tangential_limit, p.cohesion, p.cohesion_law, p.surface_energy, at_walls("wall_friction", "1", 2),
+            at_walls("wall_rolling_friction", "1", 1), at_walls("wall_restitution", "1", 1),
+            at_walls("wall_cohesion", "J/m3", 1e6, area), at_walls("wall_surface_energy", "J/m2", 10, energy));
     }();
     return all;
 }

@@ -424,7 +424,7 @@ std::string machine_schema(int indentation) {
         return rules;
     };
     auto& properties = schema["properties"];
-    properties["let"] = named_schema(quantity_schema());
+    properties["let"] = named_schema({{"type", {"number", "string", "object"}}});
     properties["gravity"]["anyOf"] = {vector_schema(), section(keys::gravity())};
     auto& wall = properties["walls"]["additionalProperties"];
     wall["oneOf"] = one_of(keys::shapes(), {"triangles", "stl"});

@@ -198,7 +198,7 @@ TEST(Architecture, ScenesDoNotIncludeScenes) {
         const std::string target = scene_of(include.target);
         const std::string file = scene_of(include.file);
         const bool shared = target == "values" || target == "scene" || target == "catalogue" ||
-                            target == "dem_picture" || target == "drawn_box" || target == "kit";
+                            target == "dem_picture" || target == "kit";
         EXPECT_TRUE(shared || file.find(target) != std::string::npos || target.find(file) != std::string::npos)
             << include.file << " includes " << include.target;
     }

@@ -31,10 +31,10 @@
 
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/particles/packing.hpp"
-#include "solver/particles/tpms_filling.hpp"
 #include "solver/threads/thread_pool.hpp"
 #include "tests/support/granular_beds.hpp"
 #include "tests/support/tpms_cells.hpp"
+#include "tests/support/tpms_filling.hpp"
 
 using namespace grainsweep;
 using dem::fast::make_mixed_engine;
@@ -183,7 +183,7 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
 dem::Setup full_cell() {
     constexpr double edge = 100, thickness = 4, closest = 0.9;
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
-    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, thickness);
+    const machine::LevelSetRegion shell{geometry::TpmsCell::schwarz_p, edge, thickness, +1};
     return tests::cell_of(particles::fill_tpms(packing, shell, closest), edge, 0, 0);
 }
 

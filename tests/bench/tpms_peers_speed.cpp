@@ -18,10 +18,10 @@
 #include <string>
 
 #include "solver/dem/engine.hpp"
-#include "solver/particles/tpms_filling.hpp"
 #include "tests/support/peer_programs.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/tpms_cells.hpp"
+#include "tests/support/tpms_filling.hpp"
 
 using namespace grainsweep;
 
@@ -37,7 +37,7 @@ double user_seconds() {
 
 void compare(const std::string& name, geometry::TpmsCell cell, const char* word, double cohesion, double edge,
              const particles::Packing& packing) {
-    const geometry::TpmsShell shell(cell, +1, edge, shell_thickness);
+    const machine::LevelSetRegion shell{cell, edge, shell_thickness, +1};
     // every wall sphere is there
     const dem::Setup setup = tests::cell_of(particles::fill_tpms(packing, shell, 0), edge, cohesion, 0);
     const double gravity = 9.81 * 100 / edge;

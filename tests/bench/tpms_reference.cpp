@@ -18,6 +18,7 @@
 #include <string>
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/reference.hpp"
 
 using namespace grainsweep;
@@ -52,7 +53,7 @@ int main(int argc, char** argv) {
         if (!stream) throw std::runtime_error("cannot read " + packing);
         files["packing"] = {std::istreambuf_iterator<char>(stream), {}};
     }
-    const SceneInfo& info = *find_scene("tpms_discharge");
+    const SceneInfo& info = *campaign::scene_named("tpms_discharge");
     Inputs inputs = info.defaults();
     inputs["packing"] = packing == "generated" ? packing : "file:" + std::string(32, '0') + ":" + packing;
     inputs["edge"] = edge;

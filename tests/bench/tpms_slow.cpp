@@ -12,6 +12,7 @@
 #include <string>
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 using namespace grainsweep;
 
@@ -27,7 +28,7 @@ struct Mean {
 Mean retention(const std::string& precision, double time) {
     double sum = 0, squares = 0;
     for (int seed = 1; seed <= packings; ++seed) {
-        const SceneInfo& info = *find_scene("tpms_discharge");
+        const SceneInfo& info = *campaign::scene_named("tpms_discharge");
         Inputs inputs = info.defaults();
         inputs["edge"] = 20.0;
         inputs["shell"] = 2.0;

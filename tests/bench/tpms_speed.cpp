@@ -22,9 +22,10 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/particles/near_pairs.hpp"
-#include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/tpms_cells.hpp"
+#include "tests/support/tpms_filling.hpp"
 #include "tests/support/trade_off.hpp"
 
 using namespace grainsweep;
@@ -67,7 +68,7 @@ void print_skip(const char* skip, double without, double with, const char* unit,
 
 Observations answer_of(Inputs inputs, double& seconds, double& steps, std::string& fault) {
     NoArtefacts none;
-    const auto scene = find_scene("tpms_discharge")->make(inputs, 1, none);
+    const auto scene = campaign::scene_named("tpms_discharge")->make(inputs, 1, none);
     const double start = processor_seconds();
     scene->advance(1e9);
     seconds = processor_seconds() - start;
@@ -79,7 +80,7 @@ Observations answer_of(Inputs inputs, double& seconds, double& steps, std::strin
 }
 
 Inputs cell_inputs(double edge) {
-    Inputs inputs = find_scene("tpms_discharge")->defaults();
+    Inputs inputs = campaign::scene_named("tpms_discharge")->defaults();
     inputs["edge"] = edge;
     inputs["shell"] = 2.0;
     inputs["gravity"] = 9.81 * 100 / edge;
@@ -88,7 +89,7 @@ Inputs cell_inputs(double edge) {
 
 void skips(double edge) {
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
-    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, 4);
+    const machine::LevelSetRegion shell{geometry::TpmsCell::schwarz_p, edge, 4, +1};
     const auto whole = particles::fill_tpms(packing, shell, 0), lean = particles::fill_tpms(packing, shell, 0.9);
     constexpr std::int64_t steps = 2000;
     print_skip("wall spheres never reached", run(cell_of(whole, edge, 0, 0), steps).seconds,
@@ -134,7 +135,7 @@ void skips(double edge) {
 
 void skins(double edge) {
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
-    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, 4);
+    const machine::LevelSetRegion shell{geometry::TpmsCell::schwarz_p, edge, 4, +1};
     const dem::Setup setup = cell_of(particles::fill_tpms(packing, shell, 0.9), edge, 20e3, 0);
     for (const double skin : {0.0, 0.05, 0.1, 0.2, 0.4, 0.7}) {
         const Run r = run(setup, 3000, skin * diameter);

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "solver/dem/engine.hpp"
-#include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
+#include "tests/support/tpms_filling.hpp"
 
 namespace grainsweep::tests::tpms_discharge_test {
 
@@ -37,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Both, TpmsWall,
 TEST_P(TpmsWall, SpheresOutOfReachChangeNoBit) {
     const double edge = 20;
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
-    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, 4);
+    const machine::LevelSetRegion shell{geometry::TpmsCell::schwarz_p, edge, 4, +1};
     const auto whole = particles::fill_tpms(packing, shell, 0);
     const auto lean = particles::fill_tpms(packing, shell, 0.9);
     ASSERT_EQ(whole.mobile, lean.mobile);
@@ -73,7 +74,7 @@ TEST(TpmsDischarge, NothingThatIsTwoDiametersOutsideComesBack) {
     // The scene takes such particles out. Here they stay in a domain three cells wide and are followed.
     const double edge = 10, d = 45e-6;
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
-    const geometry::TpmsShell shell(geometry::TpmsCell::gyroid, +1, edge, 1);
+    const machine::LevelSetRegion shell{geometry::TpmsCell::gyroid, edge, 1, +1};
     const auto filling = particles::fill_tpms(packing, shell, 0.9);
     const auto engine = engine_of(filling, edge, dem::Method::Precision::double_precision, 20);
     std::vector<char> left(filling.mobile.size() + filling.wall.size(), 0);
@@ -98,7 +99,7 @@ TEST(TpmsDischarge, EarlyRetentionOfASmallCellIsThatOfAnotherProgram) {
     // P cell, edge 20, shell 2, no cohesion, gravity 9.81 x 100/20. Five packings made by the reference's own program
     // left 0.8965 +- 0.0034 and 0.7829 +- 0.0095 (standard deviations) at 0.5 and 1 t*, three of LIGGGHTS's runs
     // 0.8965 and 0.7798; LIGGGHTS itself, given the packing of this test, 0.9020 and 0.7915. Four standard deviations.
-    const SceneInfo& info = *find_scene("tpms_discharge");
+    const SceneInfo& info = *campaign::scene_named("tpms_discharge");
     Inputs inputs = info.defaults();
     inputs["edge"] = 20.0;
     inputs["shell"] = 2.0;

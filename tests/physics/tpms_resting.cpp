@@ -7,12 +7,13 @@
 #include <utility>
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/tpms_cells.hpp"
 
 namespace grainsweep::tests::tpms_resting_test {
 
 Inputs jammed_cell(double rest_speed) {
-    Inputs inputs = find_scene("tpms_discharge")->defaults();
+    Inputs inputs = campaign::scene_named("tpms_discharge")->defaults();
     inputs["edge"] = 10.0;
     inputs["shell"] = 2.0;
     inputs["gravity"] = 98.1;
@@ -25,7 +26,7 @@ Inputs jammed_cell(double rest_speed) {
 
 std::unique_ptr<Scene> make(const Inputs& inputs) {
     NoArtefacts none;
-    return find_scene("tpms_discharge")->make(inputs, 1, none);
+    return campaign::scene_named("tpms_discharge")->make(inputs, 1, none);
 }
 
 Observations answer_of(const Scene& scene) {

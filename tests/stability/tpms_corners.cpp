@@ -8,11 +8,12 @@
 #include <string>
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 namespace grainsweep::tests::tpms_corners_test {
 
 const SceneInfo& info() {
-    return *find_scene("tpms_discharge");
+    return *campaign::scene_named("tpms_discharge");
 }
 
 /// A cell of eight diameters, the column stress of the full one.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solver/dem/engine.hpp"
-#include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/scene.hpp"
+#include "tests/support/tpms_filling.hpp"
 
 #include <functional>
 #include <memory>

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/geometry/tpms.hpp"
+#include "solver/machine/region.hpp"
 
 namespace grainsweep::tests::geometry_level_surface_test {
 
@@ -63,8 +63,8 @@ TEST(LevelSurface, OfTpmsCellsHasTheirAreaAndEndsOnTheFaces) {
     const std::map<TpmsCell, double> areas = {
         {TpmsCell::schwarz_p, 2.3451}, {TpmsCell::gyroid, 3.0915}, {TpmsCell::diamond, 3.8377}};
     for (const auto& [cell, exact] : areas) {
-        const TpmsShell shell(cell, 1, 20, 2);
-        const auto surface = level_surface([&shell](const Vec3& x) { return shell.value(x); }, {}, {20, 20, 20}, 36);
+        const machine::Region kept{machine::LevelSetRegion{cell, 20, 0, 1}};
+        const auto surface = level_surface([&](const Vec3& x) { return kept.depth(x); }, {}, {20, 20, 20}, 36);
         EXPECT_NEAR(area(surface) / 400, exact, 0.015 * exact) << traits(cell).name;
         std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
         for (const auto& t : surface.triangles)

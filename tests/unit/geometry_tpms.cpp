@@ -2,12 +2,13 @@
 // (README of the tpms reference), numbers of spheres those of its summary.csv.
 #include "solver/geometry/tpms.hpp"
 
+#include "solver/machine/region.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "stats/random.hpp"
 
@@ -145,26 +146,27 @@ TEST(TpmsLevelSet, MeanThicknessOverTheLargest) {
     }
 }
 
-TEST(TpmsShell, ThicknessOfThePrimitiveCellIsExactWhereItIsLargest) {
-    // Through (L/4, L/2, 0): cos Y + cos Z = 0, so f = cos X and |f| <= sin(pi t/L) is |x - L/4| <= t/2.
-    const TpmsShell shell(TpmsCell::schwarz_p, +1, 20, 2);
-    EXPECT_DOUBLE_EQ(shell.level(), 0.30901699437494745);  // as recorded with the reference runs
-    EXPECT_EQ(shell.classify({5 - 1 - 1e-9, 10, 0}), TpmsRegion::deleted);
-    EXPECT_EQ(shell.classify({5 - 1 + 1e-9, 10, 0}), TpmsRegion::wall);
-    EXPECT_EQ(shell.classify({5 + 1 - 1e-9, 10, 0}), TpmsRegion::wall);
-    EXPECT_EQ(shell.classify({5 + 1 + 1e-9, 10, 0}), TpmsRegion::kept);
+/// Whether a point lies in the shell (side 0) or on a side of it.
+bool lies(TpmsCell cell, double edge, double side, const Point& x) {
+    return machine::Region{machine::LevelSetRegion{cell, edge, 2, side}}.contains(x);
 }
 
-TEST(TpmsShell, TheOtherSideSwapsKeptAndDeleted) {
-    const TpmsShell one(TpmsCell::i2y, +1, 30, 2), other(TpmsCell::i2y, -1, 30, 2);
+TEST(TpmsShell, ThicknessOfThePrimitiveCellIsExactWhereItIsLargest) {
+    // Through (L/4, L/2, 0): cos Y + cos Z = 0, so f = cos X and |f| <= sin(pi t/L) is |x - L/4| <= t/2.
+    const auto part = [](double side, double x) { return lies(TpmsCell::schwarz_p, 20, side, {x, 10, 0}); };
+    EXPECT_TRUE(part(-1, 5 - 1 - 1e-9) && !part(0, 5 - 1 - 1e-9));
+    EXPECT_TRUE(part(0, 5 - 1 + 1e-9) && !part(-1, 5 - 1 + 1e-9));
+    EXPECT_TRUE(part(0, 5 + 1 - 1e-9) && !part(1, 5 + 1 - 1e-9));
+    EXPECT_TRUE(part(1, 5 + 1 + 1e-9) && !part(0, 5 + 1 + 1e-9));
+}
+
+TEST(TpmsShell, APointLiesInOnePart) {
     const stats::Stream draws(5, 6);
     for (std::uint64_t p = 0; p < 200; ++p) {
         const Point x = {30 * draws.uniform(3 * p), 30 * draws.uniform(3 * p + 1), 30 * draws.uniform(3 * p + 2)};
-        const auto a = one.classify(x), b = other.classify(x);
-        if (a == TpmsRegion::wall)
-            EXPECT_EQ(b, TpmsRegion::wall);
-        else
-            EXPECT_EQ(b, a == TpmsRegion::kept ? TpmsRegion::deleted : TpmsRegion::kept);
+        int parts = 0;
+        for (const double side : {-1.0, 0.0, 1.0}) parts += lies(TpmsCell::i2y, 30, side, x) ? 1 : 0;
+        EXPECT_EQ(parts, 1);
     }
 }
 
@@ -181,26 +183,18 @@ TEST(TpmsShell, SharesAgreeWithTheSpheresCutByAnotherProgram) {
                                           {TpmsCell::iwp, 30, 12155, 5827, 31971},
                                           {TpmsCell::frd, 30, 10431, 7077, 31971}}};
     for (const auto& cut : cuts) {
-        const TpmsShell shell(cut.cell, traits(cut.cell).kept_side, cut.edge, 2);
         double kept = 0, wall = 0, all = 0;
         over_cell(61, [&](const Point& bar) {
             Point x{};
             for (std::size_t a = 0; a < 3; ++a) x[a] = cut.edge * (bar[a] / pi + 1) / 2;
-            const auto region = shell.classify(x);
-            kept += region == TpmsRegion::kept ? 1 : 0;
-            wall += region == TpmsRegion::wall ? 1 : 0;
+            kept += lies(cut.cell, cut.edge, traits(cut.cell).kept_side, x) ? 1 : 0;
+            wall += lies(cut.cell, cut.edge, 0, x) ? 1 : 0;
             all += 1;
         });
         const auto name = traits(cut.cell).name;
         EXPECT_NEAR(kept / all / (cut.kept / cut.all), 1, 0.02) << name << " " << cut.edge;
         EXPECT_NEAR(wall / all / (cut.wall / cut.all), 1, 0.02) << name << " " << cut.edge;
     }
-}
-
-TEST(TpmsShell, RefusesWhatIsNoShell) {
-    EXPECT_THROW(TpmsShell(TpmsCell::gyroid, 0, 20, 2), std::invalid_argument);
-    EXPECT_THROW(TpmsShell(TpmsCell::gyroid, 1, 20, 0), std::invalid_argument);
-    EXPECT_THROW(TpmsShell(TpmsCell::gyroid, 1, 20, 10), std::invalid_argument);
 }
 
 }  // namespace grainsweep::tests::geometry_tpms_test

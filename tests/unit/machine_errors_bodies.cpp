@@ -47,7 +47,7 @@ constexpr WrongMachine wrong[] = {
      "$.materials.glass.youngs_modulus: ", "must be a number from 1000 to 10000000000000, Pa."},
     {"/materials/glass/youngs_modulus", R"("60 um")",
      "$.materials.glass.youngs_modulus: ", "'um' does not fit 'Pa', these fit: Pa, kPa, MPa, GPa."},
-    {"/materials/glass/poisson_ratio", "0.5", "$.materials.glass.poisson_ratio: ", "must be a number from 0 to 0.49."},
+    {"/materials/glass/poisson_ratio", "0.6", "$.materials.glass.poisson_ratio: ", "must be a number from 0 to 0.5."},
     {"/materials/glass/poisson", "0.3", "$.materials.glass.poisson: unknown key", "Did you mean 'poisson_ratio'?"},
     {"/materials/glass/restitution", "0.3", "$.materials.glass.restitution: unknown key", "unknown key"},
     {"/materials/glass", "5", "$.materials.glass: ", "must be an object."},

@@ -61,9 +61,9 @@ TEST_F(ReportCurves, AreThoseOfCompletedCasesInTheOrderOfTheScene) {
     EXPECT_EQ(all.drawn, 11u);
     std::vector<std::string> names;
     for (const auto& family : all.families) names.push_back(family.name);
-    EXPECT_THAT(names, ElementsAre("retention_series", "overlap_histogram", "retained_profile"));
+    EXPECT_THAT(names, ElementsAre("overlap_histogram", "retained_profile", "retention_series"));
 
-    const auto& retention = all.families[0];
+    const auto& retention = all.families[2];
     EXPECT_FALSE(retention.over_bins);
     EXPECT_TRUE(std::isnan(retention.at_time));
     ASSERT_EQ(retention.curves.size(), 11u);
@@ -81,12 +81,12 @@ TEST_F(ReportCurves, AreThoseOfCompletedCasesInTheOrderOfTheScene) {
 TEST_F(ReportCurves, AHistogramIsShownAQuarterOfTheWayAProfileAsItIs) {
     answer_all_but_the_last();
     const auto all = curves();
-    const auto& histogram = all.families[1];
+    const auto& histogram = all.families[0];
     EXPECT_TRUE(histogram.over_bins);
     EXPECT_EQ(histogram.at_time, 2);
     EXPECT_THAT(histogram.curves[4].x, ElementsAre(0.1, 0.2, 0.1 * 3));
     EXPECT_THAT(histogram.curves[4].y, ElementsAre(421, 422, 423));
-    const auto& profile = all.families[2];
+    const auto& profile = all.families[1];
     EXPECT_TRUE(profile.over_bins);
     EXPECT_TRUE(std::isnan(profile.at_time));
     EXPECT_THAT(profile.curves[4].x, ElementsAre(0, 1, 2, 3));
@@ -98,13 +98,13 @@ TEST_F(ReportCurves, ManyCasesAreDrawnAtRandomAndTheSameEveryTime) {
     EXPECT_EQ(few.completed, 11u);
     EXPECT_EQ(few.drawn, 4u);
     std::set<std::size_t> rows;
-    for (const auto& curve : few.families[0].curves) {
+    for (const auto& curve : few.families[2].curves) {
         rows.insert(curve.row);
         EXPECT_THAT(curve.x, ElementsAre(0, 5, 10));
     }
     EXPECT_EQ(rows.size(), 4u);
     const auto again = curves({.most_curves = 4, .most_samples = 3});
-    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(again.families[0].curves[k].row, few.families[0].curves[k].row);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(again.families[2].curves[k].row, few.families[2].curves[k].row);
 }
 
 TEST_F(ReportCurves, StandInThePage) {
@@ -113,11 +113,11 @@ TEST_F(ReportCurves, StandInThePage) {
     const auto data = tests::parsed(report::page_data({&source, 1}));
     const auto& curves = data["campaigns"][0]["curves"];
     EXPECT_EQ(curves["drawn"], 11);
-    EXPECT_EQ(curves["families"][0]["over"], "time (sqrt(2 L/g))");
-    EXPECT_EQ(curves["families"][0]["over_bins"], false);
-    EXPECT_TRUE(curves["families"][0]["at"].is_null());
-    EXPECT_EQ(curves["families"][1]["at"], 2);
-    EXPECT_EQ(curves["families"][0]["curves"][0]["x"].size(), 200u);
+    EXPECT_EQ(curves["families"][2]["over"], "time (sqrt(2 L/g))");
+    EXPECT_EQ(curves["families"][2]["over_bins"], false);
+    EXPECT_TRUE(curves["families"][2]["at"].is_null());
+    EXPECT_EQ(curves["families"][0]["at"], 2);
+    EXPECT_EQ(curves["families"][2]["curves"][0]["x"].size(), 200u);
 }
 
 }  // namespace grainsweep::tests::report_curves_test

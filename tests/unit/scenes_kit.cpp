@@ -67,31 +67,6 @@ TEST(Kit, HandlesRecordWhatTheyDeclare) {
     EXPECT_EQ(specs[1].over, "time (s)");
 }
 
-TEST(Kit, AWallHasThePropertiesOfThePowderOrItsOwn) {
-    auto inputs = defaults(kit::declared(powder.wall_friction, powder.wall_rolling_friction, powder.wall_restitution,
-                                         powder.cohesion_law, powder.wall_cohesion, powder.surface_energy,
-                                         powder.wall_surface_energy));
-    EXPECT_EQ(powder.wall_surface(inputs), dem::Surface{});
-    inputs["wall_friction"] = 0.0;
-    inputs["wall_restitution"] = 0.9;
-    EXPECT_EQ(powder.wall_surface(inputs), (dem::Surface{.friction = 0.0, .restitution = 0.9}));
-    inputs["wall_friction"] = -0.5;
-    EXPECT_THROW((void)powder.wall_surface(inputs), std::invalid_argument);
-    inputs["wall_friction"] = -1.0;
-    inputs["wall_restitution"] = 0.0;
-    EXPECT_THROW((void)powder.wall_surface(inputs), std::invalid_argument);
-    inputs["wall_restitution"] = -1.0;
-    inputs["wall_cohesion"] = 5e3;
-    inputs["wall_surface_energy"] = 0.1;
-    EXPECT_EQ(powder.wall_surface(inputs), (dem::Surface{.cohesion = 5e3})) << "the other kind has no effect";
-    inputs["cohesion_law"] = std::string("dmt");
-    EXPECT_EQ(powder.wall_surface(inputs), (dem::Surface{.surface_energy = 0.1}));
-    inputs["cohesion_law"] = std::string("jkr");
-    EXPECT_THROW((void)powder.wall_surface(inputs), std::invalid_argument) << "of the wall alone";
-    inputs["surface_energy"] = 0.2;
-    EXPECT_EQ(powder.wall_surface(inputs), (dem::Surface{.surface_energy = 0.1}));
-}
-
 TEST(Kit, SizesInAFileAreTakenAsTheyAre) {
     auto inputs = defaults(block());
     inputs["size_distribution"] = std::string("file");

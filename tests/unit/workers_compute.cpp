@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 namespace grainsweep::tests::workers_compute_test {
 
@@ -25,7 +26,7 @@ TEST(Compute, RejectsACaseWhoseFileHasChanged) {
     const auto file = std::filesystem::temp_directory_path() / "grainsweep_compute_packing.csv";
     const std::string contents = "x,y,z\n1,1,1\n";
     std::ofstream(file) << contents;
-    const SceneInfo& info = *find_scene("tpms_discharge");
+    const SceneInfo& info = *campaign::scene_named("tpms_discharge");
     campaign::Case question;
     question.scene = info.name;
     question.revision = info.revision;

@@ -9,15 +9,16 @@ namespace probes {
 
 ProbeInfo amount_count(), amount_mass(), amount_volume(), bed_angle(), bed_fraction(), bed_layer_depth(),
     bed_surface_angle(), bed_surface_residual(), bed_surface_speed(), centre(), contact_energy(), contact_force(),
-    contact_force_density(), contact_number(), coordination(), cover(), cover_angle(), cover_area(), cover_outline(),
-    discharged_diameters(), discharged_mass(), discharged_number(), discharged_share(), fabric(), flow_mass(),
-    flow_number(), granular_temperature(), heap_angle(), heap_height(), heap_outline(), heap_residual(), heap_run_out(),
-    height_of_share(), impact_energy(), impact_energy_spectrum(), impact_number(), impact_number_spectrum(),
-    kinetic_energy(), lacey(), mass_share(), mean_diameter(), mean_height(), momentum(), nematic_order(), orientation(),
-    overlap(), particle_force(), particle_torque(), point_fraction(), profile(), radius(), residence_time(),
-    residence_time_density(), residence_time_sd(), rms_speed(), rolling_torque(), rotational_energy(), solid_fraction(),
-    spin(), stress(), stress_profile(), velocity(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(),
-    wall_position(), wall_pressure(), wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
+    contact_force_density(), contact_histogram(), contact_number(), coordination(), cover(), cover_angle(),
+    cover_area(), cover_outline(), discharged_diameters(), discharged_mass(), discharged_number(), discharged_share(),
+    fabric(), fastest(), flow_mass(), flow_number(), granular_temperature(), heap_angle(), heap_height(),
+    heap_outline(), heap_residual(), heap_run_out(), height_of_share(), impact_energy(), impact_energy_spectrum(),
+    impact_number(), impact_number_spectrum(), kinetic_energy(), lacey(), largest_contact_force(), mass_share(),
+    mean_diameter(), mean_height(), momentum(), nematic_order(), orientation(), overlap(), particle_force(),
+    particle_torque(), point_fraction(), profile(), radius(), residence_time(), residence_time_density(),
+    residence_time_sd(), rms_speed(), rolling_torque(), rotational_energy(), solid_fraction(), spin(), stress(),
+    stress_profile(), velocity(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(), wall_position(),
+    wall_pressure(), wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
 
 }  // namespace probes
 
@@ -38,6 +39,7 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 contact_energy,
                                 contact_force,
                                 contact_force_density,
+                                contact_histogram,
                                 contact_number,
                                 coordination,
                                 cover,
@@ -49,6 +51,7 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 discharged_number,
                                 discharged_share,
                                 fabric,
+                                fastest,
                                 flow_mass,
                                 flow_number,
                                 granular_temperature,
@@ -64,6 +67,7 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 impact_number_spectrum,
                                 kinetic_energy,
                                 lacey,
+                                largest_contact_force,
                                 mass_share,
                                 mean_diameter,
                                 mean_height,

@@ -1,27 +1,34 @@
-// Mean velocity along a direction, weighted by mass, and its sum, the momentum; mean spin about a direction.
+// Mean velocity along a direction, weighted by mass, and its sum, the momentum; mean spin about a direction; the
+// fastest particle along a direction.
 //
 //     velocity = sum m v . e / sum m          momentum = sum m v . e          spin = sum m w . e / sum m
 #include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
+#include <algorithm>
+
 namespace grainsweep::machine::probes {
 namespace {
 
-enum class VelocityOf { mean, sum, spin };
+enum class VelocityOf { mean, sum, spin, fastest };
 
 template <VelocityOf what>
 class VelocityProbe final : public machine::Probe {
 public:
     explicit VelocityProbe(const Options& options) : selection_(options), along_(options.vector("along")) {}
     double look(const Frame& frame) override {
-        double momentum = 0, mass = 0;
+        double momentum = 0, mass = 0, fastest = 0;
         selection_.each(frame, [&](std::size_t i) {
             const auto& of = what == VelocityOf::spin ? frame.state.angular_velocity : frame.state.velocity;
-            momentum += frame.mass(i) * geometry::dot(of[i], along_);
-            mass += frame.mass(i);
+            const double component = geometry::dot(of[i], along_);
+            const double own = what == VelocityOf::fastest ? 1 : frame.mass(i);
+            momentum += own * component;
+            mass += own;
+            fastest = std::max(fastest, component);
         });
         if (what == VelocityOf::sum) return momentum;
-        return mass > 0 ? momentum / mass : undefined;
+        const double value = what == VelocityOf::fastest ? fastest : momentum / mass;
+        return mass > 0 ? value : undefined;
     }
 
 private:
@@ -46,6 +53,10 @@ ProbeInfo velocity() {
 ProbeInfo momentum() {
     return {"momentum", "kg m/s", "sum of mass times velocity along a direction", velocity_options,
             make_velocity<VelocityOf::sum>};
+}
+ProbeInfo fastest() {
+    return {"fastest", "m/s", "largest velocity along a direction; 0: none moves along it", velocity_options,
+            make_velocity<VelocityOf::fastest>};
 }
 ProbeInfo spin() {
     return {"spin", "rad/s", "mean angular velocity about a direction, right hand, weighted by mass", velocity_options,

@@ -43,28 +43,6 @@ dem::Material Powder::material(const Inputs& inputs) const {
     return material;
 }
 
-dem::Surface Powder::wall_surface(const Inputs& inputs) const {
-    dem::Surface surface{.friction = own(wall_friction, inputs),
-                         .rolling_friction = own(wall_rolling_friction, inputs),
-                         .restitution = own(wall_restitution, inputs, true)};
-    const dem::CohesionLaw law = cohesion_law(inputs);
-    if (!dem::acts_by_surface_energy(law)) {
-        surface.cohesion = own(wall_cohesion, inputs);
-        return surface;
-    }
-    surface.surface_energy = own(wall_surface_energy, inputs);
-    const double of_powder = surface_energy(inputs), of_walls = surface.surface_energy.value_or(of_powder);
-    if (law == dem::CohesionLaw::jkr && (of_powder > 0) != (of_walls > 0)) {
-        char sentence[200];
-        std::snprintf(sentence, sizeof sentence,
-                      "wall_surface_energy is %.4g and surface_energy %.4g: 'jkr' needs both above 0, or neither; "
-                      "give a small one, or cohesion_law 'dmt'",
-                      of_walls, of_powder);
-        throw std::invalid_argument(sentence);
-    }
-    return surface;
-}
-
 particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files& files) const {
     using particles::SizeDistribution;
     switch (size_distribution(inputs)) {
@@ -110,17 +88,6 @@ dem::Method Powder::method(const Inputs& inputs) const {
     dem::Method method;
     method.precision = precision(inputs);
     return method;
-}
-
-std::optional<double> own(const Real& property, const Inputs& inputs, bool positive) {
-    const double value = property(inputs);
-    if (value == as_powder) return std::nullopt;
-    if (positive ? value > 0 : value >= 0) return value;
-    char sentence[160];
-    std::snprintf(sentence, sizeof sentence, "%.*s of %.4g is no property: give -1, as in the powder, or %s",
-                  static_cast<int>(property.name.size()), property.name.data(), value,
-                  positive ? "more than 0" : "at least 0");
-    throw std::invalid_argument(sentence);
 }
 
 double pull_off_force(const dem::Material& material, double diameter) {

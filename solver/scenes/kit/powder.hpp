@@ -16,9 +16,6 @@
 
 namespace grainsweep::kit {
 
-/// Value of a wall's property with the meaning "as the powder".
-inline constexpr double as_powder = -1;
-
 enum class SizeLaw { monodisperse, weibull_wide, weibull_narrow, lognormal, uniform, file };
 
 struct Powder {
@@ -76,11 +73,6 @@ struct Powder {
         "alone, as LIGGGHTS does; rolling moments likewise",
         {{{"sum", dem::TangentialLimit::sum}, {"spring", dem::TangentialLimit::spring}}},
         {if_set("friction")}};
-    Real wall_friction{"wall_friction", "1", "Coulomb friction at the walls; -1: friction", as_powder, {as_powder, 2}};
-    Real wall_rolling_friction{
-        "wall_rolling_friction", "1", "rolling friction at the walls; -1: rolling_friction", as_powder, {as_powder, 1}};
-    Real wall_restitution{
-        "wall_restitution", "1", "restitution at the walls; -1: restitution", as_powder, {as_powder, 1}};
     Real cohesion{"cohesion", "J/m3",   "cohesion energy density of 'sjkr', 'sjkr2', 'paper'",
                   0.0,        {0, 1e6}, {if_word("cohesion_law", "sjkr", "sjkr2", "paper")}};
     Choice<dem::CohesionLaw, 5> cohesion_law{
@@ -93,20 +85,12 @@ struct Powder {
           {"paper", dem::CohesionLaw::paper},
           {"jkr", dem::CohesionLaw::jkr},
           {"dmt", dem::CohesionLaw::dmt}}}};
-    Real wall_cohesion{"wall_cohesion", "J/m3",           "cohesion energy density at the walls; -1: cohesion",
-                       as_powder,       {as_powder, 1e6}, {if_word("cohesion_law", "sjkr", "sjkr2", "paper")}};
     Real surface_energy{"surface_energy",
                         "J/m2",
                         "work of adhesion w of 'jkr' and 'dmt': of two surfaces of surface energy g each, 2 g",
                         0.0,
                         {0, 10},
                         {if_word("cohesion_law", "jkr", "dmt")}};
-    Real wall_surface_energy{"wall_surface_energy",
-                             "J/m2",
-                             "work of adhesion at the walls; -1: surface_energy",
-                             as_powder,
-                             {as_powder, 10},
-                             {if_word("cohesion_law", "jkr", "dmt")}};
     Real time_step{"time_step",
                    "s",
                    "time step; 0: time_step_fraction of the shorter of the Rayleigh time and the Hertz "
@@ -124,10 +108,6 @@ struct Powder {
 
     /// Returns the material from all parameters from density to cohesion_law.
     [[nodiscard]] dem::Material material(const Inputs& inputs) const;
-    /// Returns the deviations of the walls from the powder. Throws std::invalid_argument with one sentence for a value
-    /// that is neither a property nor as_powder. Throws it also with 'jkr' if only the walls, or only all other
-    /// contacts, have surface energy.
-    [[nodiscard]] dem::Surface wall_surface(const Inputs& inputs) const;
     /// Returns the distribution of d/D. Throws std::invalid_argument with one sentence if the file is missing or D is
     /// outside its range.
     [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files& files) const;
@@ -138,10 +118,6 @@ struct Powder {
     [[nodiscard]] std::optional<double> step_share(const Inputs& inputs) const;
     [[nodiscard]] dem::Method method(const Inputs& inputs) const;
 };
-
-/// Returns the value of a wall's property; empty for as_powder. Throws std::invalid_argument with one sentence for any
-/// other negative value, and with `positive` also for 0.
-[[nodiscard]] std::optional<double> own(const Real& property, const Inputs& inputs, bool positive = false);
 
 /// Bond number, recorded if the powder is cohesive.
 inline constexpr Scalar bond_number{

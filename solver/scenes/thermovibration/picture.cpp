@@ -1,6 +1,6 @@
 #include "solver/scenes/thermovibration/picture.hpp"
 
-#include "solver/scenes/drawn_box.hpp"
+#include "solver/scenes/dem_picture.hpp"
 
 namespace grainsweep::thermovibration {
 

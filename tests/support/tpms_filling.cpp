@@ -1,4 +1,4 @@
-#include "solver/particles/tpms_filling.hpp"
+#include "tests/support/tpms_filling.hpp"
 
 #include "solver/particles/reach.hpp"
 
@@ -6,12 +6,13 @@
 
 namespace grainsweep::particles {
 
-TpmsFilling fill_tpms(const Packing& packing, const geometry::TpmsShell& shell, double closest) {
+TpmsFilling fill_tpms(const Packing& packing, const machine::LevelSetRegion& shell, double closest) {
     TpmsFilling filling;
+    machine::LevelSetRegion solid = shell;
+    solid.side = 0;
     for (const auto& x : packing.positions) {
-        const auto region = shell.classify(x);
-        if (region == geometry::TpmsRegion::kept) filling.mobile.push_back(x);
-        if (region == geometry::TpmsRegion::wall) filling.wall.push_back(x);
+        if (machine::Region{shell}.contains(x)) filling.mobile.push_back(x);
+        if (machine::Region{solid}.contains(x)) filling.wall.push_back(x);
     }
     filling.wall_spheres = filling.wall.size();
     if (closest <= 0 || filling.wall.empty()) return filling;

@@ -2,7 +2,7 @@
 // mobile, the others are removed.
 #pragma once
 
-#include "solver/geometry/tpms.hpp"
+#include "solver/machine/region.hpp"
 #include "solver/particles/packing.hpp"
 
 #include <array>
@@ -17,9 +17,9 @@ struct TpmsFilling {
     std::size_t wall_spheres = 0;               ///< of the whole shell
 };
 
-/// Returns the filling. closest: smallest distance (diameters) of a mobile centre from a frozen one, see reach.hpp; 0
-/// keeps the whole shell. The outermost frozen spheres along the axes are kept, so that a box around the spheres equals
-/// the box around the whole shell.
-[[nodiscard]] TpmsFilling fill_tpms(const Packing& packing, const geometry::TpmsShell& shell, double closest);
+/// Returns the filling; the shell in diameters, its side +1 or -1. closest: smallest distance (diameters) of a mobile
+/// centre from a frozen one, see reach.hpp; 0 keeps the whole shell. The outermost frozen spheres along the axes are
+/// kept, so that a box around the spheres equals the box around the whole shell.
+[[nodiscard]] TpmsFilling fill_tpms(const Packing& packing, const machine::LevelSetRegion& shell, double closest);
 
 }  // namespace grainsweep::particles
