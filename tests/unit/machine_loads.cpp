@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace grainsweep::tests::machine_loads_test {
 
@@ -63,7 +64,7 @@ TEST(MachineLoads, BeforeAndAfterItsTimesALoadIsThatOfTheEnds) {
 }
 
 TEST(MachineLoads, ADriveFollowsTheCourseOfItsTorque) {
-    const double expected = 1e-4 * std::pow(0.4, 3) / (6 * 1e-5);
+    const double expected = 1e-4 * std::pow(0.4, 3) / (6 * 1e-5) * 180 / std::numbers::pi;  // degrees
     for (const char* precision : {"double", "mixed"})
         EXPECT_NEAR(seen_in(R"json({"drive": {"axis": [0, 0, 1], "times": [0, 2], "torques": [0, 2e-4], "inertia": 1e-5,
                         "speed_at_most": 10}, "from": "push"})json",
