@@ -192,7 +192,8 @@ GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, several>& laws
         m.inverse_distance = inverse_distance;
         m.difference = difference;
         m.inverse_masses = row[3];
-        if (f.member != nullptr) m.inverse_masses = row[3] + added_inverse_masses(f, first, second, m.normal);
+        if constexpr (Kernel::unequal)
+            if (f.mobility != nullptr) m.inverse_masses = inverse_masses(f.mobility, first, second, m.normal);
         if constexpr (Kernel::rolls) {
             F spin_row[4];
             load_spin_difference(f.records, first, second, spin_row);
