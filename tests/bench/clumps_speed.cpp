@@ -1,6 +1,7 @@
 // What a step of a clump's sphere costs beside a step of a sphere, in mixed precision on one core.
 //
-//   bench_clumps [--scene bed|drum] [--shape NAME] [--spheres N] [--path baseline|avx2|avx512] [--rounds N]
+//   bench_clumps [--scene bed|drum] [--shape NAME] [--spheres N] [--path baseline|avx2|avx512] [--rounds N] [--peer
+//   none]
 //
 // Spheres, dumbbells 1.5, tetrahedra and a stone of 12 spheres, all of 5 mm (equal volume), by 400, 4,000 and 20,000
 // spheres: settled in a box with periodic sides, and in a turning drum. In each round every shape runs a hundred steps,
@@ -43,6 +44,7 @@ struct Options {
     std::string scene, shape;
     std::size_t spheres = 0;
     int rounds = 10;
+    bool peer = true;
     dem::Method::Path path = dem::Method::Path::best;
 };
 
@@ -305,7 +307,7 @@ void compare(const Options& o, const std::string& scene, std::size_t spheres) {
             bed.least = std::min(bed.least, spent);
         }
     for (const Bed& bed : beds) {
-        const bool same = scene == "bed" && spheres == 4000 && bed.shape != "stone_12";
+        const bool same = o.peer && scene == "bed" && spheres == 4000 && bed.shape != "stone_12";
         print(scene, bed, beds.front(), o.rounds, same ? liggghts(shape_named(bed.shape), spheres) : std::nullopt);
     }
 }
@@ -319,6 +321,7 @@ int main(int argc, char** argv) {
         if (name == "--scene") o.scene = value;
         if (name == "--shape") o.shape = value;
         if (name == "--spheres") o.spheres = std::stoul(value);
+        if (name == "--peer") o.peer = value != "none";
         if (name == "--rounds") o.rounds = std::stoi(value);
         if (name == "--path")
             o.path = value == "avx2"     ? dem::Method::Path::avx2

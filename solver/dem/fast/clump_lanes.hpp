@@ -15,6 +15,9 @@
 namespace grainsweep::dem::fast {
 namespace {
 
+GRAINSWEEP_LANES V3 load(const float* const (&rows)[3], std::int64_t at) {
+    return {load(rows[0] + at), load(rows[1] + at), load(rows[2] + at)};
+}
 GRAINSWEEP_LANES D3 load(const double* const (&rows)[3], std::int64_t at) {
     return {load(rows[0] + at), load(rows[1] + at), load(rows[2] + at)};
 }
@@ -95,30 +98,38 @@ GRAINSWEEP_LANES D3 spin_of(const LaneAxes& axes, D3 momentum, D3 inverse) {
     return in_space(axes, {inverse.x * dot(axes.of[0], momentum), inverse.y * dot(axes.of[1], momentum),
                            inverse.z * dot(axes.of[2], momentum)});
 }
-/// Returns a quaternion divided by its length, which lies between 0 and sqrt(3): by Newton's iteration, because it is
-/// nearly 1.
-GRAINSWEEP_LANES LaneQuaternion of_unit_length(LaneQuaternion q) {
-    const D half_square = broadcast(0.5) * fma(q.w, q.w, fma(q.x, q.x, fma(q.y, q.y, q.z * q.z)));
-    const D one_and_half = broadcast(1.5);
-    D y = one_and_half - half_square;
-    for (int iteration = 0; iteration < 5; ++iteration) y = y * fnma(half_square * y, y, one_and_half);
-    return {y * q.w, y * q.x, y * q.y, y * q.z};
+/// Returns 1/sqrt(1 + e): the first terms of its series, and Newton's iteration to the last digit below 0.2.
+GRAINSWEEP_LANES D inverse_root_beside_one(D e) {
+    const D half = broadcast(0.5), one_and_half = broadcast(1.5), half_square = fma(half, e, half);
+    D y = fma(e, fma(e, fnma(broadcast(0.3125), e, broadcast(0.375)), broadcast(-0.5)), broadcast(1.0));
+    for (int iteration = 0; iteration < 2; ++iteration) y = y * fnma(half_square * y, y, one_and_half);
+    return y;
 }
-/// Returns q + part w q, of unit length.
-GRAINSWEEP_LANES LaneQuaternion moved_on(const LaneQuaternion& q, D3 w, double part) {
-    const D3 p = w * broadcast(part);
-    return of_unit_length(
-        {fnma(p.x, q.x, fnma(p.y, q.y, fnma(p.z, q.z, q.w))), fma(q.w, p.x, fma(p.y, q.z, fnma(p.z, q.y, q.x))),
-         fma(q.w, p.y, fma(p.z, q.x, fnma(p.x, q.z, q.y))), fma(q.w, p.z, fma(p.x, q.y, fnma(p.y, q.x, q.z)))});
+/// Returns w q.
+GRAINSWEEP_LANES LaneQuaternion rate_of(const LaneQuaternion& q, D3 w) {
+    const D none = broadcast(0.0);
+    return {fnma(w.x, q.x, fnma(w.y, q.y, fnma(w.z, q.z, none))), fma(q.w, w.x, fma(w.y, q.z, fnma(w.z, q.y, none))),
+            fma(q.w, w.y, fma(w.z, q.x, fnma(w.x, q.z, none))), fma(q.w, w.z, fma(w.x, q.y, fnma(w.y, q.x, none)))};
+}
+/// Returns q + part w q of unit length: it is sqrt(1 + part^2 w^2) long.
+GRAINSWEEP_LANES LaneQuaternion moved_on(const LaneQuaternion& q, const LaneQuaternion& rate, D square, double part) {
+    const D length = inverse_root_beside_one(square * broadcast(part * part)), p = broadcast(part);
+    return {length * fma(p, rate.w, q.w), length * fma(p, rate.x, q.x), length * fma(p, rate.y, q.y),
+            length * fma(p, rate.z, q.z)};
 }
 /// Advances orientations; returns the angular velocity of the middle of the step (turn() in solver/dem/body.hpp).
 GRAINSWEEP_LANES D3 turn(LaneQuaternion& q, const LaneAxes& axes, D3 momentum, D3 inverse, double span) {
     const D3 start = spin_of(axes, momentum, inverse);
-    const LaneQuaternion whole = moved_on(q, start, span / 2), middle = moved_on(q, start, span / 4);
+    const LaneQuaternion at_start = rate_of(q, start);
+    const D square = dot(start, start);
+    const LaneQuaternion whole = moved_on(q, at_start, square, span / 2),
+                         middle = moved_on(q, at_start, square, span / 4);
     const D3 spin = spin_of(axes_of(middle), momentum, inverse);
-    const LaneQuaternion halves = moved_on(middle, spin, span / 4);
-    q = of_unit_length({halves.w + halves.w - whole.w, halves.x + halves.x - whole.x, halves.y + halves.y - whole.y,
-                        halves.z + halves.z - whole.z});
+    const LaneQuaternion halves = moved_on(middle, rate_of(middle, spin), dot(spin, spin), span / 4);
+    const D w = halves.w + halves.w - whole.w, x = halves.x + halves.x - whole.x, y = halves.y + halves.y - whole.y,
+            z = halves.z + halves.z - whole.z;
+    const D length = inverse_root_beside_one(fma(w, w, fma(x, x, fma(y, y, fma(z, z, broadcast(-1.0))))));
+    q = {length * w, length * x, length * y, length * z};
     return spin;
 }
 
@@ -134,10 +145,12 @@ struct LaneExtremes {
             low[a] = broadcast(t.velocity_low[a]), low[3 + a] = broadcast(t.velocity_low[4 + a]);
         }
     }
-    GRAINSWEEP_LANES void include(int from, V3 v) {
+    GRAINSWEEP_LANES void include(int from, V3 v, F slack) {
         const F of[3] = {v.x, v.y, v.z};
-        for (int a = 0; a < 3; ++a)
-            high[from + a] = max(of[a], high[from + a]), low[from + a] = min(of[a], low[from + a]);
+        for (int a = 0; a < 3; ++a) {
+            high[from + a] = max(of[a] + slack, high[from + a]);
+            low[from + a] = min(of[a] - slack, low[from + a]);
+        }
     }
     GRAINSWEEP_LANES void add_to(Tally& t) const {
         for (int a = 0; a < 6; ++a) {
@@ -174,9 +187,9 @@ GRAINSWEEP_PHASE void write_mobility(const Field& f, const ClumpView& c, const C
     const V3 row[3] = {{inverse[0], inverse[1], inverse[2]},
                        {inverse[1], inverse[3], inverse[4]},
                        {inverse[2], inverse[4], inverse[5]}};
-    const F per_length = broadcast(static_cast<float>(c.inverse_length)), zero = broadcast(0.0f);
+    const F zero = broadcast(0.0f);
     for (std::int64_t slot = b.slot, k = 0; k < b.members; ++k, slot += width) {
-        const V3 at = single(load(c.at, slot)) * per_length;
+        const V3 at = load(c.single_at, slot);
         const V3 r = fma(axes[0], at.x, fma(axes[1], at.y, axes[2] * at.z));
         // I^-1 [r] has rows i x r, and [r]^T times it has columns (column) x r.
         const V3 i0 = cross(row[0], r), i1 = cross(row[1], r), i2 = cross(row[2], r);
@@ -196,31 +209,45 @@ GRAINSWEEP_LANES void fetch(const Field& f, const ClumpView& c, const ClumpBatch
         const Place p = c.place[slot];
         prefetch_to_write(force_at(f.forces, p));
         prefetch_to_write(record_at(f.records, p));
-        prefetch_to_write(f.residuals + p / places_per_index);
+        if (f.residuals != nullptr) prefetch_to_write(f.residuals + p / places_per_index);
         prefetch_to_write(f.mobility + p / places_per_index);
     }
 }
 
-/// Steps the bodies of a batch.
+/// Writes the rests of positions, which are a column of their own if radii differ.
+GRAINSWEEP_LANES void write_rests(const Field& f, const Place* place, const F (&xyz)[4]) {
+    F blocks_of[4];
+    to_blocks(xyz, xyz[3], blocks_of);
+    float rows[4][width];
+    for (int k = 0; k < 4; ++k) store(rows[k], blocks_of[k]);
+    for (int q = 0; q < width; ++q)
+        store4(f.residuals[place[q] / places_per_index].position, load4(rows[q & 3] + (q & ~3)));
+}
+
+/// Steps the bodies of a batch. Forces are summed in single precision, as those on spheres are.
+template <bool unequal>
 GRAINSWEEP_PHASE void step_batch(const Field& f, const ClumpView& c, const ClumpBatch& b, LaneExtremes& extremes) {
     const D time = broadcast(c.time);
     D numbers[4];
     load_bodies<4>(c.orientation, b, numbers);
     LaneQuaternion q{numbers[0], numbers[1], numbers[2], numbers[3]};
     const LaneAxes before = axes_of(q);
-    const D nought = broadcast(0.0);
-    D3 force{nought, nought, nought}, torque = force;
+    // With r = sum_k p_k e_k, sum r x F = sum_k e_k x (sum p_k F).
+    V3 force = zero_vector(), torque = zero_vector(), moment[3] = {zero_vector(), zero_vector(), zero_vector()};
     for (std::int64_t slot = b.slot, k = 0; k < b.members; ++k, slot += width) {
         F rows[8];
         load_eights([&](int lane) { return load8(force_at(f.forces, c.place[slot + lane])->force); }, rows);
-        const D3 on{exact(rows[0]), exact(rows[1]), exact(rows[2])},
-            turns{exact(rows[4]), exact(rows[5]), exact(rows[6])};
+        const V3 on{rows[0], rows[1], rows[2]}, at = load(c.single_at, slot);
         force = force + on;
-        torque = fma(turns, broadcast(c.length), add_cross(torque, in_space(before, load(c.at, slot)), on));
+        torque = torque + V3{rows[4], rows[5], rows[6]};
+        moment[0] = fma(on, at.x, moment[0]), moment[1] = fma(on, at.y, moment[1]),
+        moment[2] = fma(on, at.z, moment[2]);
     }
-    const D3 velocity = fma(fma(force, load(c.inverse_mass + b.lane) * broadcast(c.force), broadcast(c.acceleration)),
-                            time, load_vectors(c.velocity, b));
-    const D3 momentum = fma(torque, broadcast(c.force * c.time), load_vectors(c.momentum, b));
+    for (int k = 0; k < 3; ++k) torque = add_cross(torque, single(before.of[k]), moment[k]);
+    const D3 velocity =
+        fma(fma(exact(force), load(c.inverse_mass + b.lane) * broadcast(c.force), broadcast(c.acceleration)), time,
+            load_vectors(c.velocity, b));
+    const D3 momentum = fma(exact(torque), broadcast(c.force * c.length * c.time), load_vectors(c.momentum, b));
     const D3 moved = velocity * time, position = load_vectors(c.position, b) + moved;
     const D3 spin = turn(q, before, momentum, load(c.inverse_inertia, b.lane), c.time);
     const D turned[4] = {q.w, q.x, q.y, q.z};
@@ -228,59 +255,70 @@ GRAINSWEEP_PHASE void step_batch(const Field& f, const ClumpView& c, const Clump
     store_vectors(c.velocity, b, velocity);
     store_vectors(c.momentum, b, momentum);
     store_vectors(c.position, b, position);
-    store_vectors(c.spin, b, spin);
     store_vectors(c.spin_in_step, b, spin);
     D fallen;
     load_bodies<1>(c.fallen, b, &fallen);
     fallen = fma(load(c.mass + b.lane), dot(broadcast(c.gravity), moved), fallen);
     store_bodies<1>(c.fallen, b, &fallen);
 
+    // A member at p is at the centre + sum_k p_k e_k, and moves with the velocity + sum_k p_k (w x e_k).
     const LaneAxes now = axes_of(q);
-    const V3 single_axes[3] = {single(now.of[0]), single(now.of[1]), single(now.of[2])};
-    const V3 single_spin = single(spin * time);
-    extremes.include(3, single_spin);
-    const D3 from_centre = position - broadcast(c.centre);
-    const D per_speed = broadcast(c.inverse_speed), per_length = broadcast(c.inverse_length);
-    const F zero = broadcast(0.0f), inverse_mass = load(c.inverse_mass_single + b.lane);
+    const D3 per_unit = broadcast(c.inverse_unit), from_centre = position - broadcast(c.centre);
+    const D3 centre{from_centre.x * per_unit.x, from_centre.y * per_unit.y, from_centre.z * per_unit.z};
+    const V3 single_spin = single(spin * time), single_velocity = single(velocity * broadcast(c.inverse_speed));
+    LaneAxes in_units_along;
+    V3 axes[3], speed_along[3];
+    for (int k = 0; k < 3; ++k) {
+        const D3 e = now.of[k];
+        in_units_along.of[k] = {e.x * per_unit.x, e.y * per_unit.y, e.z * per_unit.z};
+        axes[k] = single(e);
+        speed_along[k] = cross(single_spin, axes[k]);
+    }
+    // The way of a member during the step differs by less than w^2 r from its velocity at the end.
+    const F slack = dot(single_spin, single_spin) * load(c.reach + b.lane), zero = broadcast(0.0f);
+    extremes.include(3, single_spin, zero);
+    const F inverse_mass = load(c.inverse_mass_single + b.lane);
     for (std::int64_t slot = b.slot, k = 0; k < b.members; ++k, slot += width) {
-        const D3 at = load(c.at, slot), lever = in_space(now, at);
-        const D3 x = from_centre + lever, v = add_cross(velocity, spin, lever) * per_speed;
-        const V3 way = single((moved + (lever - in_space(before, at))) * per_length), single_v = single(v);
-        extremes.include(0, single_v), extremes.include(0, way);
-        const InUnits ux = in_units(x.x * broadcast(c.inverse_unit[0])),
-                      uy = in_units(x.y * broadcast(c.inverse_unit[1])),
-                      uz = in_units(x.z * broadcast(c.inverse_unit[2]));
+        const D3 at = load(c.at, slot);
+        const D3 x =
+            fma(in_units_along.of[0], at.x, fma(in_units_along.of[1], at.y, fma(in_units_along.of[2], at.z, centre)));
+        const V3 p = load(c.single_at, slot);
+        const V3 v = fma(speed_along[0], p.x, fma(speed_along[1], p.y, fma(speed_along[2], p.z, single_velocity)));
+        extremes.include(0, v, slack);
+        const InUnits ux = in_units(x.x), uy = in_units(x.y), uz = in_units(x.z);
         const F radius = load(c.radius + slot);
-        const V3 surface = single_spin * radius;
         const F place[4] = {ux.whole, uy.whole, uz.whole, load(c.inverse_radius + slot)};
-        const F motion[4] = {single_v.x, single_v.y, single_v.z, inverse_mass};
+        const F motion[4] = {v.x, v.y, v.z, inverse_mass};
         const F rotation[4] = {single_spin.x, single_spin.y, single_spin.z, radius};
-        const F turning[4] = {surface.x, surface.y, surface.z, radius};
-        const F below_units[4] = {ux.rest, uy.rest, uz.rest, zero};
-        const F below_speed[4] = {single(v.x - exact(single_v.x)), single(v.y - exact(single_v.y)),
-                                  single(v.z - exact(single_v.z)), zero};
-        F8 low[width], high[width], rest[width];
+        const F rests[4] = {ux.rest, uy.rest, uz.rest, zero};
+        F8 low[width], high[width];
         to_eights(place, motion, low);
-        to_eights(rotation, turning, high);
-        to_eights(below_units, below_speed, rest);
+        if constexpr (unequal) {
+            const V3 surface = single_spin * radius;
+            const F turning[4] = {surface.x, surface.y, surface.z, radius};
+            to_eights(rotation, turning, high);
+            write_rests(f, c.place + slot, rests);
+        } else {
+            to_eights(rotation, rests, high);
+        }
         for (int lane = 0; lane < width; ++lane) {
-            const std::uint64_t i = c.place[slot + lane] / places_per_index;
-            auto* const record = reinterpret_cast<float*>(f.records + i);
+            const Place to = c.place[slot + lane];
+            auto* const record = reinterpret_cast<float*>(f.records + to / places_per_index);
             store8(record, low[lane]);
             store8(record + 8, high[lane]);
-            store8(f.residuals[i].position, rest[lane]);
-            store8(f.forces[i].force, broadcast8(0.0f));
+            store8(force_at(f.forces, to)->force, broadcast8(0.0f));
         }
     }
-    write_mobility(f, c, b, single_axes);
+    write_mobility(f, c, b, axes);
 }
 
-inline void step_clumps(const Field& f, const ClumpView& c, std::int32_t begin, std::int32_t end, Tally& t) {
+template <bool unequal>
+void step_clumps(const Field& f, const ClumpView& c, std::int32_t begin, std::int32_t end, Tally& t) {
     const auto denormals = flush_denormals();
     LaneExtremes extremes(t);
     for (std::int32_t k = begin; k < end; ++k) {
-        if (c.fetches != 0 && k + 1 < end) fetch(f, c, c.batches[k + 1]);
-        step_batch(f, c, c.batches[k], extremes);
+        if (f.read_ahead != 0 && k + 1 < end) fetch(f, c, c.batches[k + 1]);
+        step_batch<unequal>(f, c, c.batches[k], extremes);
     }
     extremes.add_to(t);
     restore_denormals(denormals);

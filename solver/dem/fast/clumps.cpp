@@ -1,6 +1,7 @@
 #include "solver/dem/fast/clumps.hpp"
 
 #include "solver/dem/fast/listed_pairs.hpp"
+#include "solver/dem/fast/residual.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -11,9 +12,6 @@ namespace grainsweep::dem::fast {
 using namespace geometry;
 
 namespace {
-
-/// Beyond these what a step of clumps writes no longer fits the nearer caches.
-constexpr std::int32_t many_members = 4000;
 
 double force_unit(const Scale& scale) {
     return scale.mass * scale.length / (scale.time * scale.time);
@@ -55,7 +53,7 @@ bool Clumps::map(Field& field, Columns& columns, const Kernels& kernels, std::si
         field.mobility[i] = {{inverse, 0, 0, inverse, 0, inverse, 0, 0}};
     }
     batch_up(field, kernels.width, scale);
-    kernels.find_mobility(field, view(field, scale), 0, static_cast<std::int32_t>(batches_.size()));
+    kernels.find_mobility(field, view(scale), 0, static_cast<std::int32_t>(batches_.size()));
     return true;
 }
 
@@ -76,8 +74,9 @@ void Clumps::batch_up(const Field& field, std::int32_t width, const Scale& scale
     for (auto* column : {&lane_mass_, &lane_inverse_mass_}) column->resize(lanes);
     for (auto& column : lane_inverse_inertia_) column.resize(lanes);
     for (auto& column : lane_turning_) column.resize(lanes);
-    lane_single_mass_.resize(lanes);
+    for (auto* column : {&lane_single_mass_, &lane_reach_}) column->resize(lanes);
     for (auto& column : slot_at_) column.resize(static_cast<std::size_t>(slots));
+    for (auto& column : slot_single_at_) column.resize(static_cast<std::size_t>(slots));
     for (auto* column : {&slot_radius_, &slot_inverse_radius_}) column->resize(static_cast<std::size_t>(slots));
     slot_place_.resize(static_cast<std::size_t>(slots));
     // I^-1 of the mass unit: added to 1/m in the engine's units.
@@ -89,6 +88,7 @@ void Clumps::batch_up(const Field& field, std::int32_t width, const Scale& scale
             lane_mass_[lane] = mass[b];
             lane_inverse_mass_[lane] = inverse_mass[b];
             lane_single_mass_[lane] = static_cast<float>(scale.mass / mass[b]);
+            double reach = 0;
             const bool turns = shape_of(b).damping == DampingMass::contact;
             for (std::size_t a = 0; a < 3; ++a) {
                 lane_inverse_inertia_[a][lane] = inverse_inertia[b][a];
@@ -102,20 +102,25 @@ void Clumps::batch_up(const Field& field, std::int32_t width, const Scale& scale
                 slot_radius_[slot] = r.radius;
                 slot_inverse_radius_[slot] = r.inverse_radius;
                 const Vec3 at = this->scale[b] * shape_of(b).members[m].place;
-                for (std::size_t a = 0; a < 3; ++a) slot_at_[a][slot] = at[a];
+                reach = std::max(reach, norm(at));
+                for (std::size_t a = 0; a < 3; ++a) {
+                    slot_at_[a][slot] = at[a];
+                    slot_single_at_[a][slot] = static_cast<float>(at[a] / scale.length);
+                }
             }
+            lane_reach_[lane] = static_cast<float>(reach / scale.length);
         }
 }
 
-ClumpView Clumps::view(const Field& field, const Scale& scale) {
+ClumpView Clumps::view(const Scale& scale) {
     const auto numbers = [](auto& column) { return column.empty() ? nullptr : column.front().data(); };
     ClumpView v{};
     v.batches = batches_.data();
     v.position = numbers(position), v.velocity = numbers(velocity), v.momentum = numbers(momentum);
-    v.orientation = numbers(orientation), v.spin = numbers(spin), v.spin_in_step = numbers(spin_in_step);
+    v.orientation = numbers(orientation), v.spin_in_step = numbers(spin_in_step);
     v.fallen = fallen.data();
     v.mass = lane_mass_.data(), v.inverse_mass = lane_inverse_mass_.data();
-    v.inverse_mass_single = lane_single_mass_.data();
+    v.inverse_mass_single = lane_single_mass_.data(), v.reach = lane_reach_.data();
     v.place = slot_place_.data(), v.radius = slot_radius_.data(), v.inverse_radius = slot_inverse_radius_.data();
     v.length = scale.length, v.time = scale.time, v.force = force_unit(scale);
     v.inverse_length = 1 / scale.length, v.inverse_speed = 1 / scale.speed();
@@ -123,10 +128,10 @@ ClumpView Clumps::view(const Field& field, const Scale& scale) {
         v.inverse_inertia[a] = lane_inverse_inertia_[a].data();
         v.turning[a] = lane_turning_[a].data();
         v.at[a] = slot_at_[a].data();
+        v.single_at[a] = slot_single_at_[a].data();
         v.centre[a] = scale.centre[a];
         v.inverse_unit[a] = 1 / scale.unit[a];
     }
-    v.fetches = field.count > many_members ? 1 : 0;
     return v;
 }
 
@@ -215,14 +220,14 @@ void Clumps::write_motions(Field& field, const Scale& scale) const {
         for (std::size_t k = 0; k < of.size(); ++k) {
             const Vec3 lever = in_space(now, this->scale[b] * shape_of(b).members[k].place);
             const Vec3 v = (1 / scale.speed()) * (velocity[b] + cross(spin[b], lever));
-            Record& r = field.records[of[k]];
-            Residual& residual = field.residuals[of[k]];
-            for (std::size_t a = 0; a < 3; ++a) {
-                r.velocity[a] = static_cast<float>(v[a]);
-                residual.velocity[a] = static_cast<float>(v[a] - static_cast<double>(r.velocity[a]));
-                r.spin[a] = static_cast<float>(spin[b][a] * scale.time);
-                r.rest[a] = r.spin[a] * r.radius;
+            Residual residual = residual_of(field, of[k]);
+            for (int a = 0; a < 3; ++a) {
+                const auto axis = static_cast<std::size_t>(a);
+                field.records[of[k]].velocity[a] = static_cast<float>(v[axis]);
+                residual.velocity[a] = 0;  // the body's velocity is exact
+                set_spin(field, of[k], a, static_cast<float>(spin[b][axis] * scale.time));
             }
+            leave_over(field, of[k], residual);
         }
     }
 }
@@ -230,7 +235,7 @@ void Clumps::write_motions(Field& field, const Scale& scale) const {
 void Clumps::advance(Field& field, const Kernels& kernels, const Scale& scale, const Vec3& gravity,
                      const Vec3& acceleration, const Parts& parts, Tally& tally) {
     if (empty()) return;
-    ClumpView of = view(field, scale);
+    ClumpView of = view(scale);
     for (std::size_t a = 0; a < 3; ++a) of.gravity[a] = gravity[a], of.acceleration[a] = acceleration[a];
     tallies_.assign(static_cast<std::size_t>(parts.count()), tally);
     parts.run([&](int part) {

@@ -60,7 +60,7 @@ public:
     /// the tally.
     void advance(Field& field, const Kernels& kernels, const Scale& scale, const Vec3& gravity,
                  const Vec3& acceleration, const Parts& parts, Tally& tally);
-    /// Changes velocities by a share of a step's change, after gather(); spins follow.
+    /// Changes velocities by a share of a step's change, after gather(), and sets spins, which no step does.
     void shift(double share, double step, const Vec3& acceleration);
     /// Writes velocities and spins of all members.
     void write_motions(Field& field, const Scale& scale) const;
@@ -74,14 +74,15 @@ public:
 
 private:
     void batch_up(const Field& field, std::int32_t width, const Scale& scale);
-    [[nodiscard]] ClumpView view(const Field& field, const Scale& scale);
+    [[nodiscard]] ClumpView view(const Scale& scale);
     [[nodiscard]] std::pair<Vec3, Vec3> sums(const Field& field, const Scale& scale, std::size_t body) const;
 
     std::vector<std::int32_t> begin_, record_, body_;  ///< of bodies; of members: their record, their body
     std::vector<ClumpBatch> batches_;
     // Columns by lane and by slot, see ClumpView.
     std::vector<double> lane_mass_, lane_inverse_mass_, lane_inverse_inertia_[3], slot_at_[3];
-    std::vector<float> lane_turning_[3], lane_single_mass_, slot_radius_, slot_inverse_radius_;
+    std::vector<float> lane_turning_[3], lane_reach_, lane_single_mass_;
+    std::vector<float> slot_single_at_[3], slot_radius_, slot_inverse_radius_;
     std::vector<Place> slot_place_;
     std::vector<Tally> tallies_;
 };

@@ -43,6 +43,7 @@ struct Meeting {
     V3 surface;                      ///< (R_i - d/2) w_i + (R_j - d/2) w_j
     F root_radius;                   ///< sqrt(R*)
     F inverse_masses;                ///< 1/m_i + 1/m_j
+    bool with_clumps;                ///< pair: masses differ, although radii may be equal
     F radius;                        ///< wall: R
     F closeness;                     ///< pair: (R_i + R_j)^2 - r^2
     F inverse_distance, difference;  ///< pair: 1/r, R_i - R_j
@@ -79,8 +80,9 @@ struct Meeting {
             return d.general * inverse_root(max(inverse_masses, broadcast(1e-12f)));
         else if constexpr (Kernel::unequal)
             return d.general * inverse_root(inverse_masses);
-        else if constexpr (Kernel::holds)  // masses are 1, or one particle is frozen
-            return select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
+        else if constexpr (Kernel::holds)  // without clumps masses are 1, or one particle is frozen
+            return with_clumps ? d.general * inverse_root(inverse_masses)
+                               : select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
         else
             return d.of_pair;
     }

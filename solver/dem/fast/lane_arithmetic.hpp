@@ -38,6 +38,15 @@ GRAINSWEEP_LANES V3 cross(V3 a, V3 b) {
 GRAINSWEEP_LANES V3 keep(M m, V3 a) {
     return {keep(m, a.x), keep(m, a.y), keep(m, a.z)};
 }
+GRAINSWEEP_LANES V3 zero_vector() {
+    return {broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
+}
+GRAINSWEEP_LANES V3 operator+(V3 a, V3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+GRAINSWEEP_LANES V3 operator-(V3 a, V3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 GRAINSWEEP_LANES V3 operator*(V3 a, F b) {
     return {a.x * b, a.y * b, a.z * b};
 }
@@ -65,6 +74,9 @@ GRAINSWEEP_LANES D3 operator-(D3 a, D3 b) {
 }
 GRAINSWEEP_LANES V3 single(D3 a) {
     return {single(a.x), single(a.y), single(a.z)};
+}
+GRAINSWEEP_LANES D3 exact(V3 a) {
+    return {exact(a.x), exact(a.y), exact(a.z)};
 }
 /// b - f a
 GRAINSWEEP_LANES D3 fnma(D f, D3 a, D3 b) {

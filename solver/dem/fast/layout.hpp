@@ -97,22 +97,23 @@ struct ClumpBatch {
 struct ClumpView {
     const ClumpBatch* batches;
     // By body, SI.
-    double *position, *velocity, *momentum, *orientation, *spin, *spin_in_step, *fallen;
+    double *position, *velocity, *momentum, *orientation, *spin_in_step, *fallen;
     // By lane.
     const double *mass, *inverse_mass;  ///< kg, 1/kg
     const double* inverse_inertia[3];   ///< 1/(kg m2)
     const float* turning[3];            ///< the same in the engine's units; 0: contacts are damped by the mass
     const float* inverse_mass_single;   ///< engine's units
+    const float* reach;                 ///< largest distance of a member's centre, engine's units
     // By slot.
     const Place* place;
-    const double* at[3];  ///< from the centre, in the frame of the body, m
+    const double* at[3];        ///< from the centre, in the frame of the body, m
+    const float* single_at[3];  ///< the same in the engine's units
     const float *radius, *inverse_radius;
 
     double length, time, force;            ///< units, SI
     double inverse_length, inverse_speed;  ///< their inverse
     double centre[3], inverse_unit[3];     ///< of positions, m, 1/m
     double gravity[3], acceleration[3];    ///< m/s2; gravity alone, and with shaking
-    std::int32_t fetches;                  ///< 1: the particles do not fit the nearest cache and are fetched early
 };
 
 /// Constants of a case, in the engine's units.
@@ -313,8 +314,9 @@ struct Needs {
     bool resting;              ///< particles at rest may be skipped
     bool several;              ///< several kinds of particles
     bool skips;                ///< particles that are not advanced are skipped by a list, unless they are few
+    bool clumps;               ///< clumps are present, or may be added
     /// Returns whether the kernel allows for particles that are not advanced.
-    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting || several; }
+    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting || several || clumps; }
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

@@ -82,7 +82,7 @@ Seal MixedEngine::seal() const {
     s.width = kernels_->width;
     s.needs.combination = needs_.combination;
     s.needs.unequal = needs_.unequal, s.needs.frozen = needs_.frozen, s.needs.resting = needs_.resting;
-    s.needs.skips = needs_.skips, s.needs.several = needs_.several;
+    s.needs.skips = needs_.skips, s.needs.several = needs_.several, s.needs.clumps = needs_.clumps;
     std::memcpy(static_cast<void*>(&s.constants), &start_constants_, sizeof s.constants);
     s.shaking = shaking_;
     s.rest_speed = rest_speed_;
