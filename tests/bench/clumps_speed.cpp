@@ -124,29 +124,34 @@ dem::Setup box_of(const std::optional<dem::BodyShape>& shape, std::size_t sphere
 
 /// Grains on a lattice in a drum with its axis along y, which turns once they have settled; periodic along the axis.
 dem::Setup drum_of(const std::optional<dem::BodyShape>& shape, std::size_t spheres) {
-    dem::Setup s = empty_setup(shape);
     const std::size_t grains = grains_of(shape, spheres);
     const double pitch = pitch_of(shape);
-    // The lattice fills three quarters of a drum that is half as long as wide.
-    const double radius =
-        std::max(2.5 * pitch, std::cbrt(static_cast<double>(grains) / 0.75 / std::numbers::pi) * pitch);
-    const auto layers = std::max<std::size_t>(3, static_cast<std::size_t>(radius / pitch));
+    const auto layers =
+        std::max<std::size_t>(3, static_cast<std::size_t>(std::cbrt(static_cast<double>(grains) / std::numbers::pi)));
     const double length = static_cast<double>(layers) * pitch, margin = 2 * diameter;
+    // The bed fills less than half of the drum, which holds the lattice.
+    const double volume = static_cast<double>(grains) * std::numbers::pi / 6 * diameter * diameter * diameter;
+    double radius = std::max(2 * pitch, std::sqrt(volume / (0.45 * 0.6 * std::numbers::pi * length)));
+    const auto lattice = [&] {
+        std::vector<Vec3> places;
+        const auto rows = static_cast<int>(2 * radius / pitch);
+        for (int k = 0; k < rows; ++k)
+            for (int i = 0; i < rows; ++i)
+                for (std::size_t j = 0; j < layers && places.size() < grains; ++j) {
+                    const Vec3 at = {(i + 0.5) * pitch - radius, (static_cast<double>(j) + 0.5) * pitch,
+                                     (k + 0.5) * pitch - radius};
+                    if (std::hypot(at[0], at[2]) < radius - 0.6 * pitch) places.push_back(at);
+                }
+        return places;
+    };
+    std::vector<Vec3> places = lattice();
+    for (; places.size() < grains; places = lattice()) radius += pitch / 4;
+    dem::Setup s = empty_setup(shape);
     s.domain = {
         {-radius - margin, 0, -radius - margin}, {radius + margin, length, radius + margin}, {false, true, false}};
     s.walls = {{dem::Cylinder{.axis = {0, 1, 0}, .radius = radius}}};
     const stats::Stream stream(7, 2);
-    const auto rows = static_cast<int>(2 * radius / pitch);
-    std::size_t placed = 0;
-    for (int k = 0; k < rows; ++k)
-        for (int i = 0; i < rows; ++i)
-            for (std::size_t j = 0; j < layers && placed < grains; ++j) {
-                const Vec3 at = {(i + 0.5) * pitch - radius, (static_cast<double>(j) + 0.5) * pitch,
-                                 (k + 0.5) * pitch - radius};
-                if (std::hypot(at[0], at[2]) > radius - 0.6 * pitch) continue;
-                add_grain(s, at, stream);
-                ++placed;
-            }
+    for (const Vec3& at : places) add_grain(s, at, stream);
     return s;
 }
 

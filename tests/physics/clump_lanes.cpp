@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace grainsweep::tests::clump_lanes_test {
@@ -48,10 +49,10 @@ dem::Setup free_crowd(std::size_t count) {
         const double u = std::fmod(0.618 * static_cast<double>(n), 1), v = std::fmod(0.755 * static_cast<double>(n), 1),
                      w = std::fmod(0.57 * static_cast<double>(n), 1);
         const auto at = [](std::size_t k) { return 0.0125 + 0.025 * static_cast<double>(k); };
-        add(setup, {.shape = n % 7 < 4   ? 0
-                             : n % 7 < 6 ? 2U
-                                         : 1U,
-                    .scale = 0.9 + 0.1 * u,
+        constexpr std::array<std::size_t, 7> shapes = {0, 0, 0, 0, 2, 2, 1};
+        const std::size_t shape = shapes[n % shapes.size()];
+        add(setup, {.shape = shape,
+                    .scale = shape == 0 ? 0.95 : 0.9 + 0.1 * u,  // dumbbells are alike
                     .position = {at(n % 4), at(n / 4 % 4), at(n / 16)},
                     .orientation = orientation_at(u, v, w),
                     .velocity = {0.05 * (u - 0.5), 0.05 * (v - 0.5), 0.05 * (w - 0.5)},
