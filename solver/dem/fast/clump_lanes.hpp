@@ -189,7 +189,7 @@ GRAINSWEEP_PHASE void write_mobility(const Field& f, const ClumpView& c, const C
                        {inverse[2], inverse[4], inverse[5]}};
     const F zero = broadcast(0.0f);
     for (std::int64_t slot = b.slot, k = 0; k < b.members; ++k, slot += width) {
-        const V3 at = load(c.single_at, slot);
+        const V3 at = load(c.single_at, b.row + k * width);
         const V3 r = fma(axes[0], at.x, fma(axes[1], at.y, axes[2] * at.z));
         // I^-1 [r] has rows i x r, and [r]^T times it has columns (column) x r.
         const V3 i0 = cross(row[0], r), i1 = cross(row[1], r), i2 = cross(row[2], r);
@@ -205,6 +205,13 @@ GRAINSWEEP_PHASE void write_mobility(const Field& f, const ClumpView& c, const C
 
 /// Fetches what the step of a batch reads and writes.
 GRAINSWEEP_LANES void fetch(const Field& f, const ClumpView& c, const ClumpBatch& b) {
+    const auto fetch_bodies = [&b](const double* column, int numbers) {
+        const double* const from = column + std::int64_t{numbers} * b.first;
+        for (int k = 0; k < numbers * b.bodies; k += cache_line / 8) prefetch_to_write(from + k);
+    };
+    for (double* column : {c.position, c.velocity, c.momentum, c.spin_in_step}) fetch_bodies(column, 3);
+    fetch_bodies(c.orientation, 4);
+    fetch_bodies(c.fallen, 1);
     for (std::int64_t slot = b.slot; slot < b.slot + std::int64_t{b.members} * width; ++slot) {
         const Place p = c.place[slot];
         prefetch_to_write(force_at(f.forces, p));
@@ -237,7 +244,7 @@ GRAINSWEEP_PHASE void step_batch(const Field& f, const ClumpView& c, const Clump
     for (std::int64_t slot = b.slot, k = 0; k < b.members; ++k, slot += width) {
         F rows[8];
         load_eights([&](int lane) { return load8(force_at(f.forces, c.place[slot + lane])->force); }, rows);
-        const V3 on{rows[0], rows[1], rows[2]}, at = load(c.single_at, slot);
+        const V3 on{rows[0], rows[1], rows[2]}, at = load(c.single_at, b.row + k * width);
         force = force + on;
         torque = torque + V3{rows[4], rows[5], rows[6]};
         moment[0] = fma(on, at.x, moment[0]), moment[1] = fma(on, at.y, moment[1]),
@@ -279,15 +286,16 @@ GRAINSWEEP_PHASE void step_batch(const Field& f, const ClumpView& c, const Clump
     extremes.include(3, single_spin, zero);
     const F inverse_mass = load(c.inverse_mass_single + b.lane);
     for (std::int64_t slot = b.slot, k = 0; k < b.members; ++k, slot += width) {
-        const D3 at = load(c.at, slot);
+        const std::int64_t row = b.row + k * width;
+        const D3 at = load(c.at, row);
         const D3 x =
             fma(in_units_along.of[0], at.x, fma(in_units_along.of[1], at.y, fma(in_units_along.of[2], at.z, centre)));
-        const V3 p = load(c.single_at, slot);
+        const V3 p = load(c.single_at, row);
         const V3 v = fma(speed_along[0], p.x, fma(speed_along[1], p.y, fma(speed_along[2], p.z, single_velocity)));
         extremes.include(0, v, slack);
         const InUnits ux = in_units(x.x), uy = in_units(x.y), uz = in_units(x.z);
-        const F radius = load(c.radius + slot);
-        const F place[4] = {ux.whole, uy.whole, uz.whole, load(c.inverse_radius + slot)};
+        const F radius = load(c.radius + row);
+        const F place[4] = {ux.whole, uy.whole, uz.whole, load(c.inverse_radius + row)};
         const F motion[4] = {v.x, v.y, v.z, inverse_mass};
         const F rotation[4] = {single_spin.x, single_spin.y, single_spin.z, radius};
         const F rests[4] = {ux.rest, uy.rest, uz.rest, zero};

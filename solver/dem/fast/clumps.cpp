@@ -57,58 +57,80 @@ bool Clumps::map(Field& field, Columns& columns, const Kernels& kernels, std::si
     return true;
 }
 
-/// Groups bodies with as many members, in order, and writes the columns by lane and by slot.
+/// Groups bodies with as many members, in order, and writes the columns by lane and by member.
 void Clumps::batch_up(const Field& field, std::int32_t width, const Scale& scale) {
     batches_.clear();
-    std::int32_t slots = 0;
+    slot_place_.clear();
+    for (auto* column : {&lane_mass_, &lane_inverse_mass_}) column->clear();
+    for (auto* column : {&lane_single_mass_, &lane_reach_, &row_radius_, &row_inverse_radius_}) column->clear();
+    for (std::size_t a = 0; a < 3; ++a) {
+        lane_inverse_inertia_[a].clear(), lane_turning_[a].clear();
+        row_at_[a].clear(), row_single_at_[a].clear();
+    }
     for (std::size_t b = 0; b < size(); ++b) {
         const auto count = static_cast<std::int32_t>(members(b).size());
-        if (batches_.empty() || batches_.back().bodies == width || batches_.back().members != count) {
-            batches_.push_back(
-                {static_cast<std::int32_t>(b), 0, count, static_cast<std::int32_t>(batches_.size()) * width, slots});
-            slots += count * width;
-        }
+        if (batches_.empty() || batches_.back().bodies == width || batches_.back().members != count)
+            batches_.push_back({static_cast<std::int32_t>(b), 0, count, 0, 0, 0});
         ++batches_.back().bodies;
     }
-    const std::size_t lanes = batches_.size() * static_cast<std::size_t>(width);
-    for (auto* column : {&lane_mass_, &lane_inverse_mass_}) column->resize(lanes);
-    for (auto& column : lane_inverse_inertia_) column.resize(lanes);
-    for (auto& column : lane_turning_) column.resize(lanes);
-    for (auto* column : {&lane_single_mass_, &lane_reach_}) column->resize(lanes);
-    for (auto& column : slot_at_) column.resize(static_cast<std::size_t>(slots));
-    for (auto& column : slot_single_at_) column.resize(static_cast<std::size_t>(slots));
-    for (auto* column : {&slot_radius_, &slot_inverse_radius_}) column->resize(static_cast<std::size_t>(slots));
-    slot_place_.resize(static_cast<std::size_t>(slots));
+    const auto alike = [this](std::int32_t a, std::int32_t b) {
+        const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+        return shape[i] == shape[j] && this->scale[i] == this->scale[j];
+    };
+    const ClumpBatch* shared = nullptr;  // the last one whose bodies are all alike
+    for (ClumpBatch& batch : batches_) {
+        batch.slot = static_cast<std::int32_t>(slot_place_.size());
+        for (std::int32_t m = 0; m < batch.members; ++m)
+            for (std::int32_t k = 0; k < width; ++k) {
+                const auto b = static_cast<std::size_t>(batch.first + (k < batch.bodies ? k : 0));
+                slot_place_.push_back(place_at(members(b)[static_cast<std::size_t>(m)]));
+            }
+        bool all_alike = true;
+        for (std::int32_t k = 1; k < batch.bodies; ++k) all_alike = all_alike && alike(batch.first, batch.first + k);
+        if (all_alike && shared != nullptr && alike(batch.first, shared->first)) {
+            batch.lane = shared->lane, batch.row = shared->row;
+            continue;
+        }
+        if (all_alike) shared = &batch;
+        batch.lane = static_cast<std::int32_t>(lane_mass_.size());
+        batch.row = static_cast<std::int32_t>(row_radius_.size());
+        append_lanes(field, batch, width, scale);
+    }
+}
+
+/// Appends what the lanes of a batch need of their bodies and members.
+void Clumps::append_lanes(const Field& field, const ClumpBatch& batch, std::int32_t width, const Scale& scale) {
+    const auto body_in = [&batch](std::int32_t lane) {
+        return static_cast<std::size_t>(batch.first + (lane < batch.bodies ? lane : 0));
+    };
     // I^-1 of the mass unit: added to 1/m in the engine's units.
     const double unit = scale.mass * scale.length * scale.length;
-    for (const ClumpBatch& batch : batches_)
+    for (std::int32_t k = 0; k < width; ++k) {
+        const std::size_t b = body_in(k);
+        const BodyShape& of = shape_of(b);
+        double reach = 0;
+        for (const auto& member : of.members) reach = std::max(reach, this->scale[b] * norm(member.place));
+        lane_mass_.push_back(mass[b]);
+        lane_inverse_mass_.push_back(inverse_mass[b]);
+        lane_single_mass_.push_back(static_cast<float>(scale.mass / mass[b]));
+        lane_reach_.push_back(static_cast<float>(reach / scale.length));
+        for (std::size_t a = 0; a < 3; ++a) {
+            lane_inverse_inertia_[a].push_back(inverse_inertia[b][a]);
+            lane_turning_[a].push_back(
+                of.damping == DampingMass::contact ? static_cast<float>(unit * inverse_inertia[b][a]) : 0.0F);
+        }
+    }
+    for (std::size_t m = 0; m < static_cast<std::size_t>(batch.members); ++m)
         for (std::int32_t k = 0; k < width; ++k) {
-            const auto b = static_cast<std::size_t>(batch.first + (k < batch.bodies ? k : 0));
-            const auto lane = static_cast<std::size_t>(batch.lane + k);
-            lane_mass_[lane] = mass[b];
-            lane_inverse_mass_[lane] = inverse_mass[b];
-            lane_single_mass_[lane] = static_cast<float>(scale.mass / mass[b]);
-            double reach = 0;
-            const bool turns = shape_of(b).damping == DampingMass::contact;
+            const std::size_t b = body_in(k);
+            const Record& r = field.records[members(b)[m]];
+            row_radius_.push_back(r.radius);
+            row_inverse_radius_.push_back(r.inverse_radius);
+            const Vec3 at = this->scale[b] * shape_of(b).members[m].place;
             for (std::size_t a = 0; a < 3; ++a) {
-                lane_inverse_inertia_[a][lane] = inverse_inertia[b][a];
-                lane_turning_[a][lane] = turns ? static_cast<float>(unit * inverse_inertia[b][a]) : 0.0F;
+                row_at_[a].push_back(at[a]);
+                row_single_at_[a].push_back(static_cast<float>(at[a] / scale.length));
             }
-            for (std::size_t m = 0; m < members(b).size(); ++m) {
-                const std::size_t slot = static_cast<std::size_t>(batch.slot) + m * static_cast<std::size_t>(width) +
-                                         static_cast<std::size_t>(k);
-                const Record& r = field.records[members(b)[m]];
-                slot_place_[slot] = place_at(members(b)[m]);
-                slot_radius_[slot] = r.radius;
-                slot_inverse_radius_[slot] = r.inverse_radius;
-                const Vec3 at = this->scale[b] * shape_of(b).members[m].place;
-                reach = std::max(reach, norm(at));
-                for (std::size_t a = 0; a < 3; ++a) {
-                    slot_at_[a][slot] = at[a];
-                    slot_single_at_[a][slot] = static_cast<float>(at[a] / scale.length);
-                }
-            }
-            lane_reach_[lane] = static_cast<float>(reach / scale.length);
         }
 }
 
@@ -121,14 +143,14 @@ ClumpView Clumps::view(const Scale& scale) {
     v.fallen = fallen.data();
     v.mass = lane_mass_.data(), v.inverse_mass = lane_inverse_mass_.data();
     v.inverse_mass_single = lane_single_mass_.data(), v.reach = lane_reach_.data();
-    v.place = slot_place_.data(), v.radius = slot_radius_.data(), v.inverse_radius = slot_inverse_radius_.data();
+    v.place = slot_place_.data(), v.radius = row_radius_.data(), v.inverse_radius = row_inverse_radius_.data();
     v.length = scale.length, v.time = scale.time, v.force = force_unit(scale);
     v.inverse_length = 1 / scale.length, v.inverse_speed = 1 / scale.speed();
     for (std::size_t a = 0; a < 3; ++a) {
         v.inverse_inertia[a] = lane_inverse_inertia_[a].data();
         v.turning[a] = lane_turning_[a].data();
-        v.at[a] = slot_at_[a].data();
-        v.single_at[a] = slot_single_at_[a].data();
+        v.at[a] = row_at_[a].data();
+        v.single_at[a] = row_single_at_[a].data();
         v.centre[a] = scale.centre[a];
         v.inverse_unit[a] = 1 / scale.unit[a];
     }

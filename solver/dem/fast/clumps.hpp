@@ -74,15 +74,16 @@ public:
 
 private:
     void batch_up(const Field& field, std::int32_t width, const Scale& scale);
+    void append_lanes(const Field& field, const ClumpBatch& batch, std::int32_t width, const Scale& scale);
     [[nodiscard]] ClumpView view(const Scale& scale);
     [[nodiscard]] std::pair<Vec3, Vec3> sums(const Field& field, const Scale& scale, std::size_t body) const;
 
     std::vector<std::int32_t> begin_, record_, body_;  ///< of bodies; of members: their record, their body
     std::vector<ClumpBatch> batches_;
-    // Columns by lane and by slot, see ClumpView.
-    std::vector<double> lane_mass_, lane_inverse_mass_, lane_inverse_inertia_[3], slot_at_[3];
+    // Columns by lane, and by member and lane, see ClumpView.
+    std::vector<double> lane_mass_, lane_inverse_mass_, lane_inverse_inertia_[3], row_at_[3];
     std::vector<float> lane_turning_[3], lane_reach_, lane_single_mass_;
-    std::vector<float> slot_single_at_[3], slot_radius_, slot_inverse_radius_;
+    std::vector<float> row_single_at_[3], row_radius_, row_inverse_radius_;
     std::vector<Place> slot_place_;
     std::vector<Tally> tallies_;
 };

@@ -89,8 +89,10 @@ struct ClumpBatch {
     std::int32_t first;    ///< body
     std::int32_t bodies;   ///< at most the vector width; the lanes behind them repeat the first
     std::int32_t members;  ///< of each
-    std::int32_t lane;     ///< start of its entries in columns by lane
-    std::int32_t slot;     ///< start of its entries in columns by slot: first members of all lanes, second members, ...
+    std::int32_t slot;     ///< start of its places: first members of all lanes, second members, ...
+    // Start of its entries in columns by lane, and in those by member and lane. Batches of one shape and size share
+    // them.
+    std::int32_t lane, row;
 };
 
 /// Raw view of all clumps. Vectors of columns by body follow one another; the owner is Clumps.
@@ -104,8 +106,8 @@ struct ClumpView {
     const float* turning[3];            ///< the same in the engine's units; 0: contacts are damped by the mass
     const float* inverse_mass_single;   ///< engine's units
     const float* reach;                 ///< largest distance of a member's centre, engine's units
-    // By slot.
-    const Place* place;
+    const Place* place;                 ///< of members
+    // By member and lane.
     const double* at[3];        ///< from the centre, in the frame of the body, m
     const float* single_at[3];  ///< the same in the engine's units
     const float *radius, *inverse_radius;
