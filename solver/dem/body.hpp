@@ -80,10 +80,10 @@ struct BodyState {
 /// Axes of inertia of a body in space.
 using Axes = std::array<Vec3, 3>;
 [[nodiscard]] inline Axes axes_of(const Quaternion& q) {
-    const auto [w, x, y, z] = q;
-    return {{{w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)},
-             {2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)},
-             {2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z}}};
+    const auto rows = geometry::rows_of(q);
+    Axes axes{};
+    for (std::size_t k = 0; k < 3; ++k) axes[k] = {rows[0][k], rows[1][k], rows[2][k]};
+    return axes;
 }
 /// Returns a vector of the body's frame in space.
 [[nodiscard]] inline Vec3 in_space(const Axes& axes, const Vec3& a) {

@@ -30,13 +30,11 @@ void BodyColumns::derive() {
     inverse_mass.resize(size());
     inertia.resize(size());
     inverse_inertia.resize(size());
-    axes.resize(size());
     for (std::size_t b = 0; b < size(); ++b) {
         mass[b] = mass_of(shape_of(b), scale[b]);
         inverse_mass[b] = 1 / mass[b];
         inertia[b] = inertia_of(shape_of(b), scale[b]);
         inverse_inertia[b] = inverse_of(inertia[b]);
-        axes[b] = axes_of(orientation[b]);
     }
 }
 

@@ -37,7 +37,6 @@ public:
     // Derived from the state.
     std::vector<double> mass, inverse_mass;
     std::vector<Vec3> inertia, inverse_inertia;
-    std::vector<Axes> axes;
 
     /// Appends bodies whose `first` counts from this id.
     void append(std::span<const Body> bodies, std::size_t id);
@@ -59,24 +58,25 @@ public:
         using namespace geometry;
         position[body] += span * velocity[body];
         spin[body] = spin_in_step[body] = turn(orientation[body], momentum[body], inverse_inertia[body], span);
-        axes[body] = axes_of(orientation[body]);
     }
+    /// Returns the axes of inertia of a body in space.
+    [[nodiscard]] Axes axes(std::size_t body) const { return axes_of(orientation[body]); }
     /// Returns the place of a member from the centre of mass, in space.
     [[nodiscard]] Vec3 lever_of(std::size_t body, std::size_t member) const {
         using namespace geometry;
-        return in_space(axes[body], scale[body] * shape_of(body).members[member].place);
+        return in_space(axes(body), scale[body] * shape_of(body).members[member].place);
     }
     /// Returns 1/m* of a body's side of a contact of a member with this lever.
     [[nodiscard]] double inverse_mass_at(std::size_t body, const Vec3& lever, const Vec3& normal) const {
         const double inverse = inverse_mass[body];
         if (shape_of(body).damping == DampingMass::body) return inverse;
-        return inverse + added_inverse_mass(geometry::cross(lever, normal), axes[body], inverse_inertia[body]);
+        return inverse + added_inverse_mass(geometry::cross(lever, normal), axes(body), inverse_inertia[body]);
     }
     /// Returns the kinetic energy of a body with these momenta.
     [[nodiscard]] double kinetic_energy(std::size_t body, const Vec3& of_velocity, const Vec3& of_momentum) const {
         using namespace geometry;
         return 0.5 * (mass[body] * dot(of_velocity, of_velocity) +
-                      dot(of_momentum, spin_of(of_momentum, axes[body], inverse_inertia[body])));
+                      dot(of_momentum, spin_of(of_momentum, axes(body), inverse_inertia[body])));
     }
     /// Gives a body whose motion is no longer a number a state that can be reported.
     void repair(std::size_t body) {

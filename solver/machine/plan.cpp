@@ -36,7 +36,7 @@ constexpr double pressed_fraction = 0.6, pressed_contacts = 6, over_mean = 4.5, 
 
 /// Returns the cost of a step of a particle divided by a sphere's.
 double cost_of(const Species& species) {
-    return species.shape ? cost_of_member * static_cast<double>(species.shape->balls.size()) : 1;
+    return species.shape ? cost_of_clump(species.shape->balls.size()) : 1;
 }
 
 double mean_mass(const Spec& spec, const Mix& mix) {

@@ -29,7 +29,7 @@ ShapeFile shape_of_stl(std::string_view contents, std::optional<std::int64_t> sp
     file.volume = shape.solid.volume;
     file.diameter = shape.clump.diameter;
     file.smallest = 2 * shape.clump.smallest();
-    file.cost = machine::cost_of_member * static_cast<double>(file.spheres) / file.smallest;
+    file.cost = machine::cost_of_clump(file.spheres) / file.smallest;
     geometry::Vec3 of_spheres = geometry::solid_of(shape.balls).inertia, of_body = shape.solid.inertia;
     std::ranges::sort(of_spheres), std::ranges::sort(of_body);
     for (std::size_t k = 0; k < 3; ++k)

@@ -32,7 +32,8 @@ bool Bodies::map(std::span<const std::int32_t> id, std::size_t ids) {
 
 void Bodies::set_levers(std::size_t b) {
     const auto of = members(b);
-    for (std::size_t k = 0; k < of.size(); ++k) lever_[of[k]] = lever_of(b, k);
+    const Axes now = axes(b);
+    for (std::size_t k = 0; k < of.size(); ++k) lever_[of[k]] = in_space(now, scale[b] * shape_of(b).members[k].place);
 }
 
 void Bodies::gather(const particles::Particles& spheres) {
@@ -60,7 +61,7 @@ void Bodies::kick_and_drift(double span, const Vec3& acceleration, particles::Pa
 void Bodies::kick(double span, const Vec3& acceleration, particles::Particles& spheres) {
     for (std::size_t b = 0; b < size(); ++b) {
         kick_body(b, span / 2, acceleration);
-        spin[b] = spin_of(momentum[b], axes[b], inverse_inertia[b]);
+        spin[b] = spin_of(momentum[b], axes(b), inverse_inertia[b]);
         set_velocities(b, spheres);
     }
 }

@@ -299,7 +299,7 @@ void ClearEngine::gather_network(bool slides) {
     network_.clear();
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-        network_.add_body(bodies_.mass[b], bodies_.inertia[b], bodies_.axes[b], bodies_.members(b),
+        network_.add_body(bodies_.mass[b], bodies_.inertia[b], bodies_.axes(b), bodies_.members(b),
                           [this](std::size_t i) { return bodies_.lever(i); });
     const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
                           const double* memory) {

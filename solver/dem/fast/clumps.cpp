@@ -1,11 +1,11 @@
 #include "solver/dem/fast/clumps.hpp"
 
+#include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/residual.hpp"
-#include "solver/geometry/solid.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace grainsweep::dem::fast {
 
@@ -13,65 +13,148 @@ using namespace geometry;
 
 namespace {
 
-constexpr double units_of_period = 4294967296.0;
-
-/// Returns the nearest whole number, to even; below 2^51.
-double nearest(double x) {
-    constexpr double shift = 6755399441055744.0;  // 1.5 * 2^52
-    return (x + shift) - shift;
+double force_unit(const Scale& scale) {
+    return scale.mass * scale.length / (scale.time * scale.time);
 }
 
 }  // namespace
-
-Clumps::Units::Units(const Scale& scale)
-    : length(scale.length),
-      time(scale.time),
-      inverse_length(1 / scale.length),
-      inverse_speed(1 / scale.speed()),
-      force(scale.mass * scale.length / (scale.time * scale.time)),
-      inertia(scale.mass * scale.length * scale.length),
-      centre(scale.centre),
-      inverse_unit{1 / scale.unit[0], 1 / scale.unit[1], 1 / scale.unit[2]} {}
 
 void Clumps::append(std::span<const Body> bodies, std::size_t id) {
     BodyColumns::append(bodies, id);
     fallen.resize(size(), 0.0);
 }
 
-bool Clumps::map(Field& field, Columns& columns, std::size_t ids, const Scale& scale) {
+bool Clumps::map(Field& field, Columns& columns, const Kernels& kernels, std::size_t ids, const Scale& scale) {
     if (shapes() == 0) return true;
     constexpr std::int32_t none = -1;
     const auto n = static_cast<std::size_t>(field.count);
     columns.member.hold(n + static_cast<std::size_t>(spare));
+    columns.mobility.hold(n + static_cast<std::size_t>(spare));
     std::fill_n(columns.member.data(), columns.member.capacity(), none);
     std::vector<std::int32_t> place(ids, none);
     for (std::size_t i = 0; i < n; ++i) place[static_cast<std::size_t>(columns.id[i])] = static_cast<std::int32_t>(i);
     begin_.assign(1, 0);
-    record_.clear(), body_.clear(), place_.clear(), lever_.clear();
-    bool all = true;
+    record_.clear(), body_.clear();
     for (std::size_t b = 0; b < size(); ++b) {
         for (std::size_t k = 0; k < shape_of(b).members.size(); ++k) {
             const std::size_t of = static_cast<std::size_t>(first[b]) + k;
             const std::int32_t i = of < ids ? place[of] : none;
-            if (i == none || columns.member[static_cast<std::size_t>(i)] != none) {
-                all = false;
-                continue;
-            }
+            if (i == none || columns.member[static_cast<std::size_t>(i)] != none) return false;
             columns.member[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(record_.size());
             record_.push_back(i);
             body_.push_back(static_cast<std::int32_t>(b));
-            place_.push_back(this->scale[b] * shape_of(b).members[k].place);
-            lever_.push_back(in_space(axes[b], place_.back()));
         }
         begin_.push_back(static_cast<std::int32_t>(record_.size()));
     }
-    arms_.assign(record_.size() + 1, MemberArm{});
-    const Units units(scale);
-    for (std::size_t b = 0; all && b < size(); ++b) set_arms(b, units);
-    field.member = columns.member.data();
-    field.arms = arms_.data();
+    columns.bind(field);
     field.member_body = body_.data();
-    return all;
+    for (std::size_t i = 0; i < n + fillers; ++i) {
+        const float inverse = i < n ? field.records[i].inverse_mass : 1;
+        field.mobility[i] = {{inverse, 0, 0, inverse, 0, inverse, 0, 0}};
+    }
+    batch_up(field, kernels.width, scale);
+    kernels.find_mobility(field, view(scale), 0, static_cast<std::int32_t>(batches_.size()));
+    return true;
+}
+
+/// Groups bodies with as many members, in order, and writes the columns by lane and by member.
+void Clumps::batch_up(const Field& field, std::int32_t width, const Scale& scale) {
+    batches_.clear();
+    slot_place_.clear();
+    for (auto* column : {&lane_mass_, &lane_inverse_mass_}) column->clear();
+    for (auto* column : {&lane_single_mass_, &lane_reach_, &row_radius_, &row_inverse_radius_}) column->clear();
+    for (std::size_t a = 0; a < 3; ++a) {
+        lane_inverse_inertia_[a].clear(), lane_turning_[a].clear();
+        row_at_[a].clear(), row_single_at_[a].clear();
+    }
+    for (std::size_t b = 0; b < size(); ++b) {
+        const auto count = static_cast<std::int32_t>(members(b).size());
+        if (batches_.empty() || batches_.back().bodies == width || batches_.back().members != count)
+            batches_.push_back({static_cast<std::int32_t>(b), 0, count, 0, 0, 0});
+        ++batches_.back().bodies;
+    }
+    const auto alike = [this](std::int32_t a, std::int32_t b) {
+        const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+        return shape[i] == shape[j] && this->scale[i] == this->scale[j];
+    };
+    const ClumpBatch* shared = nullptr;  // the last one whose bodies are all alike
+    for (ClumpBatch& batch : batches_) {
+        batch.slot = static_cast<std::int32_t>(slot_place_.size());
+        for (std::int32_t m = 0; m < batch.members; ++m)
+            for (std::int32_t k = 0; k < width; ++k) {
+                const auto b = static_cast<std::size_t>(batch.first + (k < batch.bodies ? k : 0));
+                slot_place_.push_back(place_at(members(b)[static_cast<std::size_t>(m)]));
+            }
+        bool all_alike = true;
+        for (std::int32_t k = 1; k < batch.bodies; ++k) all_alike = all_alike && alike(batch.first, batch.first + k);
+        if (all_alike && shared != nullptr && alike(batch.first, shared->first)) {
+            batch.lane = shared->lane, batch.row = shared->row;
+            continue;
+        }
+        if (all_alike) shared = &batch;
+        batch.lane = static_cast<std::int32_t>(lane_mass_.size());
+        batch.row = static_cast<std::int32_t>(row_radius_.size());
+        append_lanes(field, batch, width, scale);
+    }
+}
+
+/// Appends what the lanes of a batch need of their bodies and members.
+void Clumps::append_lanes(const Field& field, const ClumpBatch& batch, std::int32_t width, const Scale& scale) {
+    const auto body_in = [&batch](std::int32_t lane) {
+        return static_cast<std::size_t>(batch.first + (lane < batch.bodies ? lane : 0));
+    };
+    // I^-1 of the mass unit: added to 1/m in the engine's units.
+    const double unit = scale.mass * scale.length * scale.length;
+    for (std::int32_t k = 0; k < width; ++k) {
+        const std::size_t b = body_in(k);
+        const BodyShape& of = shape_of(b);
+        double reach = 0;
+        for (const auto& member : of.members) reach = std::max(reach, this->scale[b] * norm(member.place));
+        lane_mass_.push_back(mass[b]);
+        lane_inverse_mass_.push_back(inverse_mass[b]);
+        lane_single_mass_.push_back(static_cast<float>(scale.mass / mass[b]));
+        lane_reach_.push_back(static_cast<float>(reach / scale.length));
+        for (std::size_t a = 0; a < 3; ++a) {
+            lane_inverse_inertia_[a].push_back(inverse_inertia[b][a]);
+            lane_turning_[a].push_back(
+                of.damping == DampingMass::contact ? static_cast<float>(unit * inverse_inertia[b][a]) : 0.0F);
+        }
+    }
+    for (std::size_t m = 0; m < static_cast<std::size_t>(batch.members); ++m)
+        for (std::int32_t k = 0; k < width; ++k) {
+            const std::size_t b = body_in(k);
+            const Record& r = field.records[members(b)[m]];
+            row_radius_.push_back(r.radius);
+            row_inverse_radius_.push_back(r.inverse_radius);
+            const Vec3 at = this->scale[b] * shape_of(b).members[m].place;
+            for (std::size_t a = 0; a < 3; ++a) {
+                row_at_[a].push_back(at[a]);
+                row_single_at_[a].push_back(static_cast<float>(at[a] / scale.length));
+            }
+        }
+}
+
+ClumpView Clumps::view(const Scale& scale) {
+    const auto numbers = [](auto& column) { return column.empty() ? nullptr : column.front().data(); };
+    ClumpView v{};
+    v.batches = batches_.data();
+    v.position = numbers(position), v.velocity = numbers(velocity), v.momentum = numbers(momentum);
+    v.orientation = numbers(orientation), v.spin_in_step = numbers(spin_in_step);
+    v.fallen = fallen.data();
+    v.mass = lane_mass_.data(), v.inverse_mass = lane_inverse_mass_.data();
+    v.inverse_mass_single = lane_single_mass_.data(), v.reach = lane_reach_.data();
+    v.place = slot_place_.data(), v.radius = row_radius_.data(), v.inverse_radius = row_inverse_radius_.data();
+    v.length = scale.length, v.time = scale.time, v.force = force_unit(scale);
+    v.inverse_length = 1 / scale.length, v.inverse_speed = 1 / scale.speed();
+    for (std::size_t a = 0; a < 3; ++a) {
+        v.inverse_inertia[a] = lane_inverse_inertia_[a].data();
+        v.turning[a] = lane_turning_[a].data();
+        v.at[a] = row_at_[a].data();
+        v.single_at[a] = row_single_at_[a].data();
+        v.centre[a] = scale.centre[a];
+        v.inverse_unit[a] = 1 / scale.unit[a];
+    }
+    return v;
 }
 
 void Clumps::sort(const Field& field, const Columns& columns, std::size_t ids) {
@@ -80,7 +163,8 @@ void Clumps::sort(const Field& field, const Columns& columns, std::size_t ids) {
         place[static_cast<std::size_t>(columns.id[i])] = static_cast<std::int32_t>(i);
     std::vector<std::size_t> order(size());
     for (std::size_t b = 0; b < order.size(); ++b) order[b] = b;
-    std::ranges::sort(order, {}, [&](std::size_t b) { return place[static_cast<std::size_t>(first[b])]; });
+    std::ranges::sort(order, {},
+                      [&](std::size_t b) { return std::pair(shape[b], place[static_cast<std::size_t>(first[b])]); });
     const auto permute = [&](auto& column) {
         auto fresh = column;
         for (std::size_t b = 0; b < order.size(); ++b) fresh[b] = column[order[b]];
@@ -114,164 +198,71 @@ void Clumps::take_out(const geometry::Domain& domain, std::vector<std::int32_t>&
     remove(leaving);
 }
 
-std::pair<Vec3, Vec3> Clumps::sums(const Field& field, double force_unit, double length, std::size_t b) const {
+std::pair<Vec3, Vec3> Clumps::sums(const Field& field, const Scale& scale, std::size_t b) const {
     Vec3 f{}, t{};
-    for (auto slot = static_cast<std::size_t>(begin_[b]); slot < static_cast<std::size_t>(begin_[b + 1]); ++slot) {
-        const Force& on = field.forces[record_[slot]];
+    const Axes now = axes(b);
+    const auto of = members(b);
+    for (std::size_t k = 0; k < of.size(); ++k) {
+        const Force& on = field.forces[of[k]];
         const Vec3 force_on = {static_cast<double>(on.force[0]), static_cast<double>(on.force[1]),
                                static_cast<double>(on.force[2])};
         const Vec3 turn_on = {static_cast<double>(on.torque[0]), static_cast<double>(on.torque[1]),
                               static_cast<double>(on.torque[2])};
         f += force_on;
-        t += cross(lever_[slot], force_on) + length * turn_on;
+        t += cross(in_space(now, this->scale[b] * shape_of(b).members[k].place), force_on) + scale.length * turn_on;
     }
-    return {force_unit * f, force_unit * t};
+    return {force_unit(scale) * f, force_unit(scale) * t};
 }
 
 void Clumps::gather(const Field& field, const Scale& scale) {
-    const Units units(scale);
-    for (std::size_t b = 0; b < size(); ++b) std::tie(force[b], torque[b]) = sums(field, units.force, units.length, b);
+    for (std::size_t b = 0; b < size(); ++b) std::tie(force[b], torque[b]) = sums(field, scale, b);
 }
 
 Clumps::Motion Clumps::motion(const Field& field, const Scale& scale, std::size_t b, double share,
                               const Vec3& acceleration) const {
     if (share == 0) return {velocity[b], momentum[b], spin_in_step[b]};
-    const Units units(scale);
-    const auto [f, t] = sums(field, units.force, units.length, b);
+    const auto [f, t] = sums(field, scale, b);
     const double span = share * scale.time / 2;
     const Vec3 v = velocity[b] + span * (inverse_mass[b] * f + acceleration);
     const Vec3 l = momentum[b] + span * t;
-    return {v, l, spin_of(l, axes[b], inverse_inertia[b])};
+    return {v, l, spin_of(l, axes(b), inverse_inertia[b])};
 }
 
 void Clumps::shift(double share, double step, const Vec3& acceleration) {
     for (std::size_t b = 0; b < size(); ++b) {
         kick_body(b, share * step, acceleration);
-        spin[b] = spin_of(momentum[b], axes[b], inverse_inertia[b]);
-    }
-}
-
-void Clumps::set_arms(std::size_t b, const Units& units) {
-    // I^-1 of the mass unit: added to 1/m in the engine's units.
-    const double unit = shape_of(b).damping == DampingMass::body ? 0 : units.inertia;
-    Inertia inverse{};
-    for (std::size_t k = 0; k < 3; ++k) add_square(inverse, axes[b][k], unit * inverse_inertia[b][k]);
-    for (auto slot = static_cast<std::size_t>(begin_[b]); slot < static_cast<std::size_t>(begin_[b + 1]); ++slot) {
-        MemberArm& arm = arms_[slot];
-        for (std::size_t a = 0; a < 3; ++a) arm.lever[a] = static_cast<float>(lever_[slot][a] * units.inverse_length);
-        for (std::size_t c = 0; c < 6; ++c) arm.inverse_inertia[c] = static_cast<float>(inverse[c]);
-    }
-}
-
-void Clumps::write_motion(Field& field, const Units& units, std::size_t b, std::size_t slot) const {
-    const std::int32_t i = record_[slot];
-    const Vec3 v = units.inverse_speed * (velocity[b] + cross(spin[b], lever_[slot]));
-    Record& r = field.records[i];
-    Residual& residual = field.residuals[i];
-    for (std::size_t a = 0; a < 3; ++a) {
-        r.velocity[a] = static_cast<float>(v[a]);
-        residual.velocity[a] = static_cast<float>(v[a] - static_cast<double>(r.velocity[a]));
-        r.spin[a] = static_cast<float>(spin[b][a] * units.time);
-        r.rest[a] = r.spin[a] * r.radius;
+        spin[b] = spin_of(momentum[b], axes(b), inverse_inertia[b]);
     }
 }
 
 void Clumps::write_motions(Field& field, const Scale& scale) const {
-    const Units units(scale);
-    for (std::size_t b = 0; b < size(); ++b)
-        for (std::int32_t slot = begin_[b]; slot < begin_[b + 1]; ++slot)
-            write_motion(field, units, b, static_cast<std::size_t>(slot));
-}
-
-void Clumps::place_members(Field& field, const Units& units, const Vec3& moved, std::size_t b, Tally& tally) {
-    const Vec3 x_body = position[b], v_body = velocity[b], w = spin[b];
-    const Axes axes_now = axes[b];
-    std::array<float, 3> high{}, low{}, single_spin{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        high[a] = tally.velocity_high[a], low[a] = tally.velocity_low[a];
-        single_spin[a] = static_cast<float>(w[a] * units.time);
-        tally.velocity_high[4 + a] = std::max(tally.velocity_high[4 + a], single_spin[a]);
-        tally.velocity_low[4 + a] = std::min(tally.velocity_low[4 + a], single_spin[a]);
-    }
-    for (auto slot = static_cast<std::size_t>(begin_[b]); slot < static_cast<std::size_t>(begin_[b + 1]); ++slot) {
-        const std::int32_t i = record_[slot];
-        const Vec3 before = lever_[slot], lever = in_space(axes_now, place_[slot]);
-        lever_[slot] = lever;
-        const Vec3 x = x_body + lever, v = units.inverse_speed * (v_body + cross(w, lever));
-        const Vec3 way = units.inverse_length * (moved + (lever - before));
-        Record& r = field.records[i];
-        Residual& residual = field.residuals[i];
-        for (std::size_t a = 0; a < 3; ++a) {
-            double at = (x[a] - units.centre[a]) * units.inverse_unit[a];
-            // On open axes only far outside, whence the next rebuild takes it out.
-            at -= units_of_period * nearest(at * (1 / units_of_period));
-            const double whole = nearest(at);
-            r.position[a] = static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(whole)));
-            residual.position[a] = static_cast<float>(at - whole);
-            const auto single = static_cast<float>(v[a]), single_way = static_cast<float>(way[a]);
-            r.velocity[a] = single;
-            residual.velocity[a] = static_cast<float>(v[a] - static_cast<double>(single));
-            r.spin[a] = single_spin[a];
-            r.rest[a] = single_spin[a] * r.radius;
-            high[a] = std::max(high[a], std::max(single, single_way));
-            low[a] = std::min(low[a], std::min(single, single_way));
+    for (std::size_t b = 0; b < size(); ++b) {
+        const Axes now = axes(b);
+        const auto of = members(b);
+        for (std::size_t k = 0; k < of.size(); ++k) {
+            const Vec3 lever = in_space(now, this->scale[b] * shape_of(b).members[k].place);
+            const Vec3 v = (1 / scale.speed()) * (velocity[b] + cross(spin[b], lever));
+            Residual residual = residual_of(field, of[k]);
+            for (int a = 0; a < 3; ++a) {
+                const auto axis = static_cast<std::size_t>(a);
+                field.records[of[k]].velocity[a] = static_cast<float>(v[axis]);
+                residual.velocity[a] = 0;  // the body's velocity is exact
+                set_spin(field, of[k], a, static_cast<float>(spin[b][axis] * scale.time));
+            }
+            leave_over(field, of[k], residual);
         }
-        field.forces[i] = Force{};
-    }
-    for (std::size_t a = 0; a < 3; ++a) tally.velocity_high[a] = high[a], tally.velocity_low[a] = low[a];
-    set_arms(b, units);
-}
-
-/// Fetches what the bodies behind this one write.
-void Clumps::fetch(const Field& field, std::int32_t body) const {
-    const auto end = std::min(static_cast<std::size_t>(body + TurningClumps::lanes), size());
-    for (auto b = static_cast<std::size_t>(body); b < end; ++b)
-        for (const std::int32_t i : members(b)) {
-            __builtin_prefetch(field.records + i, 1);
-            __builtin_prefetch(field.residuals + i, 1);
-            __builtin_prefetch(field.forces + i, 1);
-        }
-}
-
-/// Steps a few bodies, whose rotations are computed together.
-void Clumps::step(Field& field, const Kernels& kernels, const Units& units, const Vec3& gravity,
-                  const Vec3& acceleration, Range bodies, Tally& tally) {
-    fetch(field, bodies.end);
-    TurningClumps t{};
-    std::array<Vec3, TurningClumps::lanes> moved{};
-    for (std::int32_t n = bodies.begin; n < bodies.end; ++n) {
-        const auto b = static_cast<std::size_t>(n), k = static_cast<std::size_t>(n - bodies.begin);
-        std::tie(force[b], torque[b]) = sums(field, units.force, units.length, b);
-        kick_body(b, units.time, acceleration);
-        moved[k] = units.time * velocity[b];
-        position[b] += moved[k];
-        fallen[b] += mass[b] * dot(gravity, moved[k]);
-        for (std::size_t a = 0; a < 3; ++a) t.momentum[a][k] = momentum[b][a], t.inverse[a][k] = inverse_inertia[b][a];
-        for (std::size_t a = 0; a < 4; ++a) t.orientation[a][k] = orientation[b][a];
-    }
-    kernels.turn(t, units.time);
-    for (std::int32_t n = bodies.begin; n < bodies.end; ++n) {
-        const auto b = static_cast<std::size_t>(n), k = static_cast<std::size_t>(n - bodies.begin);
-        for (std::size_t a = 0; a < 4; ++a) orientation[b][a] = t.orientation[a][k];
-        for (std::size_t a = 0; a < 3; ++a) {
-            spin[b][a] = spin_in_step[b][a] = t.spin[a][k];
-            for (std::size_t e = 0; e < 3; ++e) axes[b][e][a] = t.axes[e][a][k];
-        }
-        place_members(field, units, moved[k], b, tally);
     }
 }
 
 void Clumps::advance(Field& field, const Kernels& kernels, const Scale& scale, const Vec3& gravity,
                      const Vec3& acceleration, const Parts& parts, Tally& tally) {
     if (empty()) return;
-    const Units units(scale);
+    ClumpView of = view(scale);
+    for (std::size_t a = 0; a < 3; ++a) of.gravity[a] = gravity[a], of.acceleration[a] = acceleration[a];
     tallies_.assign(static_cast<std::size_t>(parts.count()), tally);
     parts.run([&](int part) {
-        const Range range = parts.share(part, static_cast<std::int32_t>(size()), TurningClumps::lanes);
-        Tally own = tally;
-        for (std::int32_t b = range.begin; b < range.end; b += TurningClumps::lanes)
-            step(field, kernels, units, gravity, acceleration, {b, std::min(b + TurningClumps::lanes, range.end)}, own);
-        tallies_[static_cast<std::size_t>(part)] = own;
+        const Range range = parts.share(part, static_cast<std::int32_t>(batches_.size()));
+        kernels.step_clumps(field, of, range.begin, range.end, tallies_[static_cast<std::size_t>(part)]);
     });
     for (const Tally& own : tallies_)
         for (std::size_t a = 0; a < 8; ++a) {

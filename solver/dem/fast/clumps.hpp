@@ -2,7 +2,8 @@
 //
 // A sweep adds the forces on the members and does not advance them. After it, every body sums its members' forces in
 // the order of its shape, steps, and writes places, velocities and spins of its members: positions exact to a unit,
-// with the rest as residual. Bodies do not depend on each other, so no bit depends on the number of threads.
+// with the rest as residual. A kernel does so for a batch of bodies at a time, one per lane (clump_lanes.hpp). Bodies
+// do not depend on each other, so no bit depends on the number of threads.
 #pragma once
 
 #include "solver/dem/body_columns.hpp"
@@ -28,8 +29,9 @@ public:
     void append(std::span<const Body> bodies, std::size_t id);
     /// Finds the members among the records by their ids, all below `ids`, and writes their numbers to the columns.
     /// Returns whether all are there.
-    [[nodiscard]] bool map(Field& field, Columns& columns, std::size_t ids, const Scale& scale);
-    /// Sorts the bodies by the records of their first members, so that neighbours in space are neighbours in memory.
+    [[nodiscard]] bool map(Field& field, Columns& columns, const Kernels& kernels, std::size_t ids, const Scale& scale);
+    /// Sorts the bodies by their shapes, so that those of a batch have as many members, and by the records of their
+    /// first members, so that neighbours in space are neighbours in memory.
     void sort(const Field& field, const Columns& columns, std::size_t ids);
     /// Removes the bodies of which members are among the removed spheres, or whose centres are beyond an open face.
     /// Appends the ids of all their members to `removed`. Moves centres by periods into the domain.
@@ -47,7 +49,9 @@ public:
                    : body_[static_cast<std::size_t>(field.member[record])];
     }
     [[nodiscard]] Vec3 lever_at(const Field& field, std::int32_t record) const {
-        return lever_[static_cast<std::size_t>(field.member[record])];
+        const auto member = static_cast<std::size_t>(field.member[record]);
+        const auto body = static_cast<std::size_t>(body_[member]);
+        return lever_of(body, member - static_cast<std::size_t>(begin_[body]));
     }
 
     /// Sums forces and torques of the members of all bodies.
@@ -56,7 +60,7 @@ public:
     /// the tally.
     void advance(Field& field, const Kernels& kernels, const Scale& scale, const Vec3& gravity,
                  const Vec3& acceleration, const Parts& parts, Tally& tally);
-    /// Changes velocities by a share of a step's change, after gather(); spins follow.
+    /// Changes velocities by a share of a step's change, after gather(), and sets spins, which no step does.
     void shift(double share, double step, const Vec3& acceleration);
     /// Writes velocities and spins of all members.
     void write_motions(Field& field, const Scale& scale) const;
@@ -69,25 +73,18 @@ public:
                                 const Vec3& acceleration) const;
 
 private:
-    /// Factors between SI and the units of the engine.
-    struct Units {
-        double length, time, inverse_length, inverse_speed, force, inertia;
-        Vec3 centre, inverse_unit;
-        explicit Units(const Scale& scale);
-    };
-
-    void step(Field& field, const Kernels& kernels, const Units& units, const Vec3& gravity, const Vec3& acceleration,
-              Range bodies, Tally& tally);
-    void fetch(const Field& field, std::int32_t body) const;
-    void place_members(Field& field, const Units& units, const Vec3& moved, std::size_t body, Tally& tally);
-    void set_arms(std::size_t body, const Units& units);
-    void write_motion(Field& field, const Units& units, std::size_t body, std::size_t slot) const;
-    [[nodiscard]] std::pair<Vec3, Vec3> sums(const Field& field, double force_unit, double length,
-                                             std::size_t body) const;
+    void batch_up(const Field& field, std::int32_t width, const Scale& scale);
+    void append_lanes(const Field& field, const ClumpBatch& batch, std::int32_t width, const Scale& scale);
+    [[nodiscard]] ClumpView view(const Scale& scale);
+    [[nodiscard]] std::pair<Vec3, Vec3> sums(const Field& field, const Scale& scale, std::size_t body) const;
 
     std::vector<std::int32_t> begin_, record_, body_;  ///< of bodies; of members: their record, their body
-    std::vector<Vec3> place_, lever_;                  ///< of members: in the body, m; from its centre in space, m
-    std::vector<MemberArm> arms_;                      ///< of members
+    std::vector<ClumpBatch> batches_;
+    // Columns by lane, and by member and lane, see ClumpView.
+    std::vector<double> lane_mass_, lane_inverse_mass_, lane_inverse_inertia_[3], row_at_[3];
+    std::vector<float> lane_turning_[3], lane_reach_, lane_single_mass_;
+    std::vector<float> row_single_at_[3], row_radius_, row_inverse_radius_;
+    std::vector<Place> slot_place_;
     std::vector<Tally> tallies_;
 };
 

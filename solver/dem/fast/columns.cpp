@@ -50,6 +50,7 @@ void Columns::bind(Field& f) const {
     f.forces = forces.data();
     f.kind = kind.data();
     f.member = member.data();
+    f.mobility = mobility.data();
     f.row = row.data();
     f.advanced = advanced.data();
     f.advanced_before = advanced_before.data();

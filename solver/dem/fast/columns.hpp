@@ -86,6 +86,7 @@ struct Columns : PairColumns {
     Column<std::int32_t> id, id_next;
     Column<std::uint8_t> kind, kind_next;
     Column<std::int32_t> member;  ///< where there are clumps, see Field
+    Column<Mobility> mobility;    ///< likewise
 
     Column<std::int32_t> row;
     Column<std::int32_t> column[3];

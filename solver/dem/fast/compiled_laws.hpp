@@ -12,8 +12,16 @@ namespace grainsweep::dem::fast {
 namespace {
 
 template <class K, bool several = false>
-constexpr Kernels compiled{width,       sweep<K, several>,  advance<K>,          walls<K>,   mark_touching,
-                           find_pieces, search<K::unequal>, refresh<K::unequal>, turn_clumps};
+constexpr Kernels compiled{width,
+                           sweep<K, several>,
+                           advance<K>,
+                           walls<K>,
+                           mark_touching,
+                           find_pieces,
+                           search<K::unequal>,
+                           refresh<K::unequal>,
+                           step_clumps<K::unequal>,
+                           find_mobility};
 template <class K>
 GRAINSWEEP_LANES const Kernels& holding(const Needs& n) {
     return n.several ? compiled<K, true> : compiled<K>;

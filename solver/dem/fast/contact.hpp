@@ -43,6 +43,7 @@ struct Meeting {
     V3 surface;                      ///< (R_i - d/2) w_i + (R_j - d/2) w_j
     F root_radius;                   ///< sqrt(R*)
     F inverse_masses;                ///< 1/m_i + 1/m_j
+    bool with_clumps;                ///< pair: masses differ, although radii may be equal
     F radius;                        ///< wall: R
     F closeness;                     ///< pair: (R_i + R_j)^2 - r^2
     F inverse_distance, difference;  ///< pair: 1/r, R_i - R_j
@@ -79,8 +80,9 @@ struct Meeting {
             return d.general * inverse_root(max(inverse_masses, broadcast(1e-12f)));
         else if constexpr (Kernel::unequal)
             return d.general * inverse_root(inverse_masses);
-        else if constexpr (Kernel::holds)  // masses are 1, or one particle is frozen
-            return select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
+        else if constexpr (Kernel::holds)  // without clumps masses are 1, or one particle is frozen
+            return with_clumps ? d.general * inverse_root(inverse_masses)
+                               : select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
         else
             return d.of_pair;
     }
@@ -117,25 +119,17 @@ GRAINSWEEP_LANES void store_memory(float* const* column, std::int64_t at, const 
     for (int a = 0; a < Kernel::histories; ++a) store(column[a] + at, memory[a]);
 }
 
-/// Returns what a clump's side of a contact adds to 1/m along a normal: a . I^-1 a, a = lever x n.
-GRAINSWEEP_LANES float added_inverse_mass(const Field& f, Place place, float x, float y, float z) {
-    const std::int32_t member = f.member[place / places_per_index];
-    if (member < 0) return 0;
-    const MemberArm& arm = f.arms[member];
-    const float* const d = arm.lever;
-    const float* const i = arm.inverse_inertia;
-    const float a = d[1] * z - d[2] * y, b = d[2] * x - d[0] * z, c = d[0] * y - d[1] * x;
-    return a * (i[0] * a + 2 * (i[1] * b + i[2] * c)) + b * (i[3] * b + 2 * i[4] * c) + c * i[5] * c;
-}
-/// Returns the sum over both particles of each lane; `second` null: walls.
-GRAINSWEEP_LANES F added_inverse_masses(const Field& f, const Place* first, const Place* second, V3 normal) {
-    float x[width], y[width], z[width], sum[width];
-    store(x, normal.x), store(y, normal.y), store(z, normal.z);
-    for (int q = 0; q < width; ++q) {
-        sum[q] = added_inverse_mass(f, first[q], x[q], y[q], z[q]);
-        if (second != nullptr) sum[q] += added_inverse_mass(f, second[q], x[q], y[q], z[q]);
-    }
-    return load(sum);
+/// Returns the sum over both particles of n M n; `second` null: walls.
+GRAINSWEEP_LANES F inverse_masses(const Mobility* of, const Place* first, const Place* second, V3 n) {
+    const auto at = [of](Place p) { return load8(of[p / places_per_index].of); };
+    F m[8];
+    if (second != nullptr)
+        load_eights([&](int q) { return at(first[q]) + at(second[q]); }, m);
+    else
+        load_eights([&](int q) { return at(first[q]); }, m);
+    const F x = fma(m[0], n.x, fma(m[1], n.y, m[2] * n.z)), y = fma(m[1], n.x, fma(m[3], n.y, m[4] * n.z)),
+            z = fma(m[2], n.x, fma(m[4], n.y, m[5] * n.z));
+    return dot({x, y, z}, n);
 }
 
 /// Result of the laws: force on i, direction of the torques n x (-F_t), minus the rolling moment on i; zero in lanes

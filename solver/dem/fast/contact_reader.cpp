@@ -222,7 +222,7 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
     for (std::size_t b = 0; clumps_ != nullptr && b < clumps_->size(); ++b) {
         const auto members = clumps_->members(b);
         const std::vector<std::uint32_t> places(members.begin(), members.end());
-        into.add_body(clumps_->mass[b], clumps_->inertia[b], clumps_->axes[b], places,
+        into.add_body(clumps_->mass[b], clumps_->inertia[b], clumps_->axes(b), places,
                       [&](std::uint32_t i) { return clumps_->lever_at(field_, static_cast<std::int32_t>(i)); });
     }
     const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,

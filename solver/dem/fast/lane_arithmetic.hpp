@@ -38,6 +38,15 @@ GRAINSWEEP_LANES V3 cross(V3 a, V3 b) {
 GRAINSWEEP_LANES V3 keep(M m, V3 a) {
     return {keep(m, a.x), keep(m, a.y), keep(m, a.z)};
 }
+GRAINSWEEP_LANES V3 zero_vector() {
+    return {broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
+}
+GRAINSWEEP_LANES V3 operator+(V3 a, V3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+GRAINSWEEP_LANES V3 operator-(V3 a, V3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 GRAINSWEEP_LANES V3 operator*(V3 a, F b) {
     return {a.x * b, a.y * b, a.z * b};
 }
@@ -52,6 +61,43 @@ GRAINSWEEP_LANES V3 fma(V3 a, F f, V3 b) {
 /// a f - b
 GRAINSWEEP_LANES V3 fms(V3 a, F f, V3 b) {
     return {fms(a.x, f, b.x), fms(a.y, f, b.y), fms(a.z, f, b.z)};
+}
+
+struct D3 {
+    D x, y, z;
+};
+GRAINSWEEP_LANES D3 broadcast(const double* v) {
+    return {broadcast(v[0]), broadcast(v[1]), broadcast(v[2])};
+}
+GRAINSWEEP_LANES D3 operator-(D3 a, D3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+GRAINSWEEP_LANES V3 single(D3 a) {
+    return {single(a.x), single(a.y), single(a.z)};
+}
+GRAINSWEEP_LANES D3 exact(V3 a) {
+    return {exact(a.x), exact(a.y), exact(a.z)};
+}
+/// b - f a
+GRAINSWEEP_LANES D3 fnma(D f, D3 a, D3 b) {
+    return {fnma(f, a.x, b.x), fnma(f, a.y, b.y), fnma(f, a.z, b.z)};
+}
+/// c + a x b
+GRAINSWEEP_LANES D3 add_cross(D3 c, D3 a, D3 b) {
+    return {fnma(a.z, b.y, fma(a.y, b.z, c.x)), fnma(a.x, b.z, fma(a.z, b.x, c.y)), fnma(a.y, b.x, fma(a.x, b.y, c.z))};
+}
+GRAINSWEEP_LANES D3 operator+(D3 a, D3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+GRAINSWEEP_LANES D3 operator*(D3 a, D b) {
+    return {a.x * b, a.y * b, a.z * b};
+}
+GRAINSWEEP_LANES D dot(D3 a, D3 b) {
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+/// b + a f
+GRAINSWEEP_LANES D3 fma(D3 a, D f, D3 b) {
+    return {fma(a.x, f, b.x), fma(a.y, f, b.y), fma(a.z, f, b.z)};
 }
 
 }  // namespace

@@ -78,19 +78,44 @@ struct ParkedContact {
     float overlap;       ///< divided by the smaller diameter
 };
 
-/// Member of a clump: what its contacts need of the body, in the engine's units.
-struct MemberArm {
-    float lever[3];            ///< from the centre of mass, in space
-    float inverse_inertia[6];  ///< of the body in space: xx, xy, xz, yy, yz, zz; 0: contacts are damped by its mass
+/// Matrix M of a particle: a contact with it along n has the inverse mass n M n (clump_lanes.hpp), in the engine's
+/// units. Of a sphere 1/m on the diagonal.
+struct alignas(32) Mobility {
+    float of[8];  ///< xx, xy, xz, yy, yz, zz, 0, 0
 };
 
-/// Rotations of several clumps, SI.
-struct alignas(64) TurningClumps {
-    static constexpr int lanes = 8;
-    double momentum[3][lanes], inverse[3][lanes];  ///< angular momentum; of the principal moments
-    double orientation[4][lanes];                  ///< quaternions; before, and after the step
-    double spin[3][lanes];                         ///< out: of the middle of the step
-    double axes[3][3][lanes];                      ///< out: axes of inertia, after the step
+/// Clumps of as many members each that are stepped together, one per lane.
+struct ClumpBatch {
+    std::int32_t first;    ///< body
+    std::int32_t bodies;   ///< at most the vector width; the lanes behind them repeat the first
+    std::int32_t members;  ///< of each
+    std::int32_t slot;     ///< start of its places: first members of all lanes, second members, ...
+    // Start of its entries in columns by lane, and in those by member and lane. Batches of one shape and size share
+    // them.
+    std::int32_t lane, row;
+};
+
+/// Raw view of all clumps. Vectors of columns by body follow one another; the owner is Clumps.
+struct ClumpView {
+    const ClumpBatch* batches;
+    // By body, SI.
+    double *position, *velocity, *momentum, *orientation, *spin_in_step, *fallen;
+    // By lane.
+    const double *mass, *inverse_mass;  ///< kg, 1/kg
+    const double* inverse_inertia[3];   ///< 1/(kg m2)
+    const float* turning[3];            ///< the same in the engine's units; 0: contacts are damped by the mass
+    const float* inverse_mass_single;   ///< engine's units
+    const float* reach;                 ///< largest distance of a member's centre, engine's units
+    const Place* place;                 ///< of members
+    // By member and lane.
+    const double* at[3];        ///< from the centre, in the frame of the body, m
+    const float* single_at[3];  ///< the same in the engine's units
+    const float *radius, *inverse_radius;
+
+    double length, time, force;            ///< units, SI
+    double inverse_length, inverse_speed;  ///< their inverse
+    double centre[3], inverse_unit[3];     ///< of positions, m, 1/m
+    double gravity[3], acceleration[3];    ///< m/s2; gravity alone, and with shaking
 };
 
 /// Constants of a case, in the engine's units.
@@ -204,8 +229,8 @@ struct Field {
 
     // Clumps; null if there are none.
     std::int32_t* member;             ///< number of each record among the members; -1: it is no member
-    const MemberArm* arms;            ///< of each member
-    const std::int32_t* member_body;  ///< likewise
+    const std::int32_t* member_body;  ///< of each member
+    Mobility* mobility;               ///< of each record
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;
@@ -277,8 +302,10 @@ struct Kernels {
     std::int64_t (*search)(const Field&, float skin);
     /// Makes the inner list from the outer list: pairs with a gap below `skin`, or touching. Returns the padded count.
     std::int32_t (*refresh)(const Field&, float skin);
-    /// Turns clumps for a time, s.
-    void (*turn)(TurningClumps&, double span);
+    /// Steps the clumps of some batches by the forces on their members, which it clears, and writes the members.
+    void (*step_clumps)(const Field&, const ClumpView&, std::int32_t begin, std::int32_t end, Tally&);
+    /// Writes the mobilities of the members of some batches.
+    void (*find_mobility)(const Field&, const ClumpView&, std::int32_t begin, std::int32_t end);
 };
 
 /// Needs of a case, which select the compiled sweep.
@@ -289,8 +316,9 @@ struct Needs {
     bool resting;              ///< particles at rest may be skipped
     bool several;              ///< several kinds of particles
     bool skips;                ///< particles that are not advanced are skipped by a list, unless they are few
+    bool clumps;               ///< clumps are present, or may be added
     /// Returns whether the kernel allows for particles that are not advanced.
-    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting || several; }
+    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting || several || clumps; }
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

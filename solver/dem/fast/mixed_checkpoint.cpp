@@ -82,7 +82,7 @@ Seal MixedEngine::seal() const {
     s.width = kernels_->width;
     s.needs.combination = needs_.combination;
     s.needs.unequal = needs_.unequal, s.needs.frozen = needs_.frozen, s.needs.resting = needs_.resting;
-    s.needs.skips = needs_.skips, s.needs.several = needs_.several;
+    s.needs.skips = needs_.skips, s.needs.several = needs_.several, s.needs.clumps = needs_.clumps;
     std::memcpy(static_cast<void*>(&s.constants), &start_constants_, sizeof s.constants);
     s.shaking = shaking_;
     s.rest_speed = rest_speed_;
@@ -197,7 +197,7 @@ void MixedEngine::restore_clumps() {
     constexpr auto require = ByteReader::require;
     require(clumps_.possible() && clumps_.fallen.size() == clumps_.size());
     clumps_.derive();
-    require(clumps_.map(field_, columns_, static_cast<std::size_t>(ids()), space_.scale));
+    require(clumps_.map(field_, columns_, *kernels_, static_cast<std::size_t>(ids()), space_.scale));
     for (std::size_t b = 0; b < clumps_.size(); ++b)
         for (const std::int32_t i : clumps_.members(b))
             require(field_.records[i].inverse_mass == static_cast<float>(space_.scale.mass / clumps_.mass[b]));

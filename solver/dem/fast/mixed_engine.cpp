@@ -15,6 +15,8 @@ namespace {
 /// Beyond these records no longer fit the nearer caches and are fetched ahead of their use; below, asking costs more
 /// than it gains.
 constexpr std::size_t many_particles = 40000;
+/// Likewise, where there are clumps: their members are not fetched one after the other as spheres that are advanced.
+constexpr std::size_t many_members = 6000;
 /// Beyond these a step's histories have left the last cache before the next step reads them.
 constexpr std::size_t very_many_particles = 120000;
 
@@ -119,7 +121,7 @@ void MixedEngine::load(const Setup& setup) {
 
 /// Changes no bit.
 void MixedEngine::suit_caches() {
-    field_.read_ahead = size() > many_particles ? 1 : 0;
+    field_.read_ahead = size() > (needs_.clumps ? many_members : many_particles) ? 1 : 0;
     field_.streams = size() > very_many_particles ? 1 : 0;
 }
 

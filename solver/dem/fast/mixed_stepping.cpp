@@ -261,7 +261,7 @@ void MixedEngine::list_advanced() {
 
 /// Finds the members of all clumps among the records.
 void MixedEngine::map_clumps() {
-    if (!clumps_.map(field_, columns_, static_cast<std::size_t>(ids()), space_.scale))
+    if (!clumps_.map(field_, columns_, *kernels_, static_cast<std::size_t>(ids()), space_.scale))
         throw std::logic_error("a clump lacks a member");
 }
 

@@ -183,8 +183,8 @@ GRAINSWEEP_LANES void load_spin_difference(const Record* r, const Place* first, 
 }
 
 /// Writes four-component vectors; block b of out[k] belongs to pair 4b+k.
-GRAINSWEEP_LANES void to_blocks(const F* xyz, F* out) {
-    const V rows[4] = {xyz[0].v, xyz[1].v, xyz[2].v, hn::Zero(singles)};
+GRAINSWEEP_LANES void to_blocks(const F* xyz, F fourth, F* out) {
+    const V rows[4] = {xyz[0].v, xyz[1].v, xyz[2].v, fourth.v};
     const V a = hn::InterleaveLower(singles, rows[0], rows[1]), b = hn::InterleaveUpper(singles, rows[0], rows[1]);
     const V c = hn::InterleaveLower(singles, rows[2], rows[3]), d = hn::InterleaveUpper(singles, rows[2], rows[3]);
     out[0].v = low_pairs(a, c);
@@ -193,11 +193,11 @@ GRAINSWEEP_LANES void to_blocks(const F* xyz, F* out) {
     out[3].v = high_pairs(b, d);
 }
 
-/// Writes force and torque of each pair.
-GRAINSWEEP_LANES void to_forces(const F* force, const F* torque, F8* out) {
+/// Writes two four-component vectors of each pair.
+GRAINSWEEP_LANES void to_eights(const F* first, F fourth, const F* second, F eighth, F8* out) {
     F f[4], t[4];
-    to_blocks(force, f);
-    to_blocks(torque, t);
+    to_blocks(first, fourth, f);
+    to_blocks(second, eighth, t);
     for (int k = 0; k < 4; ++k) {
 #if HWY_CAP_GE512
         const V a = even_blocks(f[k].v, t[k].v), b = odd_blocks(f[k].v, t[k].v);
@@ -212,6 +212,14 @@ GRAINSWEEP_LANES void to_forces(const F* force, const F* torque, F8* out) {
         out[k] = {f[k], t[k]};
 #endif
     }
+}
+
+GRAINSWEEP_LANES void to_eights(const F (&first)[4], const F (&second)[4], F8* out) {
+    to_eights(first, first[3], second, second[3], out);
+}
+/// Writes force and torque of each pair.
+GRAINSWEEP_LANES void to_forces(const F* force, const F* torque, F8* out) {
+    to_eights(force, broadcast(0.0f), torque, broadcast(0.0f), out);
 }
 
 GRAINSWEEP_LANES void add_to(Force* f, F8 a) {
@@ -253,7 +261,7 @@ GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Pla
 /// Adds the force to the first, minus the force to the second particle of each pair; no torques.
 GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second, const F* force) {
     F f[4];
-    to_blocks(force, f);
+    to_blocks(force, broadcast(0.0f), f);
     float w[4][width];
     for (int k = 0; k < 4; ++k) store(w[k], f[k]);
     for (int q = 0; q < width; ++q) {

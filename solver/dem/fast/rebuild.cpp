@@ -456,7 +456,7 @@ void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& spac
     sort_particles(f, c, space, kept, parts);
     place_fillers(f);
     if (clumps != nullptr) clumps->sort(f, c, ids_so_far);
-    if (clumps != nullptr && !clumps->map(f, c, ids_so_far, space.scale))
+    if (clumps != nullptr && !clumps->map(f, c, kernels, ids_so_far, space.scale))
         throw std::logic_error("a clump lacks a member");
     find_pairs(f, c, kernels, space, parts);
     const std::int32_t contacts = find_owners(f, c, kernels, parts);

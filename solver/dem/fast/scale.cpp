@@ -83,7 +83,8 @@ Constants make_constants(const Setup& setup, const Scale& scale, const Needs& ne
 Needs make_needs(const Setup& setup, bool resting) {
     Needs n{};
     n.resting = resting;
-    n.unequal = !equally_dense(setup) || radii_of(setup).differ() || !setup.shapes.empty();
+    n.unequal = !equally_dense(setup) || radii_of(setup).differ();
+    n.clumps = !setup.shapes.empty();
     for (const Sphere& s : setup.spheres) n.frozen = n.frozen || !s.mobile;
     n.combination = choose_combination(materials_of(setup), [&](const CombinationFacts& facts) {
         return !n.unequal || facts.columns != dem::Columns::equal;
@@ -91,7 +92,7 @@ Needs make_needs(const Setup& setup, bool resting) {
     n.several = ContactTable(setup).kinds() > 1;
     // kernels for any spheres compute with each particle's own radius
     n.unequal = n.unequal || facts_of(n.combination).columns == dem::Columns::any;
-    n.skips = n.resting || !setup.shapes.empty() || (n.frozen && !n.unequal && facts_of(n.combination).spin);
+    n.skips = n.resting || n.clumps || (n.frozen && !n.unequal && facts_of(n.combination).spin);
     return n;
 }
 

@@ -185,13 +185,15 @@ void Subdomains::place_copies(Field& whole, Columns& columns) {
     }
     columns.records.hold(next + spare);
     columns.kind.hold(next + spare);
-    if (columns.member.capacity() > 0) columns.member.hold(next + spare);
+    if (columns.member.capacity() > 0) columns.member.hold(next + spare), columns.mobility.hold(next + spare);
     columns.forces.hold(next + spare);
     columns.bind(whole);
     for (const auto& subdomain : subdomains_) {
         for (std::int32_t k = 0; k < 2; ++k) {
             whole.records[subdomain->filler + k] = whole.records[whole.filler + k];
-            if (whole.member != nullptr) whole.member[subdomain->filler + k] = -1;
+            if (whole.member == nullptr) continue;
+            whole.member[subdomain->filler + k] = -1;
+            whole.mobility[subdomain->filler + k] = whole.mobility[whole.filler + k];
         }
         // What a partner keeps until the next cuts: lists may be taken over without new inner ones.
         std::int32_t copy = subdomain->filler + 2;

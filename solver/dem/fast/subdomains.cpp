@@ -79,12 +79,16 @@ std::int32_t Subdomain::touching_in(std::int32_t from, std::int32_t count, std::
     return touching;
 }
 
-void Subdomain::copy_partners(Record* records, bool all) const {
-    Record* const copy = records + filler + 2;
-    if (all)
-        for (std::size_t k = 0; k < partner.size(); ++k) copy[k] = records[partner[k]];
-    else
-        for (std::size_t k = 0; k < met.size(); ++k) copy[met[k]] = records[met_here[k]];
+void Subdomain::copy_partners(Record* records, Mobility* mobility, bool all) const {
+    const auto copy = [this, all](auto* column) {
+        auto* const to = column + filler + 2;
+        if (all)
+            for (std::size_t k = 0; k < partner.size(); ++k) to[k] = column[partner[k]];
+        else
+            for (std::size_t k = 0; k < met.size(); ++k) to[met[k]] = column[met_here[k]];
+    };
+    copy(records);
+    if (mobility != nullptr) copy(mobility);
 }
 
 std::span<const std::int32_t> Subdomain::own(const std::vector<std::int32_t>& particles) const {
@@ -214,7 +218,8 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_o
     const bool received = goes_on && !renewal;
     if (!received)
         pool_->run([&](int part) {
-            subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, renewal.has_value());
+            subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, whole.mobility,
+                                                                       renewal.has_value());
         });
     pool_->run_timed([&](int part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];

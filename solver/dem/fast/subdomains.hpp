@@ -84,8 +84,8 @@ struct alignas(64) Subdomain {
     void count_inner(const Field& view);
     /// Returns the number of touching pairs in a part of its inner list.
     [[nodiscard]] std::int32_t touching_in(std::int32_t from, std::int32_t count, std::int32_t width) const;
-    /// Copies the records of its partners: all, or those in the inner list.
-    void copy_partners(Record* records, bool all) const;
+    /// Copies the records and mobilities of its partners: all, or those in the inner list. `mobility` may be null.
+    void copy_partners(Record* records, Mobility* mobility, bool all) const;
     /// Returns its own ones among some particles, ascending.
     [[nodiscard]] std::span<const std::int32_t> own(const std::vector<std::int32_t>& particles) const;
     /// Makes a sweep prefetch the rows that send() will write.

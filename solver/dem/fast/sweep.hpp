@@ -52,6 +52,8 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         const Place* second = f.inner_second + k;
         if (f.read_ahead != 0) {
             for (int q = 0; q < width; ++q) prefetch(record_at(f.records, second[q + 64]));
+            if (Kernel::holds && f.mobility != nullptr)
+                for (int q = 0; q < width; ++q) prefetch(f.mobility + second[q + 64] / places_per_index);
             if constexpr (Kernel::histories > 0)
                 for (int a = 0; a < Kernel::histories; ++a) {
                     prefetch(f.history[a] + s.read + 256);
@@ -192,7 +194,10 @@ GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, several>& laws
         m.inverse_distance = inverse_distance;
         m.difference = difference;
         m.inverse_masses = row[3];
-        if (f.member != nullptr) m.inverse_masses = row[3] + added_inverse_masses(f, first, second, m.normal);
+        if constexpr (Kernel::holds) {
+            m.with_clumps = f.mobility != nullptr;
+            if (m.with_clumps) m.inverse_masses = inverse_masses(f.mobility, first, second, m.normal);
+        }
         if constexpr (Kernel::rolls) {
             F spin_row[4];
             load_spin_difference(f.records, first, second, spin_row);

@@ -15,15 +15,6 @@ struct LaneSums {
     F power;
 };
 
-GRAINSWEEP_LANES V3 zero_vector() {
-    return {broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
-}
-GRAINSWEEP_LANES V3 operator+(V3 a, V3 b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-GRAINSWEEP_LANES V3 operator-(V3 a, V3 b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
 GRAINSWEEP_LANES V3 load_vector(const float (&rows)[3][wall_tile + 2 * width], int at) {
     return {load(rows[0] + at), load(rows[1] + at), load(rows[2] + at)};
 }
@@ -78,7 +69,8 @@ GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, W
         m.surface = V3{rows[4], rows[5], rows[6]} * arm;
         m.root_radius = radius * inverse_root(max(radius, broadcast(1e-12f)));
         m.inverse_masses = rows[3];
-        if (f.member != nullptr) m.inverse_masses = rows[3] + added_inverse_masses(f, particle, nullptr, m.normal);
+        if constexpr (Kernel::holds)
+            if (f.mobility != nullptr) m.inverse_masses = inverse_masses(f.mobility, particle, nullptr, m.normal);
         if constexpr (Kernel::rolls) {
             m.turning = {rows[4], rows[5], rows[6]};
             m.rolling_inertia = inverse(rows[3] * inverse(max(radius * radius, broadcast(1e-12f))));

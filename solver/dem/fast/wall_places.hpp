@@ -18,27 +18,6 @@ GRAINSWEEP_LANES D like(D, double value) {
     return broadcast(value);
 }
 
-struct D3 {
-    D x, y, z;
-};
-GRAINSWEEP_LANES D3 broadcast(const double* v) {
-    return {broadcast(v[0]), broadcast(v[1]), broadcast(v[2])};
-}
-GRAINSWEEP_LANES D3 operator-(D3 a, D3 b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-GRAINSWEEP_LANES V3 single(D3 a) {
-    return {single(a.x), single(a.y), single(a.z)};
-}
-/// b - f a
-GRAINSWEEP_LANES D3 fnma(D f, D3 a, D3 b) {
-    return {fnma(f, a.x, b.x), fnma(f, a.y, b.y), fnma(f, a.z, b.z)};
-}
-/// c + a x b
-GRAINSWEEP_LANES D3 add_cross(D3 c, D3 a, D3 b) {
-    return {fnma(a.z, b.y, fma(a.y, b.z, c.x)), fnma(a.x, b.z, fma(a.z, b.x, c.y)), fnma(a.y, b.x, fma(a.x, b.y, c.z))};
-}
-
 /// Packed contacts with one wall.
 struct alignas(64) WallTile {
     Place particle[wall_tile + 2 * width];
