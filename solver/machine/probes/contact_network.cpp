@@ -67,7 +67,7 @@ private:
     double mean_ = 0;
 };
 
-double force_of(const dem::ContactForce& c) {
+double size_of_force(const dem::ContactForce& c) {
     return std::sqrt(c.normal_force * c.normal_force + geometry::dot(c.tangential_force, c.tangential_force));
 }
 
@@ -76,7 +76,7 @@ public:
     explicit LargestForce(const Options& options) : selection_(options) {}
     double look(const Frame& frame) override {
         double largest = 0;
-        selection_.each(frame, [&](const dem::ContactForce& c) { largest = std::max(largest, force_of(c)); });
+        selection_.each(frame, [&](const dem::ContactForce& c) { largest = std::max(largest, size_of_force(c)); });
         return largest;
     }
 
@@ -102,7 +102,7 @@ public:
         std::vector<double> numbers(count_, 0.0);
         double all = 0;
         selection_.each(frame, [&](const dem::ContactForce& c) {
-            const double value = (overlaps_ ? c.overlap : force_of(c)) / unit_;
+            const double value = (overlaps_ ? c.overlap : size_of_force(c)) / unit_;
             const double bin = value > from_ ? std::min(bin_of(value) - first_, static_cast<double>(count_ - 1)) : 0;
             ++numbers[static_cast<std::size_t>(bin)];
             ++all;
