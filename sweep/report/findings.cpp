@@ -168,7 +168,7 @@ store::Table posterior_table(const CalibrationReport& report) {
 }
 
 /// Probabilities of levels; no rows: every factor is continuous.
-store::Table levels_table(const CalibrationReport& report) {
+store::Table level_probabilities(const CalibrationReport& report) {
     store::Table table{{"factor", "unit", "level", "probability"}, {}};
     for (const auto& factor : report.factors)
         for (const auto& one : factor.levels)
@@ -225,7 +225,7 @@ void say_calibration(Document& shown, const CalibrationReport& report) {
     shown.say(calibration_line(report));
     if (!report.found.waves.empty()) shown.say().show(waves_table(report));
     if (!report.factors.empty()) shown.say("\nposterior").show(posterior_table(report));
-    if (const auto levels = levels_table(report); !levels.rows.empty())
+    if (const auto levels = level_probabilities(report); !levels.rows.empty())
         shown.say("\nposterior probability of each level").show(levels);
     shown.say("\ntargets (standard deviations: measurement, spread over the posterior, scatter of fresh runs)");
     shown.show(targets_table(report)).say_notes(report.notes);
@@ -273,7 +273,7 @@ Json page_of(const CalibrationReport& report) {
     return {{"says", calibration_line(report)},
             {"notes", report.notes},
             {"posterior", found.posterior ? columns_and_rows(posterior_table(report)) : Json()},
-            {"levels", columns_and_rows(levels_table(report))},
+            {"levels", columns_and_rows(level_probabilities(report))},
             {"targets", columns_and_rows(targets_table(report))},
             {"waves", columns_and_rows(waves_table(report))},
             {"factors", factors},
