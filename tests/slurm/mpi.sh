@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # A program of MPI as a case, without Slurm: its ranks count against the cores.
 #   tests/slurm/mpi.sh GRAINSWEEP
-# Exit code 77 where there is no MPI (mpicc, mpirun).
+# Exit code 77 where there is no MPI (mpicc with its headers, mpirun).
 set -euo pipefail
 grainsweep=$(realpath "$1")
 sources=$(dirname "$(realpath "$0")")
-if ! command -v mpicc mpirun >/dev/null; then
-    echo "skipped: there is no MPI (mpicc, mpirun)"
+if ! command -v mpirun >/dev/null || ! mpicc -E -include mpi.h -x c /dev/null >/dev/null 2>&1; then
+    echo "skipped: there is no MPI (mpicc with its headers, mpirun)"
     exit 77
 fi
 folder=$(mktemp -d /tmp/gsmpi.XXXXXX)

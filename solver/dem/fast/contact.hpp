@@ -119,9 +119,12 @@ GRAINSWEEP_LANES void store_memory(float* const* column, std::int64_t at, const 
     for (int a = 0; a < Kernel::histories; ++a) store(column[a] + at, memory[a]);
 }
 
-/// Returns the sum over both particles of n M n; `second` null: walls.
-GRAINSWEEP_LANES F inverse_masses(const Mobility* of, const Place* first, const Place* second, V3 n) {
+/// Writes the sum over both particles of n M n; `second` null: walls. A function of its own, so that the loops of
+/// spheres keep their registers.
+GRAINSWEEP_PHASE void write_inverse_masses(const Mobility* of, const Place* first, const Place* second,
+                                           const float* normal, float* sum) {
     const auto at = [of](Place p) { return load8(of[p / places_per_index].of); };
+    const V3 n{load(normal), load(normal + width), load(normal + 2 * width)};
     F m[8];
     if (second != nullptr)
         load_eights([&](int q) { return at(first[q]) + at(second[q]); }, m);
@@ -129,7 +132,13 @@ GRAINSWEEP_LANES F inverse_masses(const Mobility* of, const Place* first, const 
         load_eights([&](int q) { return at(first[q]); }, m);
     const F x = fma(m[0], n.x, fma(m[1], n.y, m[2] * n.z)), y = fma(m[1], n.x, fma(m[3], n.y, m[4] * n.z)),
             z = fma(m[2], n.x, fma(m[4], n.y, m[5] * n.z));
-    return dot({x, y, z}, n);
+    store(sum, dot({x, y, z}, n));
+}
+GRAINSWEEP_LANES F inverse_masses(const Mobility* of, const Place* first, const Place* second, V3 n) {
+    float normal[3 * width], sum[width];
+    store(normal, n.x), store(normal + width, n.y), store(normal + 2 * width, n.z);
+    write_inverse_masses(of, first, second, normal, sum);
+    return load(sum);
 }
 
 /// Result of the laws: force on i, direction of the torques n x (-F_t), minus the rolling moment on i; zero in lanes

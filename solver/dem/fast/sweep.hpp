@@ -196,7 +196,8 @@ GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, several>& laws
         m.inverse_masses = row[3];
         if constexpr (Kernel::holds) {
             m.with_clumps = f.mobility != nullptr;
-            if (m.with_clumps) m.inverse_masses = inverse_masses(f.mobility, first, second, m.normal);
+            if (m.with_clumps) [[unlikely]]
+                m.inverse_masses = inverse_masses(f.mobility, first, second, m.normal);
         }
         if constexpr (Kernel::rolls) {
             F spin_row[4];

@@ -70,7 +70,8 @@ GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, W
         m.root_radius = radius * inverse_root(max(radius, broadcast(1e-12f)));
         m.inverse_masses = rows[3];
         if constexpr (Kernel::holds)
-            if (f.mobility != nullptr) m.inverse_masses = inverse_masses(f.mobility, particle, nullptr, m.normal);
+            if (f.mobility != nullptr) [[unlikely]]
+                m.inverse_masses = inverse_masses(f.mobility, particle, nullptr, m.normal);
         if constexpr (Kernel::rolls) {
             m.turning = {rows[4], rows[5], rows[6]};
             m.rolling_inertia = inverse(rows[3] * inverse(max(radius * radius, broadcast(1e-12f))));
