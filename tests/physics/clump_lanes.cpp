@@ -11,25 +11,8 @@ namespace grainsweep::tests::clump_lanes_test {
 
 using namespace geometry;
 
-constexpr double density = 2500;
+constexpr double density = clump_density;
 constexpr dem::Method mixed{.precision = dem::Method::Precision::mixed};
-
-dem::Setup empty_room() {
-    dem::Setup setup;
-    setup.domain = {{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {}};
-    setup.gravity = {};
-    setup.material.youngs_modulus = 2.1e7;
-    setup.material.density = density;
-    setup.time_step = 1e-6;
-    return setup;
-}
-
-void add(dem::Setup& setup, const dem::Body& given) {
-    dem::Body body = given;
-    body.first = setup.spheres.size();
-    for (const auto& sphere : dem::members_of(setup.shapes[body.shape], body)) setup.spheres.push_back(sphere);
-    setup.bodies.push_back(body);
-}
 
 dem::State state_of(const dem::Engine& engine) {
     dem::State state;
@@ -39,7 +22,7 @@ dem::State state_of(const dem::Engine& engine) {
 
 /// Free clumps of three shapes, more of each than lanes of a vector hold, or fewer.
 dem::Setup free_crowd(std::size_t count) {
-    dem::Setup setup = empty_room();
+    dem::Setup setup = clump_room();
     setup.domain = {{0, 0, 0}, {0.1, 0.1, 0.1}, {true, true, true}};
     setup.gravity = {0.3, -0.2, -0.1};
     setup.time_step = 2e-5;
@@ -51,12 +34,12 @@ dem::Setup free_crowd(std::size_t count) {
         const auto at = [](std::size_t k) { return 0.0125 + 0.025 * static_cast<double>(k); };
         constexpr std::array<std::size_t, 7> shapes = {0, 0, 0, 0, 2, 2, 1};
         const std::size_t shape = shapes[n % shapes.size()];
-        add(setup, {.shape = shape,
-                    .scale = shape == 0 ? 0.95 : 0.9 + 0.1 * u,  // dumbbells are alike
-                    .position = {at(n % 4), at(n / 4 % 4), at(n / 16)},
-                    .orientation = orientation_at(u, v, w),
-                    .velocity = {0.05 * (u - 0.5), 0.05 * (v - 0.5), 0.05 * (w - 0.5)},
-                    .angular_velocity = {200 * (v - 0.5), 200 * (w - 0.5), 200 * (u - 0.5)}});
+        add_body(setup, {.shape = shape,
+                         .scale = shape == 0 ? 0.95 : 0.9 + 0.1 * u,  // dumbbells are alike
+                         .position = {at(n % 4), at(n / 4 % 4), at(n / 16)},
+                         .orientation = orientation_at(u, v, w),
+                         .velocity = {0.05 * (u - 0.5), 0.05 * (v - 0.5), 0.05 * (w - 0.5)},
+                         .angular_velocity = {200 * (v - 0.5), 200 * (w - 0.5), 200 * (u - 0.5)}});
     }
     return setup;
 }
@@ -89,16 +72,16 @@ TEST(ClumpLanes, StepAsOneByOne) {
 
 // An oblique impact of two bodies without symmetry, and of a body on a sphere and on a wall.
 TEST(ClumpLanes, DampImpactsAlike) {
-    dem::Setup setup = empty_room();
+    dem::Setup setup = clump_room();
     setup.shapes = {clump_shape("asym3", density)};
     setup.material.restitution = 0.3;
     setup.material.friction = 0.3;
     setup.walls.emplace_back(Plane{{0, 0, -0.012}, {0, 0, 1}});
-    add(setup, {.orientation = orientation_at(0.3, 0.1, 0.7), .velocity = {0, 0, -0.4}});
-    add(setup, {.position = {0.0085, 0.001, 0.002},
-                .orientation = orientation_at(0.8, 0.4, 0.2),
-                .velocity = {-0.6, 0, -0.4},
-                .angular_velocity = {20, 0, 40}});
+    add_body(setup, {.orientation = orientation_at(0.3, 0.1, 0.7), .velocity = {0, 0, -0.4}});
+    add_body(setup, {.position = {0.0085, 0.001, 0.002},
+                     .orientation = orientation_at(0.8, 0.4, 0.2),
+                     .velocity = {-0.6, 0, -0.4},
+                     .angular_velocity = {20, 0, 40}});
     setup.spheres.push_back({.position = {-0.008, 0.001, 0}, .velocity = {0.3, 0, -0.4}, .radius = 0.002});
     const auto in_double = dem::make_engine(setup, {}), in_lanes = dem::make_engine(setup, mixed);
     in_double->run(30000), in_lanes->run(30000);

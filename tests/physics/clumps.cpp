@@ -13,24 +13,7 @@ namespace grainsweep::tests::clumps_test {
 
 using namespace geometry;
 
-constexpr double density = 2500;
-
-dem::Setup empty_room() {
-    dem::Setup setup;
-    setup.domain = {{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {}};
-    setup.gravity = {};
-    setup.material.youngs_modulus = 2.1e7;
-    setup.material.density = density;
-    setup.time_step = 1e-6;
-    return setup;
-}
-
-void add(dem::Setup& setup, const dem::Body& given) {
-    dem::Body body = given;
-    body.first = setup.spheres.size();
-    for (const auto& sphere : dem::members_of(setup.shapes[body.shape], body)) setup.spheres.push_back(sphere);
-    setup.bodies.push_back(body);
-}
+constexpr double density = clump_density;
 
 dem::BodyState body_of(const dem::Engine& engine, std::size_t number = 0) {
     dem::State state;
@@ -46,10 +29,10 @@ double energy_of(const dem::BodyState& b) {
 TEST(Clumps, ATopPrecesses) {
     double before = 0;
     for (const double step : {4e-5, 2e-5}) {
-        dem::Setup setup = empty_room();
+        dem::Setup setup = clump_room();
         setup.shapes = {clump_shape("dumbbell_1_5", density)};
         setup.time_step = step;
-        add(setup, {.angular_velocity = {150, 80, 200}});
+        add_body(setup, {.angular_velocity = {150, 80, 200}});
         const auto engine = dem::make_engine(setup, {});
         const dem::BodyState start = body_of(*engine);
         const double rate = norm(start.angular_momentum) / start.inertia[1];
@@ -73,12 +56,12 @@ TEST(Clumps, ATopPrecesses) {
 
 // An asymmetric top that spins about its middle axis turns over every 2 K(k)/w_p (Jacobi).
 TEST(Clumps, AnAsymmetricTopTurnsOver) {
-    dem::Setup setup = empty_room();
+    dem::Setup setup = clump_room();
     setup.shapes = {clump_shape("asym3", density)};
     setup.time_step = 1e-5;
     const Vec3 inertia = setup.shapes[0].inertia;
     const double tip = 0.01, speed = 300;
-    add(setup, {.angular_velocity = {tip * speed, speed, 0}});
+    add_body(setup, {.angular_velocity = {tip * speed, speed, 0}});
     const auto engine = dem::make_engine(setup, {});
     const auto about_middle = [&] {
         const auto body = body_of(*engine);
@@ -119,7 +102,7 @@ struct Rebound {
 /// A dumbbell falls on a plane at 0.5 m/s, its axis at an angle above the plane.
 Rebound rebound(double angle, double stiffness, double restitution, dem::DampingMass damping,
                 const dem::Method& method = {}) {
-    dem::Setup setup = empty_room();
+    dem::Setup setup = clump_room();
     setup.material.youngs_modulus *= stiffness;
     setup.material.restitution = restitution;
     setup.material.friction = 0;
@@ -127,9 +110,9 @@ Rebound rebound(double angle, double stiffness, double restitution, dem::Damping
     setup.shapes = {clump_shape("dumbbell_1_5", density, damping)};
     setup.walls.emplace_back(Plane{{0, 0, 0}, {0, 0, 1}});
     const double h = norm(setup.shapes[0].members[0].place), r = setup.shapes[0].members[0].radius;
-    add(setup, {.position = {0, 0, h * std::sin(angle) + r + 1e-6},
-                .orientation = turn_about({0, 1, 0}, angle),
-                .velocity = {0, 0, -0.5}});
+    add_body(setup, {.position = {0, 0, h * std::sin(angle) + r + 1e-6},
+                     .orientation = turn_about({0, 1, 0}, angle),
+                     .velocity = {0, 0, -0.5}});
     const auto engine = dem::make_engine(setup, method);
     bool touched = false;
     std::vector<dem::ContactForce> contacts;
@@ -187,7 +170,7 @@ TEST(Clumps, DampBySelectedMass) {
 
 /// Clumps and single spheres, thrown together in a periodic box with a floor.
 dem::Setup crowd(bool floor) {
-    dem::Setup setup = empty_room();
+    dem::Setup setup = clump_room();
     setup.domain = {{0, 0, floor ? 0 : -1.0}, {0.03, 0.03, floor ? 0.06 : 1.0}, {true, true, false}};
     setup.material.youngs_modulus = 5e6;
     setup.time_step = 1e-5;
@@ -206,12 +189,12 @@ dem::Setup crowd(bool floor) {
                 if (n % 3 == 2)
                     setup.spheres.push_back({.position = at, .velocity = velocity, .radius = 0.002});
                 else
-                    add(setup, {.shape = n % 3,
-                                .scale = 0.9 + 0.1 * u,
-                                .position = at,
-                                .orientation = orientation_at(u, v, w),
-                                .velocity = velocity,
-                                .angular_velocity = {20 * u, -10 * v, 15 * w}});
+                    add_body(setup, {.shape = n % 3,
+                                     .scale = 0.9 + 0.1 * u,
+                                     .position = at,
+                                     .orientation = orientation_at(u, v, w),
+                                     .velocity = velocity,
+                                     .angular_velocity = {20 * u, -10 * v, 15 * w}});
             }
     return setup;
 }

@@ -112,4 +112,21 @@ ClumpCase clump_case(const json& c) {
     return made;
 }
 
+dem::Setup clump_room() {
+    dem::Setup setup;
+    setup.domain = {{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {}};
+    setup.gravity = {};
+    setup.material.youngs_modulus = 2.1e7;
+    setup.material.density = clump_density;
+    setup.time_step = 1e-6;
+    return setup;
+}
+
+void add_body(dem::Setup& setup, const dem::Body& given) {
+    dem::Body body = given;
+    body.first = setup.spheres.size();
+    for (const auto& sphere : dem::members_of(setup.shapes[body.shape], body)) setup.spheres.push_back(sphere);
+    setup.bodies.push_back(body);
+}
+
 }  // namespace grainsweep::tests

@@ -27,4 +27,10 @@ struct ClumpCase {
 /// Returns a shape for the engines, m and kg.
 [[nodiscard]] dem::BodyShape body_shape(const particles::Clump& clump, double density, dem::DampingMass damping);
 
+inline constexpr double clump_density = 2500;  // kg/m3
+/// Returns an empty box of 0.1 m without gravity, for stiff grains, at steps of a microsecond.
+[[nodiscard]] dem::Setup clump_room();
+/// Adds a body with its member spheres.
+void add_body(dem::Setup& setup, const dem::Body& given);
+
 }  // namespace grainsweep::tests

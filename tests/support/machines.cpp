@@ -1,9 +1,12 @@
 #include "tests/support/machines.hpp"
 
-#include <array>
+#include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdio>
 #include <stdexcept>
+#include <vector>
 
 namespace grainsweep::tests {
 
@@ -84,6 +87,21 @@ Observations answer_of(const machine::Spec& spec, std::uint64_t seed) {
     Observations observations;
     run.observe(observations);
     return observations;
+}
+
+void expect_same_resumed(const json& document, double time) {
+    for (const char* precision : {"double", "mixed"}) {
+        const auto spec = spec_of(document, {{"precision", precision}});
+        machine::Run first(spec, 1), second(spec, 1);
+        first.advance(time);
+        std::vector<std::byte> saved;
+        first.save(saved);
+        second.restore(saved);
+        second.advance(1e9);
+        Observations observations;
+        second.observe(observations);
+        EXPECT_EQ(text_of(observations), text_of(answer_of(spec))) << precision;
+    }
 }
 
 std::string text_of(const Observations& observations) {

@@ -26,6 +26,8 @@ using FileTexts = std::map<std::string, std::string>;
                                     const FileTexts& files = {});
 /// What a finished run has measured.
 [[nodiscard]] Observations answer_of(const machine::Spec& spec, std::uint64_t seed = 1);
+/// Expects the same answer, to the last bit, of a run that a checkpoint interrupts after a time, s, in both precisions.
+void expect_same_resumed(const nlohmann::json& document, double time);
 /// Scalars and series as one text, to the last bit.
 [[nodiscard]] std::string text_of(const Observations& observations);
 

@@ -80,18 +80,7 @@ TEST(MachineLoads, ACheckpointKeepsTheCourse) {
         "mass": 0.1, "speed_at_most": 1
 }
 })json");
-    for (const char* precision : {"double", "mixed"}) {
-        const auto spec = spec_of(machine, {{"precision", precision}});
-        machine::Run first(spec, 1), second(spec, 1);
-        first.advance(0.2);
-        std::vector<std::byte> saved;
-        first.save(saved);
-        second.restore(saved);
-        second.advance(1e9);
-        Observations observations;
-        second.observe(observations);
-        EXPECT_EQ(text_of(observations), text_of(answer_of(spec))) << precision;
-    }
+    expect_same_resumed(machine, 0.2);
 }
 
 }  // namespace grainsweep::tests::machine_loads_test

@@ -78,18 +78,7 @@ TEST(MachineOnly, BitsDoNotDependOnThreads) {
 TEST(MachineOnly, ACheckpointKeepsWhatPasses) {
     json machine = two_floors(mesh_floor);
     machine["walls"]["floor"]["only"] = {"stone"};
-    for (const char* precision : {"double", "mixed"}) {
-        const auto spec = spec_of(machine, {{"precision", precision}});
-        machine::Run first(spec, 1), second(spec, 1);
-        first.advance(0.05);
-        std::vector<std::byte> saved;
-        first.save(saved);
-        second.restore(saved);
-        second.advance(1e9);
-        Observations observations;
-        second.observe(observations);
-        EXPECT_EQ(text_of(observations), text_of(answer_of(spec))) << precision;
-    }
+    expect_same_resumed(machine, 0.05);
 }
 
 }  // namespace grainsweep::tests::machine_only_test
