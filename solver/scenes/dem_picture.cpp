@@ -205,6 +205,8 @@ namespace {
 /// A number per contact in every column; "second" and "wall" are -1 where the partner is a wall or a particle.
 ContactLines lines_of(const dem::State& state, std::span<const dem::ContactForce> contacts) {
     ContactLines lines;
+    std::vector<double> first, second, at_wall, normal_force, tangential_force, overlap, slides;
+    std::vector<Vec3> force;
     for (const dem::ContactForce& contact : contacts) {
         const auto at = [&](std::int32_t id) {
             return static_cast<std::size_t>(std::ranges::lower_bound(state.id, id) - state.id.begin());
@@ -213,15 +215,23 @@ ContactLines lines_of(const dem::State& state, std::span<const dem::ContactForce
         const bool wall = contact.second < 0;
         const double distance = state.radius[i] + (wall ? 0 : state.radius[at(contact.second)]) - contact.overlap;
         lines.ends.push_back({state.position[i], state.position[i] - distance * contact.normal});
-        lines.scalars["first"].push_back(contact.first);
-        lines.scalars["second"].push_back(wall ? -1 : contact.second);
-        lines.scalars["wall"].push_back(wall ? -1 - contact.second : -1);
-        lines.scalars["normal_force"].push_back(contact.normal_force);
-        lines.scalars["tangential_force"].push_back(geometry::norm(contact.tangential_force));
-        lines.scalars["overlap"].push_back(contact.overlap);
-        lines.scalars["slides"].push_back(contact.slides ? 1 : 0);
-        lines.vectors["force"].push_back(contact.normal_force * contact.normal + contact.tangential_force);
+        first.push_back(contact.first);
+        second.push_back(wall ? -1 : contact.second);
+        at_wall.push_back(wall ? -1 - contact.second : -1);
+        normal_force.push_back(contact.normal_force);
+        tangential_force.push_back(geometry::norm(contact.tangential_force));
+        overlap.push_back(contact.overlap);
+        slides.push_back(contact.slides ? 1 : 0);
+        force.push_back(contact.normal_force * contact.normal + contact.tangential_force);
     }
+    lines.scalars = {{"first", std::move(first)},
+                     {"second", std::move(second)},
+                     {"wall", std::move(at_wall)},
+                     {"normal_force", std::move(normal_force)},
+                     {"tangential_force", std::move(tangential_force)},
+                     {"overlap", std::move(overlap)},
+                     {"slides", std::move(slides)}};
+    lines.vectors["force"] = std::move(force);
     lines.units = {{"normal_force", "N"}, {"tangential_force", "N"}, {"overlap", "m"}, {"force", "N"}};
     return lines;
 }
