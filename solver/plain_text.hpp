@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep {
 
@@ -47,6 +49,17 @@ namespace grainsweep {
 [[nodiscard]] inline std::optional<double> number_in(std::string_view word) {
     const auto number = any_number_in(word);
     return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+/// Returns the words as numbers; empty if one is no number.
+[[nodiscard]] inline std::vector<double> numbers_in(std::span<const std::string> words) {
+    std::vector<double> numbers;
+    for (const std::string& word : words) {
+        const auto number = any_number_in(word);
+        if (!number) return {};
+        numbers.push_back(*number);
+    }
+    return numbers;
 }
 
 /// Returns the shortest text that reads back as the same number.

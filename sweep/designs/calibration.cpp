@@ -47,9 +47,8 @@ void add_inputs(std::vector<double>& row, const FactorRange& factor, double u) {
     } else if (factor.has_words()) {
         for (std::size_t k = 1; k < factor.parts; ++k) row.push_back(factor.part(u) == k ? 1 : 0);
     } else {
-        const double here = factor.number_at(u);
-        const auto below = std::ranges::count_if(
-            factor.levels, [&](const std::string& level) { return any_number_in(level).value() < here; });
+        const auto numbers = numbers_in(factor.levels);
+        const auto below = std::ranges::count_if(numbers, [&](double x) { return x < numbers[factor.part(u)]; });
         row.push_back((static_cast<double>(below) + 0.5) / static_cast<double>(factor.parts));
     }
 }

@@ -57,15 +57,19 @@ const T& option_of(const DesignRequest& request, std::string_view option) {
 }  // namespace
 
 bool FactorRange::has_words() const {
-    return std::ranges::any_of(levels, [](const std::string& text) { return !any_number_in(text); });
+    return !levels.empty() && numbers_in(levels).empty();
 }
 
 std::size_t FactorRange::part(double u) const {
     return parts == 0 ? 0 : std::min(static_cast<std::size_t>(u * static_cast<double>(parts)), parts - 1);
 }
 
+double FactorRange::middle_of(std::size_t of_part) const {
+    return (static_cast<double>(of_part) + 0.5) / static_cast<double>(parts);
+}
+
 double FactorRange::middle(double u) const {
-    return parts == 0 ? u : (static_cast<double>(part(u)) + 0.5) / static_cast<double>(parts);
+    return parts == 0 ? u : middle_of(part(u));
 }
 
 double FactorRange::number_at(double u) const {
@@ -80,8 +84,7 @@ std::string FactorRange::text_at(double u) const {
 FactorRange::Shown FactorRange::shown() const {
     if (!levels.empty()) {
         std::vector<double> numbers;
-        for (std::size_t k = 0; k < parts; ++k)
-            numbers.push_back(number_at((static_cast<double>(k) + 0.5) / static_cast<double>(parts)));
+        for (std::size_t k = 0; k < parts; ++k) numbers.push_back(number_at(middle_of(k)));
         const auto [low, high] = std::ranges::minmax(numbers);
         return {low, high};
     }

@@ -61,9 +61,11 @@ struct FactorRange {
 
     /// Returns whether it has levels that are not all numbers.
     [[nodiscard]] bool has_words() const;
-    /// Returns the index of the part at u, and the coordinate of its middle; without parts 0 and u.
+    /// Return the index of the part at u, the coordinate of its middle, and that of a part by index; without parts the
+    /// first two are 0 and u.
     [[nodiscard]] std::size_t part(double u) const;
     [[nodiscard]] double middle(double u) const;
+    [[nodiscard]] double middle_of(std::size_t of_part) const;
     /// Returns the value at u as a number; for words the index of the level.
     [[nodiscard]] double number_at(double u) const;
     /// Returns the value at u as text that reads back as the same value.

@@ -83,20 +83,9 @@ void add_failed(plot::Figure& figure, plot::Panel& panel, const std::optional<pl
     if (std::ranges::count(figure.keys, "failed cases", &plot::Key::text) == 0) figure.keys.push_back(failed_key());
 }
 
-/// Numbers of a factor whose levels are numbers, in the order of the levels; empty: words.
-std::vector<double> numbers_of(const std::vector<std::string>& levels) {
-    std::vector<double> numbers;
-    for (const auto& level : levels) {
-        const auto number = number_in(level);
-        if (!number) return {};
-        numbers.push_back(*number);
-    }
-    return numbers;
-}
-
 /// Returns a factor with levels that are numbers as a factor of numbers, so that its axis has their distances.
 FactorColumn with_numbers(FactorColumn factor) {
-    const auto numbers = numbers_of(factor.levels);
+    const auto numbers = numbers_in(factor.levels);
     if (numbers.empty()) return factor;
     for (double& value : factor.values)
         if (std::isfinite(value)) value = numbers[static_cast<std::size_t>(value)];

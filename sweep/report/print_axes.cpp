@@ -1,11 +1,12 @@
 #include "sweep/report/print_axes.hpp"
 
+#include "solver/plain_text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <system_error>
@@ -30,19 +31,6 @@ bool takes_prefix(std::string_view unit) {
     return std::ranges::find(plain, first) != plain.end() &&
            std::ranges::all_of(unit, [](unsigned char c) { return std::isalnum(c) != 0 || c == '/' || c == '^'; }) &&
            std::ranges::count(unit, '/') <= 1;
-}
-
-/// Returns the levels as numbers; empty if one is a word.
-std::vector<double> numbers_in(const std::vector<std::string>& levels) {
-    std::vector<double> numbers;
-    for (const auto& level : levels) {
-        double x = 0;
-        const auto* end = level.data() + level.size();
-        const auto [stop, error] = std::from_chars(level.data(), end, x);
-        if (error != std::errc() || stop != end) return {};
-        numbers.push_back(x);
-    }
-    return numbers;
 }
 
 void replace_all(std::string& text, std::string_view word, std::string_view by) {

@@ -52,8 +52,7 @@ double quantile(std::vector<double> values, double share) {
 std::vector<LevelProbability> probabilities_of(const designs::FactorRange& range, std::span<const double> coordinates) {
     std::vector<LevelProbability> found;
     if (range.parts == 0) return found;
-    for (std::size_t k = 0; k < range.parts; ++k)
-        found.push_back({range.text_at((static_cast<double>(k) + 0.5) / static_cast<double>(range.parts))});
+    for (std::size_t k = 0; k < range.parts; ++k) found.push_back({range.text_at(range.middle_of(k))});
     for (const double u : coordinates) found[range.part(u)].probability += 1 / static_cast<double>(coordinates.size());
     return found;
 }
@@ -335,9 +334,6 @@ std::map<std::string, store::CampaignRecord> records_of(const store::Store& stor
 Marginal marginal_of(const designs::Calibration& found, std::size_t j) {
     constexpr std::size_t bins = 24, prior_points = 2400;
     const auto& range = found.ranges[j];
-    const auto even = [](std::size_t k, std::size_t n) {
-        return (static_cast<double>(k) + 0.5) / static_cast<double>(n);
-    };
     Marginal marginal;
     const auto [low, high, log] = range.shown();
     const auto edge = [&](std::size_t k) {
@@ -347,7 +343,7 @@ Marginal marginal_of(const designs::Calibration& found, std::size_t j) {
     const double half_step = range.parts > 1 ? (high - low) / static_cast<double>(2 * (range.parts - 1)) : 0;
     for (std::size_t k = 0; k < (range.parts > 0 ? range.parts : bins); ++k) {
         const double here =
-            range.levels.empty() && range.parts > 0 ? range.value_at(even(k, range.parts)) : static_cast<double>(k);
+            range.levels.empty() && range.parts > 0 ? range.value_at(range.middle_of(k)) : static_cast<double>(k);
         const double half = range.levels.empty() ? half_step : 0.5;
         marginal.from.push_back(range.parts > 0 ? here - half : edge(k));
         marginal.to.push_back(range.parts > 0 ? here + half : edge(k + 1));
@@ -365,7 +361,7 @@ Marginal marginal_of(const designs::Calibration& found, std::size_t j) {
         return share;
     };
     const auto rows = found.posterior->rows();
-    marginal.prior = shares(prior_points, [&](std::size_t i) { return even(i, prior_points); });
+    marginal.prior = shares(prior_points, [](std::size_t i) { return (static_cast<double>(i) + 0.5) / prior_points; });
     marginal.posterior = shares(rows.size(), [&](std::size_t i) { return rows.row(i)[j]; });
     return marginal;
 }

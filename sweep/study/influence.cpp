@@ -210,17 +210,6 @@ void take_out_scatter(FactorInfluence& factor, const stats::VarianceSplit& split
     factor.first.half_width = stats::student_factor(split.pure.freedom) * std::sqrt(total) / squares;
 }
 
-/// Levels as numbers in their order, or nothing where they are words.
-std::vector<double> numbers_of(const std::vector<std::string>& levels) {
-    std::vector<double> numbers;
-    for (const auto& level : levels) {
-        const auto x = any_number_in(level);
-        if (!x) return {};
-        numbers.push_back(*x);
-    }
-    return numbers;
-}
-
 /// Variance of a value about the mean of its bin, for want of a better one; of a lattice the scatter of single runs.
 double variance_in_bins(const Responses& responses, const stats::PureError& pure, std::span<const EffectBin> bins,
                         std::span<const double> values) {
@@ -273,7 +262,7 @@ void add_trends(Influence& influence, const Responses& responses, std::span<cons
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& factor = responses.factors[j];
         auto& found = influence.factors[j];
-        const auto levels = numbers_of(factor.levels);
+        const auto levels = numbers_in(factor.levels);
         if (!factor.continuous() && levels.empty()) continue;
         std::vector<double> x(factor.values.begin(),
                               factor.values.begin() + static_cast<std::ptrdiff_t>(responses.settled));
