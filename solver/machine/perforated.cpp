@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <stdexcept>
 
@@ -16,7 +17,7 @@ using geometry::operator+;
 using geometry::operator*;
 
 constexpr int hole_sides = 32;
-constexpr double most_holes = 5000;
+constexpr int most_holes = 5000;
 constexpr double same_place = 1e-9;  // pitches
 
 struct PlatePoint {
@@ -50,7 +51,7 @@ public:
           left_((length - columns_ * plate.pitch) / 2),
           low_((width - rows_ * height_) / 2) {
         if (columns_ < 1 || rows_ < 1) throw std::invalid_argument("the plate is smaller than a pitch");
-        if (double{most_holes} < double(columns_) * rows_)
+        if (std::int64_t{columns_} * rows_ > most_holes)
             throw std::invalid_argument("the plate has more than 5000 holes: make it periodic");
         if (!(corner_radius() < height_ / 2))
             throw std::invalid_argument(

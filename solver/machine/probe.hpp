@@ -88,12 +88,13 @@ struct Passage {
     Vec3 position{};                ///< m
 };
 
-/// Number of the first particle with a name among the numbers of an option of the kind `particles`; lower ones are
-/// species.
-inline constexpr std::size_t first_named = 1000;
+/// Particles that an option selects: species, and particles with a name, by number; both empty: all.
+struct SelectedParticles {
+    std::vector<std::size_t> species, named;
+};
 
 /// Values of the options of a probe.
-using OptionValue = std::variant<double, Vec3, Region, std::vector<std::size_t>, std::string>;
+using OptionValue = std::variant<double, Vec3, Region, std::vector<std::size_t>, SelectedParticles, std::string>;
 
 class Options {
 public:
@@ -116,6 +117,9 @@ public:
     [[nodiscard]] std::vector<std::size_t> numbers(std::string_view name) const {
         return has(name) ? std::get<std::vector<std::size_t>>(values_.at(std::string(name)))
                          : std::vector<std::size_t>{};
+    }
+    [[nodiscard]] SelectedParticles particles(std::string_view name) const {
+        return has(name) ? std::get<SelectedParticles>(values_.at(std::string(name))) : SelectedParticles{};
     }
     [[nodiscard]] std::string word(std::string_view name, std::string_view standard) const {
         return has(name) ? std::get<std::string>(values_.at(std::string(name))) : std::string(standard);

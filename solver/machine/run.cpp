@@ -38,8 +38,8 @@ double falling_time(const Spec& spec) {
 }
 
 /// Whole steps of the time between two frames of a phase.
-std::int64_t every_steps(const Phase& phase, double step) {
-    return std::max<std::int64_t>(1, std::llround(std::min(std::floor(phase.every / step), 1e15)));
+std::int64_t every_steps(double every, double step) {
+    return std::max<std::int64_t>(1, std::llround(std::min(std::floor(every / step), 1e15)));
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
     const Filled start = filled(spec_, seed, artefacts);
     counts_ = start.counts;
     for (Phase& phase : spec_.phases)
-        if (phase.every > 0) phase.frames = (steps_in(phase.duration) - 1) / every_steps(phase, spec_.time_step) + 1;
+        if (phase.every) phase.frames = (steps_in(phase.duration) - 1) / every_steps(*phase.every, spec_.time_step) + 1;
     for (const auto& fill : spec_.fills)
         if (const auto* cut = std::get_if<Cut>(&fill); cut != nullptr && cut->tight)
             tight_ = std::min(*cut->tight, tight_.value_or(*cut->tight));
@@ -105,7 +105,8 @@ std::int64_t Run::steps_in(double seconds) const {
 }
 
 std::int64_t Run::step_of_frame(std::int64_t frame) const {
-    if (phase().every > 0) return phase_begin_ + std::min(frame * every_steps(phase(), spec_.time_step), phase_steps());
+    if (const auto every = phase().every)
+        return phase_begin_ + std::min(frame * every_steps(*every, spec_.time_step), phase_steps());
     const double share = share_of_frame(frame, phase().frames, scattered_[phase_]);
     return phase_begin_ + std::llround(share * static_cast<double>(phase_steps()));
 }
@@ -185,7 +186,7 @@ void Run::begin_phase() {
     peak_wall_overlap_ = peak_wall_overlap();
     engine_->forget_peak_overlap();
     if (phase_ > 0) engine_->change_walls(walls_in(spec_, phase_, times_));
-    seen_at_ = -1;
+    seen_at_.reset();
     judge_walls_that_appear();
     if (!health().stable()) return;
     feed();
@@ -259,13 +260,13 @@ std::vector<dem::Wall> Run::walls_now() const {
 void Run::add(const Filled& added) {
     if (added.spheres.empty()) return;
     engine_->add(added.spheres, added.bodies);
-    seen_at_ = -1;
+    seen_at_.reset();
     enlist(added);
 }
 
 Frame Run::look(Contacts contacts) {
     if (step_ == seen_at_ && (contacts == Contacts::none || contacts == seen_)) return frame();
-    seen_at_ = contacts == Contacts::of_step ? -1 : step_;
+    seen_at_ = contacts == Contacts::of_step ? std::nullopt : std::optional(step_);
     seen_ = contacts;
     engine_->state(spheres_);
     if (has_clumps()) gather_particles();
@@ -499,7 +500,7 @@ void Run::restore(std::span<const std::byte> from) {
         in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size() &&
                    record.bins.size() == record.last.size());
     engine_->restore(kit::engine_at_end(in));
-    seen_at_ = -1;
+    seen_at_.reset();
     engine_->state(spheres_);
     in.require(spheres_.id.empty() || static_cast<std::size_t>(spheres_.id.back()) < species_.size());
     in.require(!has_clumps() ||

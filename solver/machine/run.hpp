@@ -137,7 +137,7 @@ private:
     std::int64_t glued_ = 0;
     std::map<std::string, std::int64_t> counts_;  // of Filled
     std::optional<double> tight_;                 // least of the cuts
-    std::int64_t seen_at_ = -1;       // step of the last look, whose state is still the present one; -1: none
+    std::optional<std::int64_t> seen_at_;  // step of the last look, if its state is still the present one
     Contacts seen_ = Contacts::none;  // of that look
     std::int64_t lost_first_ = 0;     // particles that left in the first phase
     PhaseTimes times_;

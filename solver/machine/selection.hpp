@@ -17,15 +17,12 @@ inline constexpr Field in_option =
 
 class Selection {
 public:
-    explicit Selection(const Options& options) : in_(options.region("in")) {
-        for (const std::size_t number : options.numbers("of"))
-            number < first_named ? species_.push_back(number) : named_.push_back(number - first_named);
-    }
+    explicit Selection(const Options& options) : of_(options.particles("of")), in_(options.region("in")) {}
 
     /// Returns whether a particle counts by its species or name.
     [[nodiscard]] bool is_of(const Frame& frame, std::size_t id) const {
-        if (species_.empty() && named_.empty()) return true;
-        if (std::ranges::find(species_, frame.species[id]) != species_.end()) return true;
+        if (of_.species.empty() && of_.named.empty()) return true;
+        if (std::ranges::find(of_.species, frame.species[id]) != of_.species.end()) return true;
         return is_named(frame, id);
     }
     [[nodiscard]] bool holds(const Frame& frame, std::size_t i) const {
@@ -46,12 +43,12 @@ public:
 
 private:
     [[nodiscard]] bool is_named(const Frame& frame, std::size_t id) const {
-        return std::ranges::any_of(named_, [&](std::size_t name) {
+        return std::ranges::any_of(of_.named, [&](std::size_t name) {
             return frame.particle_of(static_cast<std::int32_t>(id)) == frame.named[name];
         });
     }
 
-    std::vector<std::size_t> species_, named_;
+    SelectedParticles of_;
     std::optional<Region> in_;
 };
 

@@ -87,10 +87,13 @@ machine::OptionValue option_value(const Cursor& place, const Field& option, cons
         case Field::Kind::species:
             return reading.scope.places_in(place, reading.species, "species");
         case Field::Kind::particles: {
-            auto numbers = reading.scope.places_in(place, particles_in_words(reading), "species or particle");
-            for (std::size_t& number : numbers)
-                if (number >= reading.species.size()) number = machine::first_named + (number - reading.species.size());
-            return numbers;
+            machine::SelectedParticles selected;
+            for (const auto number : reading.scope.places_in(place, particles_in_words(reading), "species or particle"))
+                if (number < reading.species.size())
+                    selected.species.push_back(number);
+                else
+                    selected.named.push_back(number - reading.species.size());
+            return selected;
         }
         case Field::Kind::walls: {
             std::vector<std::size_t> walls;

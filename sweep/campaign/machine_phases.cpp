@@ -116,8 +116,8 @@ void read_phases(const Section& top, MachineReading& reading) {
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
         if (until && phase.until.empty()) until->refuse("must name a condition");
         reading.scope.read(section, machine_keys::phase(), &phase);
-        if (phase.every > 0 && phase.frames_given) section.at("every").refuse("beside \"frames\" it says too much");
-        phase.frames_given = phase.frames_given || phase.every > 0;
+        if (phase.every && phase.frames_given) section.at("every").refuse("beside \"frames\" it says too much");
+        phase.frames_given = phase.frames_given || phase.every;
         if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");
         if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
