@@ -118,8 +118,12 @@ public:
         return has(name) ? std::get<std::vector<std::size_t>>(values_.at(std::string(name)))
                          : std::vector<std::size_t>{};
     }
+    /// Returns species and particles; a list of numbers is one of species.
     [[nodiscard]] SelectedParticles particles(std::string_view name) const {
-        return has(name) ? std::get<SelectedParticles>(values_.at(std::string(name))) : SelectedParticles{};
+        if (!has(name)) return {};
+        const OptionValue& value = values_.at(std::string(name));
+        if (const auto* species = std::get_if<std::vector<std::size_t>>(&value)) return {*species, {}};
+        return std::get<SelectedParticles>(value);
     }
     [[nodiscard]] std::string word(std::string_view name, std::string_view standard) const {
         return has(name) ? std::get<std::string>(values_.at(std::string(name))) : std::string(standard);

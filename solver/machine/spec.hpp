@@ -152,7 +152,7 @@ struct Phase {
     std::optional<double> expected;  ///< s, if the phase may end early; used only to predict the cost
     std::vector<Until> until;        ///< the first condition that holds ends the phase
     std::int64_t frames = 100;       ///< intervals between measurements
-    std::optional<double> every;     ///< s, of these, in whole time steps; empty: the phase is divided evenly
+    std::optional<double> every{};   ///< s, of these, in whole time steps; empty: the phase is divided evenly
     bool frames_given = false;       ///< by the user: they are equal then, even in step with a motion (frames.hpp)
     bool ends_at_frames = false;     ///< its conditions are checked only at frames
 };
