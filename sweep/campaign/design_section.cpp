@@ -102,6 +102,8 @@ std::string read_option_word(const Cursor& place, const OptionSpec& option, cons
     return place.word(names);
 }
 
+}  // namespace
+
 designs::FactorRange range_of(const Factor& factor) {
     designs::FactorRange range{factor.name, {}};
     if (const auto* levels = std::get_if<Levels>(&factor.range)) {
@@ -116,8 +118,6 @@ designs::FactorRange range_of(const Factor& factor) {
         range.parts = equal_parts(std::get<Between>(factor.range), factor.step);
     return range;
 }
-
-}  // namespace
 
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value) {
     if (const auto* levels = std::get_if<Levels>(&factor.range)) {

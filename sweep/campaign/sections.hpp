@@ -81,6 +81,8 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
 void read_calibration(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
 /// Writes the data of the factors that a design may use, and the seed, to the request.
 void set_factors(Campaign& campaign);
+/// Returns a factor as designs use it.
+[[nodiscard]] designs::FactorRange range_of(const Factor& factor);
 /// Refuses keys that conflict with a growing design, which chooses its next points itself.
 void check_growing(const Cursor& place, const Campaign& campaign);
 /// Reads rows of factor values from a CSV file whose header names the factors, in any order.

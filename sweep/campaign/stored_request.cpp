@@ -3,7 +3,7 @@
 #include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
-#include "sweep/campaign/step.hpp"
+#include "sweep/campaign/sections.hpp"
 
 #include <charconv>
 #include <sstream>
@@ -44,22 +44,14 @@ designs::OptionValue value_of(const designs::OptionSpec& option, const std::stri
     return text;
 }
 
-designs::FactorRange stated_range(const StatedFactor& stated) {
-    designs::FactorRange range{stated.name, {}};
-    range.levels = stated.levels;
-    range.parts = stated.levels.size();
-    if (stated.between) {
-        range.value_at = [factor = Factor{stated.name, *stated.between, stated.step}](double u) {
-            return std::get<double>(value_at(factor, u));
-        };
-        range.parts = equal_parts(*stated.between, stated.step);
-    }
-    if (stated.distribution)
-        range.value_at = [factor = Factor{stated.name, *stated.distribution, stated.step}](double u) {
-            return std::get<double>(value_at(factor, u));
-        };
-    range.endless = stated.distribution && !stated.distribution->has_ends();
-    return range;
+/// Returns a stored factor; levels as text.
+Factor factor_of(const StatedFactor& stated) {
+    Factor factor{stated.name,  Levels{{stated.levels.begin(), stated.levels.end()}},
+                  stated.step,  stated.share,
+                  stated.group, stated.when};
+    if (stated.between) factor.range = *stated.between;
+    if (stated.distribution) factor.range = *stated.distribution;
+    return factor;
 }
 
 }  // namespace
@@ -84,14 +76,7 @@ Inputs fixed_values(const Identity& identity, const SceneInfo& scene) {
 
 std::vector<Factor> factors_asked(const Identity& identity) {
     std::vector<Factor> factors;
-    for (auto& stated : factors_of(identity)) {
-        Factor factor{stated.name,  Levels{{stated.levels.begin(), stated.levels.end()}},
-                      stated.step,  stated.share,
-                      stated.group, stated.when};
-        if (stated.between) factor.range = *stated.between;
-        if (stated.distribution) factor.range = *stated.distribution;
-        factors.push_back(std::move(factor));
-    }
+    for (const auto& stated : factors_of(identity)) factors.push_back(factor_of(stated));
     return factors;
 }
 
@@ -120,11 +105,11 @@ designs::DesignRequest request_of(const Identity& identity) {
     request.groups = groups_of(factors_asked(identity));
     for (const auto& stated : factors_of(identity)) {
         request.levels.push_back(stated.levels.size());
-        request.factors.push_back(stated_range(stated));
+        request.factors.push_back(range_of(factor_of(stated)));
     }
     const auto stated = options_in(identity);
     if (const auto together = stated.find("together"); together != stated.end())
-        for (const auto& factor : factors_in(together->second)) request.shared.push_back(stated_range(factor));
+        for (const auto& factor : factors_in(together->second)) request.shared.push_back(range_of(factor_of(factor)));
     for (const auto& option : design.options) {
         const auto found = stated.find(option.name);
         if (found != stated.end()) {
