@@ -139,6 +139,32 @@ TEST(TpmsScene, SpheresWithoutWallFallFreely) {
 }
 
 // A cell that has run empty has no fastest particle: neither one at rest, nor the last one seen.
+// W = C rho_b sqrt(g) (D - k d)^(5/2), C = 0.58, k = 1.4 (Beverloo, Leniger & van de Velde 1961, Chem. Eng. Sci. 15,
+// 260), as the share of the powder per sqrt(2 L/g).
+TEST(TpmsScene, BeverloosRateIsThatOfTheOutletAndThePacking) {
+    Inputs inputs = small_cell(20);
+    inputs["end_time"] = 0.05;
+    const auto answer = run(inputs).scalars;
+    const double d = std::get<double>(inputs.at("diameter")), g = std::get<double>(inputs.at("gravity"));
+    const double outlet = answer.at("outlet_diameter") * d, length = 20 * d;
+    ASSERT_GT(outlet, 1.4 * d);
+    const double fraction = answer.at("wall_packing") * std::numbers::pi / 6 * std::pow(d / length, 3);
+    EXPECT_NEAR(fraction, 0.62, 0.01);
+    const double volume = 0.58 * fraction * std::sqrt(g) * std::pow(outlet - 1.4 * d, 2.5);
+    const double spheres = volume / (std::numbers::pi / 6 * std::pow(d, 3));
+    const double expected = spheres * std::sqrt(2 * length / g) / answer.at("particles");
+    EXPECT_NEAR(answer.at("beverloo_rate"), expected, 1e-9 * expected);
+    // 3/2 pi w R* over the weight, R* = d/4 (Johnson, Kendall & Roberts 1971, Proc. R. Soc. A 324, 301).
+    EXPECT_FALSE(answer.contains("bond_number")) << "without cohesion";
+    inputs["cohesion_law"] = std::string("jkr");
+    inputs["surface_energy"] = 1e-6;
+    const double mass = std::get<double>(inputs.at("density")) * std::numbers::pi / 6 * std::pow(d, 3);
+    const double bond = 1.5 * std::numbers::pi * 1e-6 * d / 4 / (mass * g);
+    EXPECT_NEAR(run(inputs).scalars.at("bond_number"), bond, 1e-9 * bond);
+    inputs["tilt"] = 0.2;
+    EXPECT_FALSE(run(inputs).scalars.contains("beverloo_rate")) << "of an upright cell only";
+}
+
 TEST(TpmsScene, AnEmptyCellHasNoVelocity) {
     const double edge = 12;
     Inputs inputs = small_cell(edge);
