@@ -19,9 +19,10 @@ namespace {
 
 using response::Kriging;
 
-constexpr double outside_by = 1e-9;        // relative to the box: largest round-off of a feature
-constexpr double worth_a_logarithm = 2.5;  // largest value over the least
-constexpr double kept_below = 0.97;        // of the error without it
+constexpr double outside_by = 1e-9;           // relative to the box: largest round-off of a feature
+constexpr double worth_a_logarithm = 2.5;     // largest value over the least
+constexpr double kept_below = 0.97;           // of the error without it
+constexpr std::size_t repeats_that_show = 3;  // settings with one value each: no scatter
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::VectorXd edges(const std::vector<double>& given, std::size_t d, double otherwise) {
@@ -79,6 +80,21 @@ Eigen::VectorXd standardise(ResponseModel::State& state, const Eigen::VectorXd& 
     return (raw - state.offset) / state.scale;
 }
 
+/// What the settings that come again say about the noise.
+Noise noise_shown_by_repeats(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
+    std::map<std::vector<double>, std::pair<double, bool>> values;  // of a setting, and whether it came again
+    std::size_t repeated = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const Eigen::VectorXd row = x.row(i);
+        const auto [at, first] = values.try_emplace(std::vector<double>(row.begin(), row.end()), y(i), false);
+        if (first) continue;
+        auto& [value, again] = at->second;
+        if (y(i) != value) return Noise::scatter;
+        if (!std::exchange(again, true)) ++repeated;
+    }
+    return repeated < repeats_that_show ? Noise::scatter : Noise::misfit;
+}
+
 /// Leave-one-out figures and the local noise, which rests on them.
 void assess(ResponseModel::State& state) {
     const Kriging& k = state.kriging;
@@ -95,7 +111,7 @@ void assess(ResponseModel::State& state) {
                                : state.offset + state.scale * k.values(i);
         residuals(i) = state.logarithm ? y(i) - expected : state.scale * out.residual(i);
         errors(i) = state.deviation(expected, local(i) * out.variance(i));
-        scatter(i) = state.deviation(expected, local(i) * k.h.noise());
+        scatter(i) = state.deviation(expected, local(i) * state.scatter());
     }
     const Eigen::ArrayXd scores = residuals.abs() / errors;
     const double spread = std::sqrt((y - y.mean()).square().mean());
@@ -168,7 +184,7 @@ double ResponseModel::State::standardised(double response) const {
 
 double ResponseModel::State::mean_at(double z) const {
     const double at = offset + scale * z;
-    return logarithm ? std::exp(at + scale * scale * kriging.h.noise() / 2) : at;
+    return logarithm ? std::exp(at + scale * scale * scatter() / 2) : at;
 }
 
 double ResponseModel::State::deviation(double mean, double variance) const {
@@ -219,9 +235,9 @@ std::vector<Prediction> ResponseModel::predict(Rows points) const {
     for (Eigen::Index i = 0; i < at.rows(); ++i) {
         const bool inside = x.row(i).minCoeff() >= -outside_by && x.row(i).maxCoeff() <= 1 + outside_by;
         const double mean = s.mean_at(p.mean(i));
-        result.push_back({mean, s.deviation(mean, local(i) * p.variance(i)),
-                          s.deviation(mean, local(i) * s.kriging.h.noise()), inside, freedom(),
-                          s.deviation(mean, s.kriging.h.noise())});
+        result.push_back({mean, s.deviation(mean, local(i) * (p.variance(i) + s.misfit())),
+                          s.deviation(mean, local(i) * s.scatter()), inside, freedom(),
+                          s.deviation(mean, s.scatter())});
     }
     return result;
 }
@@ -281,6 +297,7 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
     Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
     for (std::size_t i = 0; i < used.size(); ++i) y(static_cast<Eigen::Index>(i)) = values[used[i]];
     Eigen::MatrixXd x = state->in_box(points)(used, Eigen::all);
+    state->quality.noise = noise_shown_by_repeats(x, y);
     state->quality.cases = used.size();
     state->quality.excluded = values.size() - used.size();
     auto [found, logarithm, plain_error, log_error] = with_or_without_logarithm(x, y, options);

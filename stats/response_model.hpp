@@ -64,6 +64,10 @@ enum class LogResponse {
                   ///< lower
 };
 
+/// What the noise of a model stands for: scatter of single runs, or misfit of a response that has none. Single runs
+/// cannot tell: it is misfit where at least three settings come again, all with the value that they had.
+enum class Noise { scatter, misfit };
+
 struct ResponseModelOptions {
     std::vector<double> low = {};      ///< box of the features, one value each; empty: 0
     std::vector<double> high = {};     ///< empty: 1
@@ -88,7 +92,9 @@ struct ModelQuality {
                                                                             ///< responses
     double coverage_50 = std::numeric_limits<double>::quiet_NaN();          ///< share of cases in their 50 % interval
     double coverage_95 = std::numeric_limits<double>::quiet_NaN();
-    double noise_share = std::numeric_limits<double>::quiet_NaN();  ///< share of noise in the variance of the responses
+    double noise_share =
+        std::numeric_limits<double>::quiet_NaN();  ///< share of scatter in the variance of the responses
+    Noise noise = Noise::scatter;
     bool learned_map = false;
     bool logarithm = false;  ///< the logarithm of the response is modelled
     /// Leave-one-out error on the cases compared; NaN: not tried.

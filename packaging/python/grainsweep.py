@@ -23,7 +23,7 @@ try:
 except ImportError:
     pandas = None
 
-__all__ = ["Error", "Refused", "Broken", "Rows", "Study", "frame", "predict", "query", "run", "window"]
+__all__ = ["Error", "Refused", "Broken", "Rows", "Study", "frame", "import_results", "predict", "query", "run", "window"]
 
 
 class Error(Exception):
@@ -112,6 +112,19 @@ def run(config, db=None, jobs=None, **options):
     return _call("run", config, codes=(0, 1), db=db, jobs=jobs, quiet=True, **options)
 
 
+def import_results(results, config, db=None, **options):
+    """Stores results that were computed elsewhere, with their origin, and returns what was taken.
+
+    `results` is a CSV file, a list of dicts or a DataFrame: a column for each factor and observable, and `outcome`.
+    Options: decimal="comma", ignore="remark", partial=True.
+    """
+    words = [str(config)] + ([str(db)] if db is not None else [])
+    if isinstance(results, (str, os.PathLike)):
+        return _call("import", results, *words, **options)
+    with tempfile.TemporaryDirectory() as folder:
+        return _call("import", _points_file(results, folder, "results.csv"), *words, **options)
+
+
 def query(db, sql):
     """Rows of an SQL query, which cannot change the database."""
     return _table(_call("query", db, sql))
@@ -143,14 +156,14 @@ def frame(db, campaign):
     return table
 
 
-def _points_file(points, folder):
+def _points_file(points, folder, name="points.csv"):
     """CSV of points: a list of dicts, or a DataFrame."""
     if pandas is not None and isinstance(points, pandas.DataFrame):
         points = points.to_dict("records")
     points = list(points)
     if not points:
         raise ValueError("at least one point is needed")
-    file = pathlib.Path(folder) / "points.csv"
+    file = pathlib.Path(folder) / name
     with open(file, "w", newline="") as stream:
         writer = csv.DictWriter(stream, fieldnames=list(points[0]))
         writer.writeheader()

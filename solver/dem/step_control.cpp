@@ -41,7 +41,7 @@ bool StepControl::due(std::int64_t steps, double overlap, std::size_t spheres) c
 
 bool StepControl::look(Network& network, double part, double overlap) {
     state_.overlap = overlap;
-    const bool again = !seen_.empty();
+    const bool again = looks_again();
     if (again) network.keep(seen_);
     const double bound = network.bound(part);
     const double most = std::sqrt(bound) / 2;  // without dampers the eigenvalue is 4 share^2, with dampers it is larger

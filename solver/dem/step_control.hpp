@@ -38,9 +38,12 @@ public:
     /// Returns whether a check is due after `steps` steps, the last of which had this largest overlap, divided by the
     /// diameter. `spheres`: few are checked more often.
     [[nodiscard]] bool due(std::int64_t steps, double overlap, std::size_t spheres) const;
-    /// Looks at the network, for parts of `part` s. Returns whether the share of its lasting contacts must be computed.
-    /// The engine then gives the network again, with the slides of contacts, of which only lasting() count.
+    /// Returns whether the next look is at contacts that have lasted since the one before; it needs their slides.
+    [[nodiscard]] bool looks_again() const { return !seen_.empty(); }
+    /// Looks at the network, for parts of `part` s; at a second look keeps only its lasting contacts. Returns whether
+    /// their share must be computed.
     [[nodiscard]] bool look(Network& network, double part, double overlap);
+    /// Returns the keys of the contacts of the last look, for checkpoints.
     [[nodiscard]] const std::vector<std::uint64_t>& lasting() const { return seen_; }
     /// Decides on the parts of the next steps by the share of the present parts. Returns whether these are beyond the
     /// limit and may not be halved.

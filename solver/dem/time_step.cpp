@@ -24,9 +24,14 @@ double linear_contact_time(const Material& m, double radius) {
     return std::numbers::pi * std::sqrt(sphere_mass(radius, m.density) / 2 / m.stiffness);
 }
 
+double impact_limit(const Material& m, double radius, double speed) {
+    return m.normal_law == NormalLaw::linear ? part_of_linear_impact * linear_contact_time(m, radius)
+                                             : hertz_contact_time(m, radius, speed);
+}
+
 double shortest_time(const Material& m, double radius, double speed) {
-    return m.normal_law == NormalLaw::linear ? linear_contact_time(m, radius)
-                                             : std::min(rayleigh_time(m, radius), hertz_contact_time(m, radius, speed));
+    const double impact = impact_limit(m, radius, speed);
+    return m.normal_law == NormalLaw::linear ? impact : std::min(rayleigh_time(m, radius), impact);
 }
 
 double step_share(double fraction) {

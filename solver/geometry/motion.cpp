@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::array rotation_fields = {
     needed(fields::direction<&Rotation::axis>("axis", "direction")),
-    fields::vector<&Rotation::point>("through", "m", "a point on the axis"),
+    fields::vector<&Rotation::point>("through", "m", "a point on the axis before all motions; it moves with the wall"),
     needed(fields::quantity<&Rotation::speed>("speed", "rad/s", "right hand")),
 };
 constexpr std::array translation_fields = {needed(fields::vector<&Translation::velocity>("velocity", "m/s", ""))};
-constexpr std::array conveyance_fields = {
-    needed(fields::vector<&Conveyance::velocity>("velocity", "m/s", "along the surface"))};
+constexpr std::array conveyance_fields = {needed(
+    fields::vector<&Conveyance::velocity>("velocity", "m/s", "its part along the surface counts at each place"))};
 constexpr std::array vibration_fields = {
     needed(fields::vector<&Vibration::amplitude>("amplitude", "m", "")),
     needed(fields::quantity<&Vibration::frequency>("frequency", "Hz", "", no_negative_number)),
@@ -41,7 +41,7 @@ constexpr std::array press_fields = {
     needed(
         fields::direction<&Press::along>("along", "direction of the force, the only one in which the wall can move")),
     course_load("force", "N",
-                "that acts on the wall, with its weight; or an expression of t, the time since the motion starts"),
+                "on the wall, its weight included; or an expression of t, the time since the motion starts"),
     course_field("forces", "or the forces at \"times\", N"),
     course_times,
     course_every,
@@ -52,7 +52,7 @@ constexpr std::array press_fields = {
 };
 constexpr std::array drive_fields = {
     needed(fields::direction<&Drive::axis>("axis", "direction")),
-    fields::vector<&Drive::point>("through", "m", "a point on the axis"),
+    fields::vector<&Drive::point>("through", "m", "a point on the axis before all motions; it moves with the wall"),
     course_load("torque", "N m",
                 "that acts on the wall, right hand; or an expression of t, the time since the motion starts"),
     course_field("torques", "or the torques at \"times\", N m"),
@@ -237,8 +237,12 @@ Twist twist_at(std::span<const Motion> motions, double time) {
     Twist twist;
     Vec3 rate{};
     for (const Motion& motion : motions) {
-        if (std::visit([time](const auto& m) { return runs(m, time); }, motion))
-            rate += std::visit([time](const auto& m) { return velocity(m, time); }, motion);
+        if (std::visit([time](const auto& m) { return runs(m, time); }, motion)) {
+            const Vec3 adds = std::visit([time](const auto& m) { return velocity(m, time); }, motion);
+            const bool conveys = std::holds_alternative<Conveyance>(motion);
+            (conveys ? twist.surface : rate) += adds;
+            twist.conveys = twist.conveys || conveys;
+        }
         const auto turn = turn_of(motion, time);
         if (!turn) continue;
         if (twist.turns) {  // carried along, then seen from the new point

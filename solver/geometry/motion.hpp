@@ -3,7 +3,7 @@
 //
 //     translation   d = v s                                     s = min(max(t, start), end) - start
 //     vibration     d = A (sin(2 pi f s + phase) - sin(phase))  so d = 0 at the start
-//     convey        d = 0: the surface has the velocity v, and the body stays (a belt)
+//     convey        d = 0: the surface has the part of the velocity v along itself, and the body stays (a belt)
 //     rotation      by the angle w s, right hand, about an axis through a point
 //     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
 //     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
@@ -172,14 +172,20 @@ struct Pose {
     [[nodiscard]] Vec3 to_body(const Vec3& x) const { return turned ? turn_back(x - shift) : x - shift; }
 };
 
-/// Velocity field of a body: v(x) = velocity + spin x (x - pivot).
+/// Velocity field of a body: v(x) = velocity + spin x (x - pivot). Where its normal is n the surface has besides the
+/// part of another velocity along itself: surface - (surface . n) n.
 struct Twist {
-    Vec3 velocity{};     ///< m/s
-    bool turns = false;  ///< false: no spin
-    Vec3 spin{};         ///< rad/s
-    Vec3 pivot{};        ///< m; present point of the last rotation
+    Vec3 velocity{};       ///< m/s
+    bool turns = false;    ///< false: no spin
+    Vec3 spin{};           ///< rad/s
+    Vec3 pivot{};          ///< m; present point of the last rotation
+    bool conveys = false;  ///< false: no velocity of the surface
+    Vec3 surface{};        ///< m/s
 
     [[nodiscard]] Vec3 at(const Vec3& x) const { return turns ? velocity + cross(spin, x - pivot) : velocity; }
+    [[nodiscard]] Vec3 at(const Vec3& x, const Vec3& normal) const {
+        return conveys ? at(x) + surface - dot(surface, normal) * normal : at(x);
+    }
 };
 
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);

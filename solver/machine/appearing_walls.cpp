@@ -10,7 +10,7 @@ namespace grainsweep::machine {
 /// Ends the run if a wall that this phase brings lies in a particle: the overlap would throw the particle out.
 void Run::judge_walls_that_appear() {
     const auto appears = [this](const MachineWall& wall) {
-        return phase_ > 0 && holds(wall.during, phase_) && !holds(wall.during, phase_ - 1);
+        return phase_ > 0 && wall.present(phase_) && (!wall.present(phase_ - 1) || wall.starts_anew(phase_));
     };
     if (std::ranges::none_of(spec_.walls, appears)) return;
     const Frame frame = look(Contacts::present);

@@ -85,7 +85,13 @@ void add_region(WallSurface& frame, const Region& region, const geometry::Domain
     } else if (!std::holds_alternative<Region::LevelSet>(region.is)) {  // the box beside it shows where
         const auto* all = std::get_if<Region::All>(&region.is);
         const auto* any = std::get_if<Region::Any>(&region.is);
-        const auto& parts = all != nullptr ? all->of : any != nullptr ? any->of : std::get<Region::Not>(region.is).of;
+        const auto* moving = std::get_if<Region::Moving>(&region.is);
+        const auto* images = std::get_if<Region::Images>(&region.is);
+        const auto& parts = all != nullptr      ? all->of
+                            : any != nullptr    ? any->of
+                            : moving != nullptr ? moving->of
+                            : images != nullptr ? images->of
+                                                : std::get<Region::Not>(region.is).of;
         for (const Region& part : parts) add_region(frame, part, domain);
     }
 }

@@ -30,59 +30,20 @@ using kit::sentence;
 class Filler {
 public:
     Filler(const Spec& spec, std::uint64_t seed, Artefacts* artefacts, Filled& into)
-        : spec_(spec), seed_(seed), artefacts_(artefacts), into_(into) {}
+        : spec_(spec), seed_(seed), artefacts_(artefacts), into_(into), walls_(walls_in(spec, 0, {{0.0}, {}})) {}
 
-    void operator()(const Cut& cut) {
-        const double d = spec_.species[cut.species].diameter;
-        const auto& packing = packing_of(cut, cut.edge / d);
-        std::vector<Vec3> centres;  // diameters
-        for (const Vec3& x : packing.positions)
-            if (cut.in.contains(d * x)) centres.push_back(x);
-        if (!cut.name.empty()) {
-            into_.counts[cut.name + "_particles"] = static_cast<std::int64_t>(centres.size());
-            into_.counts[cut.name + "_packing"] = static_cast<std::int64_t>(packing.positions.size());
-        }
-        require(cut.glued || !centres.empty(),
-                spec_.species[cut.species].name +
-                    ": no sphere of the packing has its centre in the region, which leaves no space for a mobile "
-                    "particle");
-        if (cut.tight) leave_out_of_reach(centres, d, 1 - *cut.tight);
-        for (const Vec3& x : centres)
-            into_.add(spec_, cut.species, {.position = d * x, .radius = d / 2, .mobile = !cut.glued}, {1, 0, 0, 0});
-        begin_ = into_.spheres.size();
-        ++number_;
+    /// Of a later phase: only fillings of this phase count, among particles and walls as they are.
+    void continue_at(std::size_t phase, const dem::State& present, const std::vector<dem::Wall>& walls, double time) {
+        phase_ = phase, present_ = &present, walls_ = walls, time_ = time;
     }
 
-    void operator()(const std::vector<Placed>& placed) {
-        for (const Placed& one : placed) {
-            require_in_domain(one);
-            if (one.named) into_.named.push_back(static_cast<std::int32_t>(into_.spheres.size()));
-            into_.add(spec_, one.species, one.sphere, one.orientation.value_or(geometry::Quaternion{1, 0, 0, 0}));
+    void fill() {
+        for (const auto& one : spec_.fills) {
+            const auto* fill = std::get_if<Fill>(&one);
+            if ((fill != nullptr ? fill->at : 0) == phase_) std::visit([this](const auto& f) { (*this)(f); }, one);
+            begin_ = into_.spheres.size();
+            ++number_;
         }
-        begin_ = into_.spheres.size();
-        ++number_;
-    }
-
-    void operator()(const Fill& fill) {
-        const Draws draws(spec_, fill.mix, seed_, number_);
-        const auto particles = draws.in_numbers(fill.count);
-        const double largest = widest_in(spec_, fill.mix);
-        const Obstacles obstacles(spec_, fill.mix, walls_in(spec_, 0, {{0.0}, {}}), largest, 0);
-        const auto centres = places_of(spec_, fill, draws, particles, obstacles);
-        for (std::size_t n = 0; n < particles.size(); ++n) {
-            dem::Sphere sphere;
-            sphere.position = centres[n];
-            sphere.radius = particles[n].radius;
-            sphere.mobile = !fill.glued;
-            if (!fill.glued) sphere.velocity = fill.velocity;
-            for (std::size_t k = 0; k < 3; ++k)
-                if (fill.shaken > 0 && !fill.glued)
-                    sphere.velocity[k] += fill.shaken * (2 * draws.uniform(velocity_draw, 3 * n + k) - 1);
-            into_.add(spec_, particles[n].species, sphere, draws.orientation(particles[n].species, n));
-        }
-        loose_.push_back({begin_, into_.spheres.size()});
-        begin_ = into_.spheres.size();
-        ++number_;
     }
 
     /// Throws if particles of two fillings overlap.
@@ -105,9 +66,73 @@ public:
     }
 
 private:
+    void operator()(const Cut& cut) {
+        const double d = spec_.species[cut.species].diameter;
+        const auto& packing = packing_of(cut, cut.edge / d);
+        std::vector<Vec3> centres;  // diameters
+        for (const Vec3& x : packing.positions)
+            if (cut.in.contains(d * x)) centres.push_back(x);
+        if (!cut.name.empty()) {
+            into_.counts[cut.name + "_particles"] = static_cast<std::int64_t>(centres.size());
+            into_.counts[cut.name + "_packing"] = static_cast<std::int64_t>(packing.positions.size());
+        }
+        require(cut.glued || !centres.empty(),
+                spec_.species[cut.species].name +
+                    ": no sphere of the packing has its centre in the region, which leaves no space for a mobile "
+                    "particle");
+        if (cut.tight) leave_out_of_reach(centres, d, 1 - *cut.tight);
+        for (const Vec3& x : centres)
+            into_.add(spec_, cut.species, {.position = d * x, .radius = d / 2, .mobile = !cut.glued}, {1, 0, 0, 0});
+    }
+
+    void operator()(const std::vector<Placed>& placed) {
+        for (const Placed& one : placed) {
+            require_in_domain(one);
+            if (one.named) into_.named.push_back(static_cast<std::int32_t>(into_.spheres.size()));
+            into_.add(spec_, one.species, one.sphere, one.orientation.value_or(geometry::Quaternion{1, 0, 0, 0}));
+        }
+    }
+
+    void operator()(const Fill& given) {
+        Fill fill = given;
+        if (fill.on_top) raise(fill.in);
+        const Draws draws(spec_, fill.mix, seed_, number_);
+        const auto particles = fill.drawn_to ? draws.to_volume(*fill.drawn_to) : draws.in_numbers(fill.count);
+        fill.count = static_cast<std::int64_t>(particles.size());
+        const double largest = widest_in(spec_, fill.mix);
+        const Obstacles obstacles(spec_, fill.mix, walls_, largest, time_);
+        const auto centres = places_of(spec_, fill, draws, particles, obstacles);
+        for (std::size_t n = 0; n < particles.size(); ++n) {
+            dem::Sphere sphere;
+            sphere.position = centres[n];
+            sphere.radius = particles[n].radius;
+            sphere.mobile = !fill.glued;
+            if (!fill.glued) sphere.velocity = fill.velocity;
+            for (std::size_t k = 0; k < 3; ++k)
+                if (fill.shaken > 0 && !fill.glued)
+                    sphere.velocity[k] += fill.shaken * (2 * draws.uniform(velocity_draw, 3 * n + k) - 1);
+            into_.add(spec_, particles[n].species, sphere, draws.orientation(particles[n].species, n));
+        }
+        loose_.push_back({begin_, into_.spheres.size()});
+    }
+
     struct Range {
         std::size_t begin, end;
     };
+
+    /// Raises a region above the particles whose centres are between its sides.
+    void raise(Region& region) const {
+        if (present_ == nullptr) return;
+        const Bounds bounds = region.bounds();
+        double top = bounds.low[2];
+        for (std::size_t i = 0; i < present_->id.size(); ++i) {
+            const Vec3& x = present_->position[i];
+            if (x[0] >= bounds.low[0] && x[0] <= bounds.high[0] && x[1] >= bounds.low[1] && x[1] <= bounds.high[1])
+                top = std::max(top, x[2] + present_->radius[i]);
+        }
+        region = {
+            Region::Moving{.of = {region}, .moved = std::make_shared<const Vec3>(Vec3{0, 0, top - bounds.low[2]})}};
+    }
 
     /// The packing of a cut; the next cut may be from the same one.
     const particles::Packing& packing_of(const Cut& cut, double edge) {
@@ -168,6 +193,10 @@ private:
     Filled& into_;
     std::string key_;
     particles::Packing packing_;
+    std::vector<dem::Wall> walls_;
+    double time_ = 0;
+    const dem::State* present_ = nullptr;
+    std::size_t phase_ = 0;
     std::uint64_t number_ = 0;
     std::size_t begin_ = 0;
     std::vector<Range> loose_;
@@ -322,6 +351,18 @@ std::vector<Draws::Particle> Draws::in_numbers(std::int64_t count) const {
     return particles;
 }
 
+std::vector<Draws::Particle> Draws::to_volume(double wanted) const {
+    std::vector<Particle> particles;
+    double volume = 0;
+    for (std::uint64_t n = 0;; ++n) {
+        const Particle next = of_feed(n);
+        const double with = volume + particles::sphere_volume(2 * next.radius);
+        if (!particles.empty() && with - wanted > wanted - volume) return particles;
+        volume = with;
+        particles.push_back(next);
+    }
+}
+
 bool touches(const Spec& spec, const MachineWall& wall, const Mix& mix) {
     return std::ranges::any_of(
         mix, [&](const auto& part) { return part.second > 0 && wall.touches(spec.species[part.first]); });
@@ -345,8 +386,17 @@ bool Obstacles::touch(const Vec3& centre, double radius) const {
 Filled filled(const Spec& spec, std::uint64_t seed, Artefacts* artefacts) {
     Filled all;
     Filler filler(spec, seed, artefacts, all);
-    for (const auto& fill : spec.fills) std::visit([&](const auto& one) { filler(one); }, fill);
+    filler.fill();
     filler.require_apart();
+    return all;
+}
+
+Filled filled_later(const Spec& spec, std::uint64_t seed, std::size_t phase, const dem::State& present,
+                    const std::vector<dem::Wall>& walls, double time) {
+    Filled all;
+    Filler filler(spec, seed, nullptr, all);
+    filler.continue_at(phase, present, walls, time);
+    filler.fill();
     return all;
 }
 

@@ -37,6 +37,10 @@ struct Filled {
 /// nullptr: they are made.
 [[nodiscard]] Filled filled(const Spec& spec, std::uint64_t seed, Artefacts* artefacts = nullptr);
 
+/// Returns what is filled at the beginning of a later phase, where particles and walls are as given. Throws as above.
+[[nodiscard]] Filled filled_later(const Spec& spec, std::uint64_t seed, std::size_t phase, const dem::State& present,
+                                  const std::vector<dem::Wall>& walls, double time);
+
 /// Throws std::invalid_argument with one sentence unless a text is the file of a packing, of any edge.
 void require_packing(std::string_view csv);
 
@@ -55,8 +59,10 @@ public:
     /// Returns the n-th particle of a feed: its size is random, the species follow their shares for any number of
     /// particles.
     [[nodiscard]] Particle of_feed(std::uint64_t n) const;
-    /// Returns all particles of a filling: species in exact numbers, in random order.
+    /// Returns all particles of a filling: species in exact numbers, in random order; or particles until their volume,
+    /// m3, is nearest to a given one.
     [[nodiscard]] std::vector<Particle> in_numbers(std::int64_t count) const;
+    [[nodiscard]] std::vector<Particle> to_volume(double volume) const;
     /// Returns the orientation of the n-th particle, of a uniform distribution; of a sphere no turn.
     [[nodiscard]] geometry::Quaternion orientation(std::size_t species, std::uint64_t n) const;
     /// Returns a uniform number in [0, 1).

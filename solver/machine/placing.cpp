@@ -146,6 +146,43 @@ std::vector<Vec3> on_lattice(const Spec& spec, const Fill& fill, const Draws& dr
     return centres;
 }
 
+/// One in each cell of a grid, layer by layer. Cells share the width of the bounds; upwards they are as high as needed.
+/// Particles are off the middle by up to half of what the least cell leaves free.
+std::vector<Vec3> in_cells(const Spec& spec, const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
+    const double largest = widest_in(spec, fill.mix), least = fill.spacing * largest;
+    const Bounds bounds = fill.in.bounds();
+    std::array<std::uint64_t, 3> count{};
+    Vec3 step{}, shift{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double length = bounds.high[k] - bounds.low[k];
+        require(length >= largest * (1 - rounding),
+                name_of(spec, fill.mix) + ": the region is narrower than a particle");
+        count[k] = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(length / least));
+        step[k] = k < 2 ? length / static_cast<double>(count[k]) : std::min(length, least);
+        shift[k] = std::clamp((step[k] - largest) / 2, 0.0, (fill.spacing - 1) / 2 * largest);
+    }
+    require(static_cast<double>(count[0]) * static_cast<double>(count[1]) * static_cast<double>(count[2]) < most_sites,
+            "the region of a filling has more than 2e8 places for particles: make it smaller");
+    const auto wanted = static_cast<std::size_t>(fill.count);
+    std::vector<Vec3> centres;
+    for (std::uint64_t cell = 0; centres.size() < wanted; ++cell) {
+        const std::array<std::uint64_t, 3> site = {cell % count[0], cell / count[0] % count[1],
+                                                   cell / count[0] / count[1]};
+        require(site[2] < count[2],
+                name_of(spec, fill.mix) + sentence(": %.0f of %.0f particles fit into the cells of the region: make it "
+                                                   "larger or the number smaller",
+                                                   static_cast<double>(centres.size()), static_cast<double>(wanted)));
+        Vec3 middle{}, centre{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            middle[k] = bounds.low[k] + (static_cast<double>(site[k]) + 0.5) * step[k];
+            centre[k] = middle[k] + shift[k] * (2 * draws.uniform(place_draw, 3 * centres.size() + k) - 1);
+        }
+        if (fill.in.depth(middle) < largest / 2 * (1 - rounding)) continue;
+        if (fill.glued || !obstacles.touch(centre, largest / 2)) centres.push_back(centre);
+    }
+    return centres;
+}
+
 std::vector<Vec3> at_random(const Spec& spec, const Fill& fill, const Draws& draws,
                             const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
     std::vector<double> radii;
@@ -298,16 +335,18 @@ std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& dra
             return as_rain(spec, fill, draws, particles, obstacles);
         case Fill::As::packed:
             return packed(spec, fill, draws, obstacles);
+        case Fill::As::cells:
         case Fill::As::lattice:
             break;
     }
-    return on_lattice(spec, fill, draws, obstacles);
+    return fill.as == Fill::As::cells ? in_cells(spec, fill, draws, obstacles)
+                                      : on_lattice(spec, fill, draws, obstacles);
 }
 
 void require_places(const Spec& spec) {
     for (const auto& filling : spec.fills) {
         const auto* fill = std::get_if<Fill>(&filling);
-        if (fill == nullptr || fill->as != Fill::As::lattice || fill->count > most_tried) continue;
+        if (fill == nullptr || fill->as != Fill::As::lattice || fill->count > most_tried || fill->at > 0) continue;
         const Obstacles obstacles(spec, fill->mix, walls_in(spec, 0, {{0.0}, {}}), widest_in(spec, fill->mix), 0,
                                   dem::MovingWall::Searches::few);
         (void)on_lattice(spec, *fill, Draws(spec, fill->mix, 1, 0), obstacles);

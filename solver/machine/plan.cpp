@@ -1,10 +1,12 @@
 #include "solver/machine/plan.hpp"
 
 #include "solver/dem/walls/moving_wall.hpp"
+#include "solver/geometry/loose_parts.hpp"
 #include "solver/machine/frames.hpp"
 #include "solver/machine/grain_shapes.hpp"
 #include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
+#include "solver/machine/shapes.hpp"
 #include "solver/scenes/kit/pace.hpp"
 #include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
@@ -25,6 +27,7 @@ constexpr double early = 0.5;  // of a phase that may end before its time
 // s per particle and step with a probe at every step, by precision, and with another one.
 constexpr double at_steps_mixed = 2.8e-7, at_steps_double = 1.6e-7, another = 1.3e-8;
 constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
+constexpr double still_there = 0.3;                    // of the particles in a region, once some are taken away
 constexpr double softest = 0.1;                        // overlap over diameter
 constexpr double most_loose = 0.35;                    // solid fraction of particles placed at random
 constexpr double most_on_lattice = 0.345, most_packed = 0.62, most_rain = 0.16;  // of fillings
@@ -84,7 +87,8 @@ double spheres_at_start(const Spec& spec) {
     double count = 0;
     for (const auto& fill : spec.fills) {
         if (const auto* region = std::get_if<Fill>(&fill))
-            count += static_cast<double>(region->count) * cost_in(spec, region->mix);
+            count +=
+                region->glued || region->at > 0 ? 0 : static_cast<double>(region->count) * cost_in(spec, region->mix);
         else if (const auto* cut = std::get_if<Cut>(&fill))
             count += cut->glued ? 0 : count_of(spec, *cut);
         else
@@ -172,7 +176,7 @@ void warn_of_falling(const Spec& spec, std::vector<Warning>& warnings) {
     if (!(g > 0) || spec.phases.size() < 2 || !first.until.empty()) return;
     for (const auto& filling : spec.fills) {
         const auto* fill = std::get_if<Fill>(&filling);
-        if (fill == nullptr || fill->glued || fill->as == Fill::As::packed) continue;
+        if (fill == nullptr || fill->glued || fill->at > 0 || fill->as == Fill::As::packed) continue;
         const double fall = std::sqrt(2 * height_of(spec, *fill) / g);
         if (first.duration >= fall) continue;
         warnings.push_back({"powder still falling",
@@ -188,9 +192,10 @@ void warn_of_fillings(const Spec& spec, std::vector<Warning>& warnings) {
         const auto* fill = std::get_if<Fill>(&filling);
         const auto volume = fill == nullptr ? std::nullopt : fill->in.volume();
         if (!volume) continue;
-        const double most = fill->as == Fill::As::packed ? most_packed
-                            : fill->as == Fill::As::rain ? most_rain
-                                                         : most_on_lattice;
+        const double most = fill->as == Fill::As::packed  ? most_packed
+                            : fill->as == Fill::As::rain  ? most_rain
+                            : fill->as == Fill::As::cells ? std::numbers::pi / 6 / std::pow(fill->spacing, 3)
+                                                          : most_on_lattice;
         const double solid = static_cast<double>(fill->count) * mean_volume(spec, fill->mix) / *volume;
         if (solid > most && !fill->glued)
             warnings.push_back({"a filling that does not fit",
@@ -225,6 +230,26 @@ void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
                                                          "%.0f follow it",
                                                          1 / shaken->frequency,
                                                          1 / (shaken->frequency * spec.time_step), steps_per_period)});
+    }
+}
+
+/// A corner of a file that is far from its place draws its triangles out to a needle.
+void warn_of_needles(const Spec& spec, std::vector<Warning>& warnings) {
+    using geometry::End;
+    const std::pair<End, const char*> ends[] = {
+        {{2, false}, "lowest"}, {{0, true}, "foremost"}, {{0, false}, "rearmost"}};
+    for (const MachineWall& wall : spec.walls) {
+        const auto* mesh = std::get_if<geometry::Mesh>(&wall.shape);
+        if (mesh == nullptr || !wall.fitted) continue;
+        for (const auto& [end, name] : ends)
+            if (const auto needle = geometry::needle_at(*mesh, end, small_share))
+                warnings.push_back(
+                    {"tip of the tool",
+                     wall.name + ": the " + name +
+                         sentence(
+                             " point of the surface is the tip of a needle, %.3g m long and %.3g m thick, %.3g m along "
+                             "y: if it is no part of it, remove it from the file",
+                             needle->length, needle->width, needle->tip[1])});
     }
 }
 
@@ -362,6 +387,39 @@ double cost_of_meshes(const Spec& spec) {
     return factor;
 }
 
+/// Seconds from the beginning of a phase to the beginning of another one.
+double seconds_between(const Spec& spec, std::size_t from, std::size_t to) {
+    double seconds = 0;
+    for (std::size_t p = from; p < to; ++p) seconds += length_of(spec.phases[p]);
+    return seconds;
+}
+
+/// Adds what particles cost that are filled later or taken away.
+void add_later(const Spec& spec, double& work, double& most) {
+    for (const auto& one : spec.fills) {
+        const auto* fill = std::get_if<Fill>(&one);
+        if (fill == nullptr || fill->glued) continue;
+        const double spheres = static_cast<double>(fill->count) * cost_in(spec, fill->mix);
+        std::size_t taken = spec.phases.size();
+        for (const Removal& removal : spec.removals)
+            if (removal.at > fill->at) taken = std::min(taken, removal.at);
+        const double gone = (1 - still_there) * seconds_between(spec, taken, spec.phases.size());
+        if (fill->at > 0) {
+            work += spheres * seconds_between(spec, fill->at, spec.phases.size());
+            most += taken < spec.phases.size() ? still_there * spheres : spheres;
+        }
+        work -= spheres * gone;
+    }
+}
+
+double frozen_of(const Spec& spec) {
+    double count = 0;
+    for (const auto& one : spec.fills)
+        if (const auto* fill = std::get_if<Fill>(&one); fill != nullptr && fill->glued)
+            count += static_cast<double>(fill->count);
+    return count;
+}
+
 }  // namespace
 
 double length_of(const Phase& phase) {
@@ -373,6 +431,7 @@ CostEstimate cost_of(const Spec& spec) {
     require_places(spec);
     double work = 0, most = spheres_at_start(spec);
     work += most * duration_of(spec, {});
+    add_later(spec, work, most);
     for (const Feed& feed : spec.feeds) {
         // A fed particle stays for half of the time, in the mean.
         const double fed =
@@ -381,9 +440,9 @@ CostEstimate cost_of(const Spec& spec) {
         most += fed;
     }
     const double steps = duration_of(spec, {}) / spec.time_step;
-    auto cost =
-        kit::estimate(spec.method, spec.pairs.front(), most,
-                      mean_parts(spec) * cost_of_meshes(spec) * (most > 0 ? work / spec.time_step / most : steps));
+    auto cost = kit::estimate(
+        spec.method, spec.pairs.front(), most,
+        mean_parts(spec) * cost_of_meshes(spec) * (most > 0 ? work / spec.time_step / most : steps), frozen_of(spec));
     cost.seconds += most * cost_of_step_probes(spec);
     return cost;
 }
@@ -401,6 +460,7 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     warn_of_feeds(spec, warnings);
     warn_of_walls(spec, warnings);
     warn_of_scale(spec, warnings);
+    warn_of_needles(spec, warnings);
     warn_of_phases(spec, warnings);
     warn_of_frames(spec, warnings);
     std::set<std::string> kinds;

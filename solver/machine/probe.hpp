@@ -46,6 +46,8 @@ struct Frame {
     std::span<const std::int32_t> particle = {};  ///< by id of a sphere: id of its particle; empty: its own
     const dem::State* members = nullptr;          ///< all spheres and clumps; nullptr: there are no clumps
     std::span<const std::int32_t> named = {};     ///< ids of the particles with a name, in their order
+    std::size_t newest = 0;                       ///< least id of the latest filling
+    const dem::State* bed = nullptr;              ///< particles from before it, as they were then; nullptr: none
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }
@@ -64,8 +66,8 @@ struct Frame {
     [[nodiscard]] const dem::State& spheres() const { return members == nullptr ? state : *members; }
     /// Returns the frame with all spheres as its particles.
     [[nodiscard]] Frame of_spheres() const {
-        return {engine,       spheres(), contacts,  species,     density,  domain,  gravity, time,
-                peak_overlap, radius,    time_step, by_partners, particle, members, named};
+        return {engine, spheres(), contacts,    species,  density, domain, gravity, time, peak_overlap,
+                radius, time_step, by_partners, particle, members, named,  newest,  bed};
     }
     /// Calls visit(i, clump) for every clump, with its index in `state`.
     template <class Visit>
@@ -128,6 +130,10 @@ public:
     [[nodiscard]] std::string word(std::string_view name, std::string_view standard) const {
         return has(name) ? std::get<std::string>(values_.at(std::string(name))) : std::string(standard);
     }
+    void each_region(const std::function<void(Region&)>& visit) {
+        for (auto& [name, value] : values_)
+            if (auto* region = std::get_if<Region>(&value)) visit(*region);
+    }
     [[nodiscard]] bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
     [[nodiscard]] const std::map<std::string, OptionValue, std::less<>>& all() const { return values_; }
 
@@ -151,6 +157,8 @@ public:
 
     /// Returns the value at this moment, or undefined. For a profile: one number that summarises it, or undefined.
     [[nodiscard]] virtual double look(const Frame& frame) = 0;
+    /// Forgets what it has seen, where each of the phases that repeat counts by itself.
+    virtual void restart() {}
     /// Returns the planes whose passages it counts.
     [[nodiscard]] virtual std::vector<dem::CountingPlane> planes() const { return {}; }
     /// Called for every passage in the selected phases, in the order of time. Of `frame` only what is given by id
@@ -192,6 +200,7 @@ struct ProbeInfo {
     /// Returns the error of a combination of options, in one sentence; empty: none. May be null.
     std::string (*flaw)(const Options&) = nullptr;
     Source source = Source::frames;
+    bool so_far = false;  ///< of all that has been so far, so that its last value says it all
 };
 
 /// Returns all probes, sorted by name.

@@ -81,12 +81,28 @@ double error_of_mean(std::span<const Sample> samples) {
     return observables::standard_error_of_mean(values);
 }
 
-/// From the rates between frames.
-double error_of_slope(std::span<const Sample> samples) {
+std::vector<double> rates_between(std::span<const Sample> samples) {
     std::vector<double> rates;
     for (std::size_t k = 1; k < samples.size(); ++k)
         rates.push_back((samples[k].value - samples[k - 1].value) / (samples[k].time - samples[k - 1].time));
-    return observables::standard_error_of_mean(rates);
+    return rates;
+}
+
+/// From the rates between frames.
+double error_of_slope(std::span<const Sample> samples) {
+    return observables::standard_error_of_mean(rates_between(samples));
+}
+
+double rate_of(std::span<const Sample> samples) {
+    return change_of(samples) / (samples.empty() ? unknown : samples.back().time - samples.front().time);
+}
+
+/// Where nothing has changed the blocks have no spread, and that says nothing of the error.
+double error_of_rate(std::span<const Sample> samples) {
+    constexpr std::size_t blocks = 10;
+    const auto rates = rates_between(samples);
+    const bool changed = std::ranges::any_of(rates, [](double rate) { return rate != 0; });
+    return changed ? observables::block_standard_error(rates, blocks) : unknown;
 }
 
 double integral_of_intervals(std::span<const FrameInterval> intervals) {
@@ -129,10 +145,14 @@ constexpr std::array all_reductions = {
         "change", "value at the last frame less that at the first", Shape::scalar, change_of, nullptr, {}, true},
     ReductionInfo{"slope", "least-squares slope over time, with a standard error from the rates between frames",
                   Shape::scalar, slope_of, error_of_slope, "/s"},
+    ReductionInfo{"rate",
+                  "change divided by its time, with a standard error from ten blocks of the rates between frames",
+                  Shape::scalar, rate_of, error_of_rate, "/s"},
     ReductionInfo{"integral",
                   "integral over time, by trapezia; of a force, torque or pressure of walls over every step",
                   Shape::scalar, integral_of, nullptr, " s", false, integral_of_intervals},
     ReductionInfo{"series", "value at every frame", Shape::series},
+    ReductionInfo{"rates", "change from frame to frame divided by its time", Shape::series, nullptr, nullptr, "/s"},
     ReductionInfo{"profile", "mean over the frames, bin by bin", Shape::profile},
     ReductionInfo{"last_profile", "at the last frame", Shape::profile, nullptr, nullptr, {}, true},
     ReductionInfo{"profiles",
@@ -156,6 +176,13 @@ std::span<const ReductionInfo> reduction_catalogue() {
 const ReductionInfo* find_reduction(std::string_view name) {
     const auto found = std::ranges::find(all_reductions, name, &ReductionInfo::name);
     return found == all_reductions.end() ? nullptr : &*found;
+}
+
+std::vector<Sample> with_rates(std::span<const Sample> samples) {
+    const auto rates = rates_between(samples);
+    std::vector<Sample> changes(samples.begin() + (samples.empty() ? 0 : 1), samples.end());
+    for (std::size_t k = 0; k < changes.size(); ++k) changes[k].value = rates[k];
+    return changes;
 }
 
 std::optional<double> crossing_time(std::span<const Sample> samples, double value, bool above) {

@@ -36,6 +36,8 @@ struct ReductionInfo {
 /// Returns the reduction of this name; nullptr if there is none.
 [[nodiscard]] const ReductionInfo* find_reduction(std::string_view name);
 
+/// Returns the rate of change at each sample but the first, since the one before.
+[[nodiscard]] std::vector<Sample> with_rates(std::span<const Sample> samples);
 /// Returns the first time at which samples pass a value, s; between two samples on a straight line. Empty: they never
 /// do.
 [[nodiscard]] std::optional<double> crossing_time(std::span<const Sample> samples, double value, bool above);

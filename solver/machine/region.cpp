@@ -50,6 +50,11 @@ constexpr std::array level_set_rows = {
                                             "0: the shell; 1 or -1: where the level set has this sign, outside of it"),
     fields::vector<&LevelSetRegion::at>("at", "m", "lowest corner of a cell"),
 };
+constexpr std::array moving_fields = {
+    needed(Field{"in", Field::Kind::region, "the region where it is at the start"}),
+    needed(Field{"with", Field::Kind::walls, "the wall; its turns do not count"}),
+    fields::direction<&MovingRegion::along>("along", "direction in which it follows the wall; default: all"),
+};
 using AnyKind = decltype(Region::is);
 constexpr std::array region_rows = {
     fields::alternative<AnyKind, BoxRegion>("box", "a box", box_fields_of_region),
@@ -58,6 +63,7 @@ constexpr std::array region_rows = {
     fields::alternative<AnyKind, HalfRegion>("half_space", "one side of a plane", half_fields),
     fields::alternative<AnyKind, LevelSetRegion>(
         "level_set", "the shell of a triply periodic minimal surface, or one side of it, without end", level_set_rows),
+    fields::alternative<AnyKind, MovingRegion>("moving", "a region that moves with a wall", moving_fields),
     fields::alternative<AnyKind, AllRegions>("all", "a list of regions: where all of them are"),
     fields::alternative<AnyKind, AnyRegion>("any", "a list of regions: where one of them is"),
     fields::alternative<AnyKind, NotRegion>("not", "a region: outside of it"),
@@ -100,6 +106,14 @@ double depth_in(const Region::LevelSet& set, const Vec3& x) {
     return inside * set.edge / (2 * std::numbers::pi * geometry::traits(set.cell).steepest);
 }
 
+Vec3 moved_by(const Region::Moving& moving) {
+    return moving.moved ? *moving.moved : Vec3{};
+}
+
+double depth_in(const Region::Moving& moving, const Vec3& x) {
+    return moving.of.front().depth(x - moved_by(moving));
+}
+
 double depth_in(const Region::All& all, const Vec3& x) {
     double depth = infinity;
     for (const Region& region : all.of) depth = std::min(depth, region.depth(x));
@@ -114,6 +128,30 @@ double depth_in(const Region::Any& any, const Vec3& x) {
 
 double depth_in(const Region::Not& none, const Vec3& x) {
     return 0 - none.of.front().depth(x);
+}
+
+/// Of the images whose boxes may contain the point. The one nearest to the middle of its box comes first, and of a
+/// region of many periods no more than two on each side of it count: nearly every point is in that one, or in none.
+double depth_in(const Region::Images& images, const Vec3& x) {
+    const Region& region = images.of.front();
+    const Bounds box = region.bounds();
+    Vec3 first{}, last{}, nearest{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!images.domain.periodic[k] || !std::isfinite(box.high[k] - box.low[k])) continue;
+        const double period = images.domain.length(k);
+        first[k] = std::ceil((box.low[k] - x[k]) / period) * period;
+        last[k] = std::max(first[k], std::floor((box.high[k] - x[k]) / period) * period);
+        nearest[k] = std::round(((box.low[k] + box.high[k]) / 2 - x[k]) / period) * period;
+        first[k] = std::max(first[k], nearest[k] - 2 * period);
+        last[k] = std::min(last[k], nearest[k] + 2 * period);
+    }
+    double depth = region.depth(x + nearest);
+    if (depth >= 0) return depth;
+    for (double a = first[0]; a <= last[0]; a += images.domain.length(0))
+        for (double b = first[1]; b <= last[1]; b += images.domain.length(1))
+            for (double c = first[2]; c <= last[2]; c += images.domain.length(2))
+                depth = std::max(depth, region.depth(x + Vec3{a, b, c}));
+    return depth;
 }
 
 Bounds bounds_of(const Region::Box& box) {
@@ -150,6 +188,11 @@ Bounds bounds_of(const Region::LevelSet&) {
     return everywhere;
 }
 
+Bounds bounds_of(const Region::Moving& moving) {
+    const Bounds bounds = moving.of.front().bounds();
+    return {bounds.low + moved_by(moving), bounds.high + moved_by(moving)};
+}
+
 Bounds bounds_of(const Region::All& all) {
     Bounds bounds = everywhere;
     for (const Region& region : all.of) {
@@ -176,6 +219,27 @@ Bounds bounds_of(const Region::Any& any) {
 
 Bounds bounds_of(const Region::Not&) {
     return everywhere;
+}
+
+Bounds bounds_of(const Region::Images& images) {
+    return images.of.front().bounds();
+}
+
+/// Ends a region that is longer than the period along an axis at the faces, or nowhere.
+void end_at_faces(Region& region, const Bounds& faces, std::size_t k) {
+    if (auto* box = std::get_if<Region::Box>(&region.is)) {
+        box->low[k] = faces.low[k], box->high[k] = faces.high[k];
+    } else if (auto* round = std::get_if<Region::Round>(&region.is);
+               round != nullptr && std::abs(round->axis[k]) == 1 && std::isfinite(faces.low[k])) {
+        round->base[k] = round->axis[k] > 0 ? faces.low[k] : faces.high[k];
+        round->length = faces.high[k] - faces.low[k];
+    }
+}
+
+/// How often the images of a region lie over each other along an axis, at most.
+double images_along(const Region& region, const geometry::Domain& domain, std::size_t k) {
+    const Bounds box = region.bounds();
+    return (box.high[k] - box.low[k]) / domain.length(k);
 }
 
 bool is_unit(const Vec3& a) {
@@ -262,6 +326,22 @@ double LevelSetRegion::opening() const {
     return edge * found->second;
 }
 
+bool Region::contains(const Vec3& x) const {
+    const Region* region = this;
+    Vec3 at = x;
+    while (const auto* moving = std::get_if<Moving>(&region->is)) {
+        at = at - moved_by(*moving);
+        region = &moving->of.front();
+    }
+    if (const auto* half = std::get_if<Half>(&region->is)) return depth_in(*half, at) >= 0;
+    if (const auto* all = std::get_if<All>(&region->is))
+        return std::ranges::all_of(all->of, [&](const Region& one) { return one.contains(at); });
+    const auto* box = std::get_if<Box>(&region->is);
+    if (box == nullptr) return region->depth(at) >= 0;
+    const auto along = [&](std::size_t k) { return at[k] >= box->low[k] && at[k] <= box->high[k]; };
+    return along(0) && along(1) && along(2);
+}
+
 double Region::depth(const Vec3& x) const {
     return std::visit([&](const auto& region) { return depth_in(region, x); }, is);
 }
@@ -270,7 +350,54 @@ Bounds Region::bounds() const {
     return std::visit([](const auto& region) { return bounds_of(region); }, is);
 }
 
+void Region::each_moving(const std::function<void(Moving&)>& visit) {
+    std::visit(
+        [&](auto& region) {
+            if constexpr (requires { region.moved; }) visit(region);
+            if constexpr (requires { region.of; })
+                for (Region& part : region.of) part.each_moving(visit);
+        },
+        is);
+}
+
+/// `moves`: it is somewhere else at another time.
+static Region with_images(Region region, const geometry::Domain& domain, bool moves) {
+    if (auto* moving = std::get_if<Region::Moving>(&region.is)) {
+        moving->of.front() = with_images(std::move(moving->of.front()), domain, true);
+        return region;
+    }
+    bool beyond = false, endless = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!domain.periodic[k]) continue;
+        if (const double times = images_along(region, domain, k); times >= 1 && std::isfinite(times))
+            end_at_faces(region, moves ? everywhere : Bounds{domain.low, domain.high}, k);
+        const Bounds box = region.bounds();
+        const bool ends = std::isfinite(box.high[k] - box.low[k]);
+        endless = endless || !ends;
+        beyond = beyond || (ends && (moves || box.low[k] < domain.low[k] || box.high[k] > domain.high[k]));
+    }
+    if (beyond) return {Region::Images{{std::move(region)}, domain}};
+    if (endless)
+        std::visit(
+            [&](auto& combined) {
+                if constexpr (requires { combined.of; })
+                    for (Region& part : combined.of) part = with_images(std::move(part), domain, moves);
+            },
+            region.is);
+    return region;
+}
+
+Region with_images(Region region, const geometry::Domain& domain) {
+    return with_images(std::move(region), domain, false);
+}
+
 std::optional<double> Region::volume() const {
+    if (const auto* images = std::get_if<Images>(&is)) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (images->domain.periodic[k] && images_along(images->of.front(), images->domain, k) > 1 + 1e-9)
+                return std::nullopt;
+        return images->of.front().volume();
+    }
     if (const auto* box = std::get_if<Box>(&is)) {
         const Vec3 size = box->high - box->low;
         return size[0] * size[1] * size[2];

@@ -5,9 +5,12 @@
 #pragma once
 
 #include "solver/field.hpp"
+#include "solver/geometry/domain.hpp"
 #include "solver/geometry/tpms.hpp"
 #include "solver/geometry/vector.hpp"
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -54,6 +57,13 @@ struct LevelSetRegion {
     /// m; 0 if the face is closed. The error is below edge/256. Remembers it, because it takes milliseconds.
     [[nodiscard]] double opening() const;
 };
+/// A region that moves with a wall, as far as it does so along a direction.
+struct MovingRegion {
+    std::vector<Region> of;             ///< one, where it is at the start
+    std::size_t wall = 0;               ///< by number
+    std::optional<Vec3> along{};        ///< empty: whichever way the wall moves
+    std::shared_ptr<const Vec3> moved;  ///< way of the wall at the moment, which a run states; null: none
+};
 struct AllRegions {
     std::vector<Region> of;
 };
@@ -64,6 +74,11 @@ struct AnyRegion {
 struct NotRegion {
     std::vector<Region> of;
 };
+/// A region and its images across the periodic faces of a domain.
+struct ImagesRegion {
+    std::vector<Region> of;  ///< one
+    geometry::Domain domain;
+};
 
 struct Region {
     using Box = BoxRegion;
@@ -71,26 +86,31 @@ struct Region {
     using Ball = BallRegion;
     using Half = HalfRegion;
     using LevelSet = LevelSetRegion;
+    using Moving = MovingRegion;
     using All = AllRegions;
     using Any = AnyRegion;
     using Not = NotRegion;
-    std::variant<Box, Round, Ball, Half, LevelSet, All, Any, Not> is;
+    using Images = ImagesRegion;
+    std::variant<Box, Round, Ball, Half, LevelSet, Moving, All, Any, Not, Images> is;
 
     /// Returns the depth of a point, m.
     [[nodiscard]] double depth(const Vec3& x) const;
-    [[nodiscard]] bool contains(const Vec3& x) const {
-        const auto* box = std::get_if<Box>(&is);
-        if (box == nullptr) return depth(x) >= 0;
-        const auto along = [&](std::size_t k) { return x[k] >= box->low[k] && x[k] <= box->high[k]; };
-        return along(0) && along(1) && along(2);
-    }
+    /// Returns whether depth(x) is at least 0; of boxes, half spaces and where these move in a few comparisons.
+    [[nodiscard]] bool contains(const Vec3& x) const;
     /// Returns a box around the region; infinite where the region is infinite.
     [[nodiscard]] Bounds bounds() const;
-    /// Returns its volume, m3; empty for half spaces, level sets and combinations.
+    /// Returns its volume, m3; empty for half spaces, level sets, combinations, and where images overlap.
     [[nodiscard]] std::optional<double> volume() const;
+    /// Calls visit for each moving region in it.
+    void each_moving(const std::function<void(Moving&)>& visit);
     /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] const char* flaw() const;
 };
+
+/// Returns the region with its images where it reaches beyond a periodic face of the domain. A box or an upright
+/// cylinder that is longer than a period ends at the faces. Of other regions longer than four periods only the five
+/// images nearest to the middle count, which is exact unless the region is hollow there.
+[[nodiscard]] Region with_images(Region region, const geometry::Domain& domain);
 
 /// Returns the alternatives of Region::is with the fields that a file sets. Combinations have none: they are made of
 /// regions.

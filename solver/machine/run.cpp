@@ -7,6 +7,7 @@
 #include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 #include "solver/scenes/kit/slices.hpp"
+#include "stats/random.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,10 @@ namespace {
 
 using geometry::dot;
 using geometry::norm;
+using geometry::operator*;
 
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0005ULL;  // "grnsmc", version 5
+constexpr std::uint64_t start_stream = std::uint64_t{1} << 41U;        // behind those of fillings
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0007ULL;  // "grnsmc", version 7
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
@@ -42,11 +45,50 @@ std::int64_t every_steps(double every, double step) {
     return std::max<std::int64_t>(1, std::llround(std::min(std::floor(every / step), 1e15)));
 }
 
+/// Spheres that feeds and later fillings may add.
+std::vector<dem::ToCome> to_come_of(const Spec& spec) {
+    std::vector<const Mix*> mixes;
+    for (const Feed& feed : spec.feeds) mixes.push_back(&feed.mix);
+    for (const auto& one : spec.fills)
+        if (const auto* fill = std::get_if<Fill>(&one); fill != nullptr && fill->at > 0) mixes.push_back(&fill->mix);
+    std::vector<dem::ToCome> all;
+    for (const Mix* mix : mixes)
+        for (const auto& [number, share] : *mix) {
+            const Species& species = spec.species[number];
+            const auto announce = [&](double radius) {  // divided by the diameter
+                all.push_back({species.smallest() * radius, species.largest() * radius, species.material});
+            };
+            if (!species.shape) announce(0.5);
+            for (std::size_t k = 0; species.shape && k < species.shape->balls.size(); ++k)
+                announce(species.shape->balls[k].radius);
+        }
+    return all;
+}
+
 }  // namespace
 
 Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
-    : spec_(std::move(spec)), records_(spec_.measures.size()) {
-    const Filled start = filled(spec_, seed, artefacts);
+    : spec_(std::move(spec)),
+      seed_(spec_.start.seed ? stats::bits_at(0, start_stream, static_cast<std::uint64_t>(*spec_.start.seed)) : seed),
+      artefacts_(artefacts),
+      records_(spec_.measures.size()) {
+    for (std::size_t w = 0; w < spec_.walls.size(); ++w)
+        if (const Vec3 most = spec_.walls[w].scattered; norm(most) > 0)  // before the start it moves to its place
+            spec_.walls[w].motions.push_back(
+                {geometry::Translation{stats::to_unit(stats::bits_at(seed, start_stream, w)) * most, -1, 0}, {}});
+    const auto follow = [this](Region& region) {
+        region.each_moving([this](Region::Moving& moving) {
+            followers_.push_back({moving.wall, moving.along, std::make_shared<Vec3>()});
+            moving.moved = followers_.back().way;
+        });
+    };
+    for (auto& one : spec_.fills)
+        if (auto* fill = std::get_if<Fill>(&one)) follow(fill->in);
+    for (Feed& feed : spec_.feeds) follow(feed.through);
+    each_region(spec_, follow);
+    const auto walls = walls_in(spec_, 0, {.begin = {0}, .end = {}});  // fillings are made before the engine
+    for (const Follower& follower : followers_) *follower.way = way_of(walls[follower.wall], follower.along, 0);
+    const Filled start = filled(spec_, seed_, artefacts);
     counts_ = start.counts;
     for (Phase& phase : spec_.phases)
         if (phase.every) phase.frames = (steps_in(phase.duration) - 1) / every_steps(*phase.every, spec_.time_step) + 1;
@@ -54,16 +96,7 @@ Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
         if (const auto* cut = std::get_if<Cut>(&fill); cut != nullptr && cut->tight)
             tight_ = std::min(*cut->tight, tight_.value_or(*cut->tight));
     dem::Setup setup = setup_of(spec_, start);
-    for (const Feed& feed : spec_.feeds)
-        for (const auto& [number, share] : feed.mix) {
-            const Species& species = spec_.species[number];
-            const auto announce = [&](double radius) {  // divided by the diameter
-                setup.to_come.push_back({species.smallest() * radius, species.largest() * radius, species.material});
-            };
-            if (!species.shape) announce(0.5);
-            for (std::size_t k = 0; species.shape && k < species.shape->balls.size(); ++k)
-                announce(species.shape->balls[k].radius);
-        }
+    setup.to_come = to_come_of(spec_);
     named_ = start.named;
     enlist(start);
     for (const Measure& measure : spec_.measures) {
@@ -97,6 +130,7 @@ Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
         feeders_.back().require_room();
     }
     begin_phase();
+    if (spec_.start.seed && artefacts_ != nullptr) take_start(setup);
 }
 
 std::int64_t Run::steps_in(double seconds) const {
@@ -169,6 +203,7 @@ void Run::give_crossings() {
         const auto m = static_cast<std::size_t>(next - first_plane_.begin()) - 1;
         const Passage passage{static_cast<std::size_t>(crossing.id), crossing.plane - first_plane_[m], crossing.forward,
                               spec_.time_step * crossing.steps, crossing.position};
+        move_regions(engine_->wall_time() - (time() - passage.time));
         if (holds(spec_.measures[m].during, phase_)) probes_[m]->passed(now, passage);
         for (std::size_t k = 0; k < phase().until.size(); ++k)
             if (const auto* passes = std::get_if<Passes>(&phase().until[k]); passes != nullptr && passes->measure == m)
@@ -185,11 +220,23 @@ void Run::begin_phase() {
     peak_overlap_ = peak_overlap();
     peak_wall_overlap_ = peak_wall_overlap();
     engine_->forget_peak_overlap();
-    if (phase_ > 0) engine_->change_walls(walls_in(spec_, phase_, times_));
+    seen_at_.reset();
+    take_away();
+    if (phase_ > 0 && phase_ == spec_.start.phases) {
+        wall_zero_ = time();
+        engine_->set_walls(walls_in(spec_, phase_, times_, wall_zero_));
+    } else if (phase_ > 0) {
+        change_walls();
+    }
     seen_at_.reset();
     judge_walls_that_appear();
     if (!health().stable()) return;
+    fill_again();
     feed();
+    for (std::size_t m = 0; m < probes_.size(); ++m)
+        if (spec_.measures[m].repeats != Measure::Repeats::all && holds(spec_.measures[m].during, phase_) &&
+            (phase_ == 0 || !holds(spec_.measures[m].during, phase_ - 1)))
+            probes_[m]->restart();
     for (std::size_t k = 0; k < watched_.size(); ++k)
         if (const auto* flow = std::get_if<FlowStops>(&phase().until[k])) watched_[k] = mass_in(flow->region);
     take_frame();
@@ -211,7 +258,8 @@ void Run::end_phase(std::uint8_t condition) {
         if (holds(spec_.feeds[k].during, phase_))
             feeders_[k].owe(-static_cast<double>(credited_ahead(spec_.feeds[k])) * spec_.time_step);
     ended_by_.push_back(condition);
-    if (phase_ == 0) lost_first_ = so_far() - present();
+    if (phase_ + 1 == spec_.start.phases) store_start();
+    if (phase_ == 0) lost_first_ = lost();
     ++phase_;
     if (!finished()) begin_phase();
 }
@@ -222,7 +270,7 @@ void Run::stop_here() {
     if (framed) take_frame();
     if (!health().stable()) return;
     const std::uint8_t condition = checks_here(framed) ? ended_by() : std::uint8_t{0};
-    if (condition > 0 && !framed) take_frame();
+    if (condition > 0) framed ? look_once_more() : take_frame();
     if (condition > 0 || step_ == phase_begin_ + phase_steps()) end_phase(condition);
 }
 
@@ -247,7 +295,8 @@ void Run::feed() {
         if ((step_ - phase_begin_) % steps_in(spec_.feeds[k].interval) != 0 || due == 0) continue;
         feeders_[k].owe(static_cast<double>(due) * spec_.time_step);
         engine_->state(spheres_);
-        add(feeders_[k].batch(spheres_, walls_now(), time()));
+        move_regions(engine_->wall_time());
+        add(feeders_[k].batch(spheres_, walls_now(), engine_->wall_time()));
     }
 }
 
@@ -270,6 +319,7 @@ Frame Run::look(Contacts contacts) {
     seen_ = contacts;
     engine_->state(spheres_);
     if (has_clumps()) gather_particles();
+    move_regions(engine_->wall_time());
     contacts_.clear();
     if (contacts == Contacts::present) engine_->contacts(contacts_);
     if (contacts == Contacts::of_step) engine_->step_contacts(contacts_);
@@ -291,34 +341,18 @@ Frame Run::frame() const {
             {},
             particle_,
             has_clumps() ? &spheres_ : nullptr,
-            named_};
+            named_,
+            newest_,
+            &bed_};
 }
 
 void Run::take_frame() {
     const Frame frame = look(needs_contacts_ ? Contacts::present : Contacts::none);
     for (std::size_t m = 0; m < probes_.size(); ++m) {
         const Measure& measure = spec_.measures[m];
-        if (!holds(measure.during, phase_)) continue;
+        if (!holds(measure.during, phase_) || phase_ < spec_.start.phases) continue;
         if (frame_ % measure.every != 0 && frame_ < phase().frames && step_ < phase_begin_ + phase_steps()) continue;
-        Record& record = records_[m];
-        double value = probes_[m]->look(frame);
-        // The end of a phase is the beginning of the next one.
-        const double before = std::exchange(record.looked, frame.time);
-        if (before == frame.time) continue;
-        if (is_integrated(measure)) {
-            const double integral = probes_[m]->integral(frame), since = std::exchange(record.integral, integral);
-            if (frame_ > 0 && std::isfinite(integral))
-                record.intervals.push_back({frame.time, frame.time - before, integral - since});
-        }
-        if (measure.relative && find_probe(measure.probe)->over.empty()) {
-            if (record.first.empty()) record.first = {value};
-            value /= record.first.front();
-        }
-        if (std::isfinite(value)) record.samples.push_back({.time = frame.time, .value = value});
-        if (find_probe(measure.probe)->over.empty()) continue;
-        std::vector<Sample> profile;
-        probes_[m]->profile(frame, profile);
-        add_profile(measure, profile, frame.time, record);
+        take(m, frame);
     }
     if (tight_ && fault_.empty() && peak_overlap() > *tight_)
         fault_ = kit::sentence(
@@ -327,6 +361,40 @@ void Run::take_frame() {
             peak_overlap(), time(), *tight_);
     // Of frames closer than the time step one is taken.
     while (++frame_ <= phase().frames && step_of_frame(frame_) <= step_) continue;
+}
+
+/// A phase has ended at this frame: a measurement at few frames that is asked for its last value is taken now.
+void Run::look_once_more() {
+    const Frame frame = look(needs_contacts_ ? Contacts::present : Contacts::none);
+    for (std::size_t m = 0; m < probes_.size(); ++m)
+        if (const Measure& measure = spec_.measures[m]; holds(measure.during, phase_) && measure.every > 1 &&
+                                                        find_reduction(measure.reduction)->last &&
+                                                        records_[m].looked != frame.time)
+            take(m, frame);
+}
+
+/// Takes a measurement at a frame.
+void Run::take(std::size_t m, const Frame& frame) {
+    const Measure& measure = spec_.measures[m];
+    Record& record = records_[m];
+    double value = probes_[m]->look(frame);
+    // The end of a phase is the beginning of the next one.
+    const double before = std::exchange(record.looked, frame.time);
+    if (before == frame.time) return;
+    if (is_integrated(measure)) {
+        const double integral = probes_[m]->integral(frame), since = std::exchange(record.integral, integral);
+        if (frame_ > 0 && std::isfinite(integral))
+            record.intervals.push_back({frame.time, frame.time - before, integral - since});
+    }
+    if (measure.relative && find_probe(measure.probe)->over.empty()) {
+        if (record.first.empty()) record.first = {value};
+        value /= record.first.front();
+    }
+    if (std::isfinite(value)) record.samples.push_back({.time = frame.time, .value = value});
+    if (find_probe(measure.probe)->over.empty()) return;
+    std::vector<Sample> profile;
+    probes_[m]->profile(frame, profile);
+    add_profile(measure, profile, frame.time, record);
 }
 
 void Run::add_profile(const Measure& measure, std::span<const Sample> profile, double time, Record& record) {
@@ -386,6 +454,7 @@ bool Run::holds_now(std::size_t condition) {
         return time() - calm_since >= flow->quiet;
     }
     if (const auto* quiet = std::get_if<Quiet>(&until)) return is_quiet(*quiet, condition);
+    if (const auto* known = std::get_if<Known>(&until)) return is_known(*known);
     const auto& passes = std::get<Passes>(until);
     const double value = watching_[phase_][condition]->look(
         look(find_probe(spec_.measures[passes.measure].probe)->contacts ? Contacts::present : Contacts::none));
@@ -406,6 +475,18 @@ bool Run::is_quiet(const Quiet& quiet, std::size_t condition) {
         watched_[condition] = inside;
     }
     return time() - calm_since_[condition] >= quiet.time;
+}
+
+bool Run::is_known(const Known& known) const {
+    const std::int64_t frames = frame_ - 1;
+    const double share = static_cast<double>(frames) / static_cast<double>(phase().frames);
+    if (!(known.error > 0) || share < known.from || frames % known.every != 0) return false;
+    const auto samples = part_of(records_[known.measure], {phase_, phase_}).samples;
+    const bool changed =
+        std::ranges::any_of(samples, [&](const Sample& s) { return s.value != samples.front().value; });
+    return !changed || find_reduction(spec_.measures[known.measure].reduction)->error(samples) /
+                               spec_.measures[known.measure].scale.value <
+                           known.error;
 }
 
 double Run::progress() const {
@@ -455,10 +536,12 @@ bool Run::may_end_early() const {
 
 template <class State, class Visit>
 void Run::fields(State& run, Visit&& visit) {
-    visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
+    visit(run.step_), visit(run.borrowed_particle_steps_), visit(run.wall_zero_), visit(run.newest_),
+        visit(run.bed_.position), visit(run.bed_.velocity), visit(run.bed_.radius), visit(run.phase_),
+        visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
     visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.peak_wall_overlap_),
         visit(run.judged_overlap_), visit(run.judged_wall_overlap_), visit(run.fault_), visit(run.lost_first_),
-        visit(run.times_.begin);
+        visit(run.taken_), visit(run.times_.begin);
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     if (run.has_clumps()) visit(run.particle_);
     for (auto& record : run.records_)
@@ -488,6 +571,8 @@ void Run::restore(std::span<const std::byte> from) {
     in.require(phase_ <= spec_.phases.size() && times_.begin.size() == std::min(phase_ + 1, spec_.phases.size()) &&
                times_.end.size() == phase_ && ended_by_.size() == phase_);
     in.require(finished() || (calm_since_.size() == phase().until.size() && watched_.size() == calm_since_.size()));
+    in.require(newest_ <= species_.size() && bed_.position.size() == bed_.radius.size() &&
+               bed_.velocity.size() == bed_.radius.size());
     in.require(species_.size() == density_.size() && species_.size() == radius_.size() &&
                std::ranges::all_of(species_, [this](std::uint8_t s) { return s < spec_.species.size(); }));
     const auto finite = [](const std::vector<double>& times) {

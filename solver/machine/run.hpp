@@ -34,7 +34,9 @@ public:
     [[nodiscard]] bool finished() const override { return phase_ == spec_.phases.size(); }
     [[nodiscard]] double progress() const override;
     [[nodiscard]] Health health() const override { return {fault_.empty() ? with_names(engine_->fault()) : fault_}; }
-    [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
+    [[nodiscard]] double particle_steps() const override {
+        return engine_->work().particle_steps - borrowed_particle_steps_;
+    }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
     [[nodiscard]] std::string remark() const override;
@@ -67,6 +69,20 @@ private:
     [[nodiscard]] std::int64_t next_stop() const;
     void begin_phase();
     void judge_walls_that_appear();
+    void change_walls();
+    /// Takes the state at the end of the start from another case, or stores it for others.
+    void take_start(const dem::Setup& setup);
+    void store_start() const;
+    [[nodiscard]] std::string key_of_start() const;
+    /// Takes away and fills what this phase begins with.
+    void take_away();
+    void fill_again();
+    /// Tells moving regions where their walls are at a time of the engine's walls, s.
+    void move_regions(double wall_time);
+    /// Returns whether the standard error of a measurement is small enough at the last frame.
+    [[nodiscard]] bool is_known(const Known& known) const;
+    /// Returns what of a record belongs to a run of phases, as far as it has begun.
+    [[nodiscard]] Record part_of(const Record& record, const WhileIn& phases) const;
     void end_phase(std::uint8_t condition);
     [[nodiscard]] bool measured(std::size_t phase) const;
     void stop_here();
@@ -74,6 +90,8 @@ private:
     /// Returns the future steps with which a feed has already been credited.
     [[nodiscard]] std::int64_t credited_ahead(const Feed& feed) const;
     void take_frame();
+    void look_once_more();
+    void take(std::size_t m, const Frame& frame);
     std::int64_t run_watched_step();
     /// Returns the number of the condition that ends the phase now, from 1; 0: none.
     [[nodiscard]] std::uint8_t ended_by();
@@ -90,9 +108,10 @@ private:
         return std::ranges::any_of(spec_.species, [](const Species& s) { return s.shape.has_value(); });
     }
     [[nodiscard]] const dem::State& particles() const { return has_clumps() ? particles_ : spheres_; }
-    /// Return the number of particles present, and of all so far.
+    /// Return the number of particles present, of all so far, and of those that left the domain.
     [[nodiscard]] std::int64_t present() const;
     [[nodiscard]] std::int64_t so_far() const;
+    [[nodiscard]] std::int64_t lost() const { return so_far() - present() - taken_; }
     void gather_particles();
     void add_orientations(Snapshot& picture) const;
     void give_crossings();
@@ -103,10 +122,29 @@ private:
     /// Stores species and size of new particles.
     void enlist(const Filled& filled);
     void observe(const Measure& measure, const Record& record, Observations& into) const;
+    void observe_series(const Measure& measure, const Record& record, Observations& into) const;
+    /// Returns the last run of phases of a measurement that has begun, or its first one.
+    [[nodiscard]] WhileIn last_run(const Measure& measure) const;
+    void observe_each(const Measure& measure, const Record& record, Observations& into) const;
+    /// Returns the number and its error; NaN: undefined.
+    [[nodiscard]] std::pair<double, double> reduced(const Measure& measure, const Record& record) const;
     template <class State, class Visit>
     static void fields(State& run, Visit&& visit);
 
     Spec spec_;
+    std::uint64_t seed_;  // of fillings
+    Artefacts* artefacts_;
+    std::string start_key_;               // empty: the start is not shared
+    double borrowed_particle_steps_ = 0;  // work of another case on the start
+    double wall_zero_ = 0;                // time at which the walls were set, s
+    struct Follower {
+        std::size_t wall;
+        std::optional<Vec3> along;
+        std::shared_ptr<Vec3> way;
+    };
+    std::vector<Follower> followers_;    // of moving regions
+    dem::State bed_;                     // position, velocity and radius of the particles before the latest filling
+    std::size_t newest_ = 0;             // least id of the latest filling
     std::vector<std::uint8_t> species_;  // by id
     std::vector<double> density_;        // by id; mass divided by volume
     std::vector<double> radius_;  // by id; of a clump's first member the radius of the sphere of equal volume, of
@@ -137,9 +175,10 @@ private:
     std::int64_t glued_ = 0;
     std::map<std::string, std::int64_t> counts_;  // of Filled
     std::optional<double> tight_;                 // least of the cuts
-    std::optional<std::int64_t> seen_at_;  // step of the last look, if its state is still the present one
-    Contacts seen_ = Contacts::none;  // of that look
-    std::int64_t lost_first_ = 0;     // particles that left in the first phase
+    std::optional<std::int64_t> seen_at_;         // step of the last look, if its state is still the present one
+    Contacts seen_ = Contacts::none;              // of that look
+    std::int64_t lost_first_ = 0;                 // particles that left in the first phase
+    std::int64_t taken_ = 0;                      // particles that removals took away
     PhaseTimes times_;
     std::vector<std::uint8_t> ended_by_;  // by phase: number of the condition, from 1; 0: its time
     std::vector<Record> records_;

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 namespace grainsweep::machine {
 
@@ -47,8 +48,17 @@ std::string Run::remark() const {
                    "torques of these contacts are not reliable, so raise youngs_modulus, or give pinched "
                    "particles room",
                    largest, deep);
+    std::string free;
+    for (std::size_t w = 0; w < spec_.walls.size() && free.empty(); ++w)
+        for (const auto& motion : engine_->wall(w).motions)
+            if (const auto* press = std::get_if<geometry::Press>(&motion))
+                if (std::abs(press->speed) >= press->fastest)
+                    free = "at the end wall '" + spec_.walls[w].name +
+                           kit::sentence(
+                               "' still moves at its speed_at_most of %.3g m/s: the powder does not carry its force",
+                               press->fastest);
     std::string all;
-    for (const std::string& one : {lost, soft, flaw_of_frames(spec_)})
+    for (const std::string& one : {lost, soft, free, flaw_of_frames(spec_)})
         if (!one.empty()) all += (all.empty() ? "" : "; ") + one;
     return all;
 }
@@ -67,37 +77,88 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
         if (!profile.empty()) into.series[measure.name] = std::move(profile);
         return;
     }
+    if (measure.repeats == Measure::Repeats::each) return observe_each(measure, record, into);
+    if (reduction.shape != Shape::series) {
+        const auto [value, error] =
+            reduced(measure, measure.repeats == Measure::Repeats::all ? record : part_of(record, last_run(measure)));
+        if (std::isfinite(value)) into.scalars[measure.name] = value / scale.value;
+        if (std::isfinite(error)) into.scalars[measure.error] = error / scale.value;
+        return;
+    }
+    return observe_series(measure, record, into);
+}
+
+void Run::observe_series(const Measure& measure, const Record& record, Observations& into) const {
+    const Scale& scale = measure.scale;
+    if (measure.since && *measure.since >= times_.begin.size()) return;  // its zero of time is still to come
+    std::vector<Sample> samples = record.samples;
+    std::optional<double> since;
+    if (measure.since) since = times_.begin[*measure.since];
+    if (measure.repeats == Measure::Repeats::last) {
+        const WhileIn run = last_run(measure);
+        samples = part_of(record, run).samples;
+        if (measure.since) since = times_.begin[std::min(run.first, times_.begin.size() - 1)];
+    }
+    if (measure.shares) samples = between_shares(samples, measure.shares->first, measure.shares->second);
+    for (const While& only : measure.only)
+        samples = while_between(samples, records_[only.measure].samples, only.low, only.high);
+    if (measure.reduction == "rates") samples = with_rates(samples);
+    for (Sample& sample : samples) {
+        sample.time = (sample.time - since.value_or(0)) / scale.time;
+        sample.value /= scale.value;
+    }
+    if (!samples.empty()) into.series[measure.name] = std::move(samples);
+}
+
+std::pair<double, double> Run::reduced(const Measure& measure, const Record& record) const {
+    const ReductionInfo& reduction = *find_reduction(measure.reduction);
     std::vector<Sample> samples = record.samples;
     if (measure.shares) samples = between_shares(samples, measure.shares->first, measure.shares->second);
     for (const While& only : measure.only)
         samples = while_between(samples, records_[only.measure].samples, only.low, only.high);
-    if (reduction.shape == Shape::series) {
-        for (Sample& sample : samples) {
-            sample.time = (sample.time - (measure.since ? times_.begin[*measure.since] : 0)) / scale.time;
-            sample.value /= scale.value;
-        }
-        if (!samples.empty()) into.series[measure.name] = std::move(samples);
-        return;
+    if (const std::vector<FrameInterval> over = ending_at(record.intervals, samples); !over.empty())
+        return {reduction.of_intervals(over),
+                reduction.error_of_intervals == nullptr ? undefined : reduction.error_of_intervals(over)};
+    if (reduction.last && !record.samples.empty() && record.samples.back().time != record.looked)
+        return {undefined, undefined};
+    return {reduction.of(samples), reduction.error == nullptr ? undefined : reduction.error(samples)};
+}
+
+Run::Record Run::part_of(const Record& record, const WhileIn& phases) const {
+    Record part = record;
+    const double begin = times_.begin[std::min(phases.first, times_.begin.size() - 1)];
+    const double end = phases.last < times_.end.size() ? times_.end[phases.last] : time();
+    const auto outside = [&](double time) { return time < begin || time > end; };
+    std::erase_if(part.samples, [&](const Sample& sample) { return outside(sample.time); });
+    std::erase_if(part.intervals, [&](const FrameInterval& one) { return outside(one.end) || one.end == begin; });
+    part.looked = std::min(part.looked, end);
+    return part;
+}
+
+WhileIn Run::last_run(const Measure& measure) const {
+    const auto runs = runs_of(spec_, measure);
+    std::size_t last = 0;
+    while (last + 1 < runs.size() && runs[last + 1].first <= phase_) ++last;
+    return runs.empty() ? WhileIn{} : runs[last];
+}
+
+/// A value for each time that the phases came, by its number from 1.
+void Run::observe_each(const Measure& measure, const Record& record, Observations& into) const {
+    std::vector<Sample> values;
+    double number = 0;
+    for (const WhileIn& phases : runs_of(spec_, measure)) {
+        if (phases.first >= times_.begin.size()) break;
+        number += 1;
+        const double value = reduced(measure, part_of(record, phases)).first / measure.scale.value;
+        if (std::isfinite(value)) values.push_back({.bin = number, .value = value});
     }
-    if (const std::vector<FrameInterval> over = ending_at(record.intervals, samples); !over.empty()) {
-        into.scalars[measure.name] = reduction.of_intervals(over) / scale.value;
-        if (reduction.error_of_intervals == nullptr) return;
-        if (const double error = reduction.error_of_intervals(over); std::isfinite(error))
-            into.scalars[measure.name + "_error"] = error / scale.value;
-        return;
-    }
-    if (reduction.last && !record.samples.empty() && record.samples.back().time != record.looked) return;
-    if (const double value = reduction.of(samples); std::isfinite(value))
-        into.scalars[measure.name] = value / scale.value;
-    if (reduction.error == nullptr) return;
-    if (const double error = reduction.error(samples); std::isfinite(error))
-        into.scalars[measure.name + "_error"] = error / scale.value;
+    if (!values.empty()) into.series[measure.name] = std::move(values);
 }
 
 void Run::observe(Observations& into) const {
     const std::int64_t now = present();
     into.scalars["particles"] = static_cast<double>(now - glued_);
-    into.scalars["lost"] = static_cast<double>(so_far() - now);
+    into.scalars["lost"] = static_cast<double>(lost());
     into.scalars["max_overlap"] = peak_overlap();
     into.scalars["max_wall_overlap"] = peak_wall_overlap();
     into.scalars["smallest_step"] = spec_.time_step / static_cast<double>(engine_->work().most_parts);
@@ -128,7 +189,7 @@ void Run::observe(Observations& into) const {
             into.scalars[derived.name] = value;
         } else {  // nothing, or a measurement that is withdrawn
             into.scalars.erase(derived.name);
-            into.scalars.erase(derived.name + "_error");
+            if (!derived.error.empty()) into.scalars.erase(derived.error);
         }
     }
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -101,9 +102,46 @@ bool holds(const Phases& phases, std::size_t phase) {
     return phases.empty() || std::ranges::find(phases, phase) != phases.end();
 }
 
+std::size_t MachineWall::times(std::size_t phase) const {
+    if (!again) return 0;
+    const auto begun = std::ranges::count_if(again->each, [phase](std::size_t p) { return p <= phase; });
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(begun, 1) - 1);
+}
+
+void each_region(Spec& spec, const std::function<void(Region&)>& visit) {
+    for (Removal& removal : spec.removals) visit(removal.in);
+    for (Measure& measure : spec.measures) measure.options.each_region(visit);
+    for (Phase& phase : spec.phases)
+        for (Until& until : phase.until)
+            std::visit(
+                [&](auto& condition) {
+                    if constexpr (requires { condition.region; }) visit(condition.region);
+                },
+                until);
+}
+
 bool is_integrated(const Measure& measure) {
     return find_probe(measure.probe)->source == Source::loads &&
            find_reduction(measure.reduction)->of_intervals != nullptr;
+}
+
+std::vector<WhileIn> runs_of(const Spec& spec, const Measure& measure) {
+    std::vector<WhileIn> runs;
+    for (std::size_t p = 0; p < spec.phases.size(); ++p) {
+        if (!holds(measure.during, p)) continue;
+        if (!runs.empty() && runs.back().last + 1 == p)
+            runs.back().last = p;
+        else
+            runs.push_back({p, p});
+    }
+    return runs;
+}
+
+Vec3 way_of(const dem::Wall& wall, const std::optional<Vec3>& along, double time) {
+    std::vector<Motion> motions;
+    std::ranges::remove_copy_if(wall.motions, std::back_inserter(motions), geometry::turns);
+    const Vec3 way = geometry::pose_at(motions, time).shift;
+    return along ? dot(way, *along) * *along : way;
 }
 
 static bool loads_are_integrated(const Spec& spec, std::size_t wall) {
@@ -112,15 +150,50 @@ static bool loads_are_integrated(const Spec& spec, std::size_t wall) {
     });
 }
 
-std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times) {
+/// Lets a motion begin no earlier than its wall starts anew, for the n-th time; a wall that the powder moves is then at
+/// rest. Returns whether the motion acts from then on, or places the wall.
+static bool starts_at(Motion& motion, double begun, std::size_t n) {
+    constexpr double most_motions = 1e6;  // of a wall
+    return std::visit(
+        [&](auto& m) {
+            if (m.end <= 0) return true;  // before the start
+            if constexpr (requires { m.number; })
+                if (m.start < begun) m.number += most_motions * static_cast<double>(n);
+            m.start = std::max(m.start, begun);
+            return m.end > begun;
+        },
+        motion);
+}
+
+/// Returns whether a wall is absent as long as the start lasts: no state of the start depends on it.
+static bool joins_after_start(const Spec& spec, const MachineWall& wall) {
+    for (std::size_t p = 0; p < spec.start.phases; ++p)
+        if (wall.present(p)) return false;
+    return true;
+}
+
+std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times, double zero) {
     std::vector<dem::Wall> walls;
     for (const MachineWall& given : spec.walls) {
+        if (phase < spec.start.phases && joins_after_start(spec, given)) {
+            dem::Wall absent(geometry::Plane{});
+            absent.materials = given.materials;
+            absent.present = false;
+            walls.push_back(std::move(absent));
+            continue;
+        }
         dem::Wall wall(given.shape);
+        const std::size_t again = given.times(phase);
+        const double begun = again > 0 ? times.begin[given.again->each[again]] : 0;
         for (const WallMotion& motion : given.motions)
-            if (auto act = acting(motion, times)) wall.motions.push_back(*act);
+            if (auto act = acting(motion, times); act && (again == 0 || starts_at(*act, begun, again)))
+                wall.motions.push_back(*act);
+        if (again > 0)  // before the start it moves to its place
+            wall.motions.push_back(geometry::Translation{static_cast<double>(again) * given.again->by, -1, 0});
+        for (Motion& motion : wall.motions) std::visit([zero](auto& m) { m.start -= zero, m.end -= zero; }, motion);
         wall.materials = given.materials;
         wall.passing = given.passing;
-        wall.present = holds(given.during, phase);
+        wall.present = given.present(phase);
         wall.integrated = loads_are_integrated(spec, walls.size());
         walls.push_back(std::move(wall));
     }
@@ -163,12 +236,6 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     return setup;
 }
 
-/// Returns the duration of an impact of two equal spheres of these materials, s. Rayleigh waves are of one body.
-static double impact_time(const dem::Material& pair, double radius, double speed) {
-    return pair.normal_law == dem::NormalLaw::linear ? dem::linear_contact_time(pair, radius)
-                                                     : dem::hertz_contact_time(pair, radius, speed);
-}
-
 /// Returns the density by which a sphere has the least mass that an impact on a particle feels, kg/m3.
 static double impact_density(const Spec& spec, const Species& species) {
     return spec.densities[species.material] * (species.shape ? species.shape->lightness : 1);
@@ -184,13 +251,13 @@ double time_step_of(const Spec& spec, double fraction, double speed) {
         for (const Species& b : spec.species) {
             dem::Material pair = pair_of(a.material, b.material);
             pair.density = std::min(impact_density(spec, a), impact_density(spec, b));
-            shortest = std::min(shortest, impact_time(pair, std::min(a.finest(), b.finest()) / 2, speed));
+            shortest = std::min(shortest, dem::impact_limit(pair, std::min(a.finest(), b.finest()) / 2, speed));
         }
         for (const MachineWall& wall : spec.walls) {
             if (!wall.touches(a)) continue;
             dem::Material pair = wall.materials[a.material];
             pair.density = impact_density(spec, a);
-            shortest = std::min(shortest, impact_time(pair, a.finest() / 2, speed));
+            shortest = std::min(shortest, dem::impact_limit(pair, a.finest() / 2, speed));
         }
     }
     return fraction * shortest;
@@ -246,9 +313,13 @@ double fastest_of(const Spec& spec) {
         std::vector<Motion> motions;
         for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
         if (motions.empty()) continue;
-        const dem::MovingWall moving(dem::Wall(wall.shape, motions), spec.domain, largest,
-                                     dem::MovingWall::Searches::few);
-        walls = std::max(walls, moving.fastest());
+        try {
+            const dem::MovingWall moving(dem::Wall(wall.shape, motions), spec.domain, largest,
+                                         dem::MovingWall::Searches::few);
+            walls = std::max(walls, moving.fastest());
+        } catch (const std::invalid_argument& why) {
+            throw std::invalid_argument("wall '" + wall.name + "': " + why.what());
+        }
     }
     return std::max(std::sqrt(2 * g * top) + initial + walls, 1e-3);
 }

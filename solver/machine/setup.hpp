@@ -4,6 +4,7 @@
 #include "solver/machine/filling.hpp"
 #include "solver/machine/spec.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace grainsweep::machine {
@@ -13,11 +14,18 @@ struct PhaseTimes {
     std::vector<double> begin, end;
 };
 
+/// Calls visit for the regions in which particles are looked for: of measurements, conditions and removals.
+void each_region(Spec& spec, const std::function<void(Region&)>& visit);
 /// Returns whether the value of a measurement is integrated over every step.
 [[nodiscard]] bool is_integrated(const Measure& measure);
+/// Returns the runs of successive phases in which it is measured.
+[[nodiscard]] std::vector<WhileIn> runs_of(const Spec& spec, const Measure& measure);
+/// Returns the way of a wall until a time by its motions other than turns, m; `along`: of it, if given.
+[[nodiscard]] Vec3 way_of(const dem::Wall& wall, const std::optional<Vec3>& along, double time);
 /// Returns the walls in a phase, with their presence and their motion from now on. Motions of phases that have not
-/// begun are left out.
-[[nodiscard]] std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times);
+/// begun are left out. `zero`: time at which the walls were set, s. In the start, walls that it is without are planes.
+[[nodiscard]] std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times,
+                                              double zero = 0);
 /// Returns the shape of a species of clumps for an engine: at scale 1 it has the volume of a sphere of 1 m, so that a
 /// clump's diameter is its scale.
 [[nodiscard]] dem::BodyShape body_shape(const Spec& spec, const Species& species);

@@ -71,6 +71,13 @@ inline constexpr bool is_flat = requires(const S& shape) {
 [[nodiscard]] geometry::Mesh stl_mesh(std::string_view contents, double scale, double facet_angle,
                                       const Placement& placement);
 
+/// Largest share of a surface that counts as a stray piece or a needle.
+inline constexpr double small_share = 0.02;
+/// Makes a mesh from an STL file that is `width` long along y, from y = 0 on, with its lowest point, of several the
+/// foremost, at x = 0 and z = 0. It is stored for the next call with the same arguments. Throws std::invalid_argument
+/// with one sentence if it is shorter, or longer and no profile, larger than half a metre, or has stray triangles.
+[[nodiscard]] geometry::Mesh fitted_mesh(std::string_view stl, double scale, double facet_angle, double width);
+
 /// Returns the body that a closed mesh bounds; empty: the mesh is open, or the shape is no mesh.
 [[nodiscard]] std::optional<geometry::Solid> solid_of(const geometry::Shape& shape);
 

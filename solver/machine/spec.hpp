@@ -28,6 +28,8 @@ struct Species {
     double diameter = 0;                      ///< D, m; of a clump: of the sphere of equal volume
     particles::SizeDistribution sizes;        ///< of d/D
     std::optional<particles::Clump> shape{};  ///< empty: spheres
+    std::optional<double>
+        cover{};  ///< volume that the file of a shape and its spheres share, divided by that of either
     dem::DampingMass damping_mass = dem::DampingMass::contact;
 
     [[nodiscard]] double largest() const { return diameter * sizes.largest(); }
@@ -61,6 +63,13 @@ struct WallMotion {
     std::optional<WhileIn> phases;
 };
 
+/// Each time that a phase comes again, a wall starts anew where it is drawn, moved on.
+struct Again {
+    Phases each;             ///< copies of the phase
+    Vec3 by{};               ///< m, each time but the first
+    std::int64_t first = 0;  ///< time of the phase from which on it is there
+};
+
 struct MachineWall {
     std::string name;
     geometry::Shape shape;
@@ -68,7 +77,18 @@ struct MachineWall {
     std::vector<dem::Material> materials;  ///< one for its contacts with each material of the particles
     Phases during;
     std::uint8_t passing = 0;  ///< materials of particles that pass through it, bit by bit
+    std::optional<Again> again{};
+    Vec3 scattered{};     ///< m: it is drawn away from its place by a random share of this, another one in each case
+    bool fitted = false;  ///< a surface of a file that was made to repeat itself across
 
+    /// Returns how often the phase of `again` has come back up to a phase.
+    [[nodiscard]] std::size_t times(std::size_t phase) const;
+    /// Returns whether it starts anew at the beginning of a phase.
+    [[nodiscard]] bool starts_anew(std::size_t phase) const { return phase > 0 && times(phase) != times(phase - 1); }
+    /// Returns whether it is there in a phase.
+    [[nodiscard]] bool present(std::size_t phase) const {
+        return holds(during, phase) && (!again || static_cast<std::int64_t>(times(phase)) >= again->first);
+    }
     [[nodiscard]] bool touches(const Species& species) const { return (passing >> species.material & 1U) == 0; }
 };
 
@@ -76,7 +96,7 @@ struct MachineWall {
 using Mix = std::vector<std::pair<std::size_t, double>>;
 
 struct Fill {
-    enum class As { lattice, random, rain, packed };
+    enum class As { lattice, random, rain, packed, cells };
     Mix mix;
     std::int64_t count = 0;
     Region in;
@@ -84,6 +104,18 @@ struct Fill {
     Vec3 velocity{};    ///< m/s
     double shaken = 0;  ///< m/s: random velocities up to this in each direction
     bool glued = false;
+    std::size_t at = 0;                ///< phase at whose beginning they appear
+    bool on_top = false;               ///< the region is raised above what lies in it
+    double spacing = 1.1;              ///< of cells, largest diameters
+    std::optional<double> drawn_to{};  ///< m3: particles are drawn until their volume is nearest to it
+};
+
+/// Particles taken away at the beginning of a phase.
+struct Removal {
+    enum class Of { centre, part, whole };
+    Region in;
+    Of of = Of::centre;  ///< what of a particle lies in the region
+    std::size_t at = 0;
 };
 
 /// Individually placed particle: a sphere, or the sphere of equal volume at a clump's centre of mass.
@@ -144,7 +176,14 @@ struct Passes {
     double value = 0;
     bool above = true;
 };
-using Until = std::variant<AtRest, Empty, FlowStops, Quiet, Passes>;
+/// Condition, at a frame: the standard error of a measurement is below a value, or it has not changed at all.
+struct Known {
+    std::size_t measure = 0;
+    double error = 0;
+    double from = 0.5;        ///< share of the frames of the phase before the first look
+    std::int64_t every = 10;  ///< frames from look to look: chance does not end a phase that is seldom looked at
+};
+using Until = std::variant<AtRest, Empty, FlowStops, Quiet, Passes, Known>;
 
 struct Phase {
     std::string name;
@@ -177,7 +216,11 @@ struct Measure {
     std::optional<std::pair<double, double>> shares;  ///< only values between these shares of the first one count
     std::vector<While> only;
     std::optional<std::size_t> since;  ///< the times of a series are measured from the beginning of this phase
-    bool relative = false;             ///< values are divided by the first one, of a profile bin by bin
+    /// How phases that repeat count: all together, only the last time, or each time by itself, as a profile.
+    enum class Repeats { all, last, each };
+    Repeats repeats = Repeats::all;
+    std::string error;       ///< name of the observable that is its standard error
+    bool relative = false;   ///< values are divided by the first one, of a profile bin by bin
     std::int64_t every = 1;  ///< measured at each frame whose number is a multiple, and at the last of a phase
     Scale scale;
 };
@@ -196,6 +239,14 @@ struct Derived {
     std::string name;
     std::vector<std::string> needs;
     std::function<double(const std::map<std::string, double, std::less<>>&)> value;
+    std::string error{};  ///< observable that is absent with it
+};
+
+/// First phases, which prepare the powder: they are not measured, and behind them contacts with walls begin anew.
+struct Start {
+    std::size_t phases = 0;  ///< 0: there is none
+    std::optional<double>
+        seed{};  ///< of its random numbers: cases with the same start share it; empty: that of the case
 };
 
 struct Spec {
@@ -210,14 +261,17 @@ struct Spec {
     std::vector<Species> species;
     std::vector<MachineWall> walls;
     std::vector<std::variant<Fill, std::vector<Placed>, Cut>> fills;
+    std::vector<Removal> removals;
     std::vector<Feed> feeds;
     std::vector<Phase> phases;
+    Start start;
     std::vector<Measure> measures;
     std::vector<TimeOf> times;
     std::vector<Derived> derived;
-    std::vector<Warning> warnings;     ///< warnings about the machine file
-    double time_step = 0;              ///< s
-    std::optional<double> step_share;  ///< of dem::Setup
+    std::vector<Warning> warnings;         ///< warnings about the machine file
+    std::optional<double> impact_speed{};  ///< m/s, from which the time step follows; empty: fastest_of()
+    double time_step = 0;                  ///< s
+    std::optional<double> step_share;      ///< of dem::Setup
     dem::Method method;
 };
 

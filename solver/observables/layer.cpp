@@ -9,66 +9,22 @@ namespace grainsweep::observables {
 
 namespace {
 
-template <class Where>
-double sum_where(const dem::State& state, std::span<const double> carried, Where where) {
-    double sum = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i)
-        if (where(state.position[i])) sum += carried[static_cast<std::size_t>(state.id[i])];
-    return sum;
-}
-
-}  // namespace
-
-double sum_behind(const dem::State& state, std::span<const double> carried, double front) {
-    return sum_where(state, carried, [front](const dem::Vec3& x) { return x[0] < front; });
-}
-
-double sum_under(const dem::State& state, std::span<const double> carried, double rear, double front, double height) {
-    return sum_where(state, carried,
-                     [=](const dem::Vec3& x) { return x[0] >= rear && x[0] < front && x[2] <= height; });
-}
-
-double solid_volume(const dem::State& state, double from, double to) {
-    double volume = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        if (state.position[i][0] < from || state.position[i][0] >= to) continue;
-        const double r = state.radius[i];
-        volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    }
-    return volume;
-}
-
-namespace {
-
 double sphere(double r) {
     return 4.0 / 3.0 * std::numbers::pi * r * r * r;
 }
 
-/// Of a sphere about 0 below z.
-double part_below(double z, double r) {
-    const double t = std::clamp(z, -r, r);
-    return std::numbers::pi * (2.0 / 3.0 * r * r * r + r * r * t - t * t * t / 3);
-}
-
 }  // namespace
 
-double solid_volume(const dem::State& state, double from, double to, double low, double high) {
+double solid_volume(const dem::State& state, double from, double to) {
     double volume = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const auto& x = state.position[i];
-        if (x[0] >= from && x[0] < to && x[2] > low && x[2] <= high) volume += sphere(state.radius[i]);
-    }
+    for (std::size_t i = 0; i < state.position.size(); ++i)
+        if (state.position[i][0] >= from && state.position[i][0] < to) volume += sphere(state.radius[i]);
     return volume;
 }
 
-double solid_between(const dem::State& state, double from, double to, double low, double high) {
-    double volume = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const auto& x = state.position[i];
-        const double r = state.radius[i];
-        if (x[0] >= from && x[0] < to) volume += part_below(high - x[2], r) - part_below(low - x[2], r);
-    }
-    return volume;
+double sphere_below(double z, double r) {
+    const double t = std::clamp(z, -r, r);
+    return std::numbers::pi * (2.0 / 3.0 * r * r * r + r * r * t - t * t * t / 3);
 }
 
 Patches::Patches(double from, double to, double width, double side) : from_(from), to_(to), width_(width) {
@@ -106,8 +62,9 @@ double Patches::deviation() const {
 }
 
 constexpr std::int64_t most_kept = 1 << 22;  // points of a grid of which few are covered
+constexpr std::int64_t most_rows = std::numeric_limits<std::int64_t>::max();
 
-Relief::Relief(const dem::State& state, double from, double to, double width, double pitch) {
+Relief::Relief(const dem::State& state, double from, double to, double width, double pitch, bool repeats) {
     const auto count = [pitch](double length) {
         return std::max<std::int64_t>(1, std::llround(std::ceil(length / pitch)));
     };
@@ -123,13 +80,15 @@ Relief::Relief(const dem::State& state, double from, double to, double width, do
     for (std::size_t i = 0; i < state.position.size(); ++i) {
         const auto& x = state.position[i];
         const double r = state.radius[i];
-        const auto first = [](double q, double step) { return std::llround(std::ceil(q / step - 0.5)); };
+        const auto first = [](double q, double step) -> std::int64_t {
+            return std::llround(std::ceil(q / step - 0.5));
+        };
         // Points lie at the centres of the grid's squares; rows in y are counted beyond the period and wrapped.
         const std::int64_t ix_end = std::min<std::int64_t>(nx, first(x[0] + r - from, dx));
         for (std::int64_t ix = std::max<std::int64_t>(0, first(x[0] - r - from, dx)); ix < ix_end; ++ix) {
             const double px = from + (static_cast<double>(ix) + 0.5) * dx - x[0];
-            const std::int64_t iy_end = first(x[1] + r, dy);
-            for (std::int64_t iy = first(x[1] - r, dy); iy < iy_end; ++iy) {
+            const std::int64_t iy_end = std::min(first(x[1] + r, dy), repeats ? most_rows : ny);
+            for (std::int64_t iy = std::max(first(x[1] - r, dy), repeats ? -most_rows : 0); iy < iy_end; ++iy) {
                 const double py = (static_cast<double>(iy) + 0.5) * dy - x[1];
                 const double rest = r * r - px * px - py * py;
                 if (rest <= 0) continue;

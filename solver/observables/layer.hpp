@@ -15,22 +15,11 @@
 
 namespace grainsweep::observables {
 
-/// Returns the sum of `carried`, by id, of the particles with centres at x < front; all 1 counts them.
-[[nodiscard]] double sum_behind(const dem::State& state, std::span<const double> carried, double front);
-
-/// Returns the same for centres with rear <= x < front and z <= height.
-[[nodiscard]] double sum_under(const dem::State& state, std::span<const double> carried, double rear, double front,
-                               double height);
-
 /// Returns the volume of the spheres whose centres have from <= x < to, m3.
 [[nodiscard]] double solid_volume(const dem::State& state, double from, double to);
 
-/// Returns the same for centres that also have low < z <= high.
-[[nodiscard]] double solid_volume(const dem::State& state, double from, double to, double low, double high);
-
-/// Returns the volume of the parts of spheres with low <= z <= high, for centres with from <= x < to, m3. Spheres are
-/// cut by the planes: the volume below z is pi (2/3 r^3 + r^2 t - t^3/3), t = z - z_centre within +-r.
-[[nodiscard]] double solid_between(const dem::State& state, double from, double to, double low, double high);
+/// Returns the volume of the part of a sphere about 0 below z, m3: pi (2/3 r^3 + r^2 t - t^3/3), t = z within +-r.
+[[nodiscard]] double sphere_below(double z, double r);
 
 /// Solid volume in patches of from <= x < to and one period in y, m3. Patches are nearly squares of `side`; a sphere
 /// belongs to the patch of its centre; x fastest.
@@ -57,8 +46,8 @@ private:
 /// points fill from <= x < to and one period in y at a pitch of at most `pitch`.
 class Relief {
 public:
-    /// `width`: period in y, from 0. to > from, pitch > 0.
-    Relief(const dem::State& state, double from, double to, double width, double pitch);
+    /// `width`: in y, from 0; `repeats`: it is a period. to > from, pitch > 0.
+    Relief(const dem::State& state, double from, double to, double width, double pitch, bool repeats = true);
 
     [[nodiscard]] std::span<const double> heights() const { return heights_; }
     /// Returns the root mean square deviation of the heights from their mean (Sq of ISO 25178-2), m. NaN for a large

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::particles {
 
@@ -170,6 +172,38 @@ struct Covered {
     [[nodiscard]] double overlap(double body) const { return inside / (body + outside); }
 };
 
+/// Returns the cover by these balls, scaled to the volume of the body.
+BallCover scaled_to(const geometry::Solid& solid, const Voxels& voxels, double body, std::vector<Ball> balls) {
+    BallCover cover{.balls = std::move(balls)};
+    const double scale = std::cbrt(solid.volume / solid_of(cover.balls).volume);
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+    for (Ball& ball : cover.balls) {
+        ball.centre = solid.centre + scale * (ball.centre - solid.centre);
+        ball.radius *= scale;
+        smallest = std::min(smallest, ball.radius), largest = std::max(largest, ball.radius);
+    }
+    std::vector<std::uint8_t> covered(voxels.inside().size(), 0);
+    Covered sum;
+    for (const Ball& ball : cover.balls)
+        voxels.each_in(ball, [&](std::size_t v) {
+            if (covered[v] != 0) return;
+            covered[v] = 1;
+            (voxels.inside()[v] != 0 ? sum.inside : sum.outside) += 1;
+        });
+    cover.overlap = sum.overlap(body);
+    cover.smallest = smallest / largest;
+    return cover;
+}
+
+[[noreturn]] void refuse_error(std::size_t spheres, double overlap) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "%zu spheres share %.3g of the volume with the body, and more would add little: an error of at least "
+                  "%.3g is needed",
+                  spheres, overlap, 1 - overlap);
+    throw std::invalid_argument(text);
+}
+
 }  // namespace
 
 BallCover ball_cover(const TriangleSurface& surface, const CoverRequest& request) {
@@ -184,8 +218,8 @@ BallCover ball_cover(const TriangleSurface& surface, const CoverRequest& request
     std::vector<std::uint8_t> covered(inside.size(), 0);
     Covered sum;
     std::vector<double> gain(balls.size(), std::numeric_limits<double>::infinity());  // at most this
-    BallCover cover;
-    while (cover.balls.size() < request.most) {
+    std::vector<Ball> chosen;
+    while (chosen.size() < request.most) {
         // Gains only fall: a ball whose gain is of now and the largest is the best.
         std::vector<bool> now(balls.size(), false);
         std::size_t best = 0;
@@ -198,33 +232,21 @@ BallCover ball_cover(const TriangleSurface& surface, const CoverRequest& request
             now[best] = true;
         }
         if (!(gain[best] > 0)) break;
-        if (!request.error && cover.balls.size() >= 2 && gain[best] < least_gain * body) break;
+        if (chosen.size() >= 2 && gain[best] < (request.error ? least_gain_of_error : least_gain) * body) break;
         voxels.each_in(balls[best], [&](std::size_t v) {
             if (covered[v] != 0) return;
             covered[v] = 1;
             (inside[v] != 0 ? sum.inside : sum.outside) += 1;
         });
         gain[best] = 0;
-        cover.balls.push_back(balls[best]);
-        if (request.error && 1 - sum.overlap(body) <= *request.error && cover.balls.size() >= 2) break;
+        chosen.push_back(balls[best]);
+        if (!request.error || 1 - sum.overlap(body) > *request.error || chosen.size() < 2) continue;
+        BallCover cover = scaled_to(*solid, voxels, body, chosen);
+        if (1 - cover.overlap <= *request.error) return cover;
     }
-    const double scale = std::cbrt(solid->volume / solid_of(cover.balls).volume);
-    double smallest = std::numeric_limits<double>::infinity(), largest = 0;
-    for (Ball& ball : cover.balls) {
-        ball.centre = solid->centre + scale * (ball.centre - solid->centre);
-        ball.radius *= scale;
-        smallest = std::min(smallest, ball.radius), largest = std::max(largest, ball.radius);
-    }
-    std::ranges::fill(covered, std::uint8_t{0});
-    sum = {};
-    for (const Ball& ball : cover.balls)
-        voxels.each_in(ball, [&](std::size_t v) {
-            if (covered[v] != 0) return;
-            covered[v] = 1;
-            (inside[v] != 0 ? sum.inside : sum.outside) += 1;
-        });
-    cover.overlap = sum.overlap(body);
-    cover.smallest = smallest / largest;
+    BallCover cover = scaled_to(*solid, voxels, body, chosen);
+    if (request.error && chosen.size() < request.most && 1 - cover.overlap > *request.error)
+        refuse_error(chosen.size(), cover.overlap);
     return cover;
 }
 

@@ -20,6 +20,8 @@ struct CoverRequest {
 
 /// Default end of a cover: a further sphere would cover less than this share of the body.
 inline constexpr double least_gain = 5e-3;
+/// The same where an error was asked for.
+inline constexpr double least_gain_of_error = 1e-3;
 
 struct BallCover {
     std::vector<geometry::Ball> balls;  ///< scaled so that their union has the volume of the body
@@ -28,7 +30,7 @@ struct BallCover {
 };
 
 /// Returns a cover of the body that a closed surface bounds. Throws std::invalid_argument with one sentence for a
-/// surface that is not closed, and for a body so thin that no ball fits.
+/// surface that is not closed, for a body so thin that no ball fits, and for an error that no cover has.
 [[nodiscard]] BallCover ball_cover(const geometry::TriangleSurface& surface, const CoverRequest& request);
 
 }  // namespace grainsweep::particles

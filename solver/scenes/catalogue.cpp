@@ -30,7 +30,6 @@ Inputs SceneInfo::defaults() const {
 
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
-        powder_spreading_scene(),
         rehearsal_scene(),
         thermovibration_scene(),
     };

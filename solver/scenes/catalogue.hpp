@@ -5,7 +5,6 @@
 
 namespace grainsweep {
 
-[[nodiscard]] SceneInfo powder_spreading_scene();
 [[nodiscard]] SceneInfo rehearsal_scene();
 [[nodiscard]] SceneInfo thermovibration_scene();
 

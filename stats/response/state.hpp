@@ -18,9 +18,12 @@ struct ResponseModel::State {
     ModelQuality quality;
 
     [[nodiscard]] double standardised(double response) const;
-    /// Returns the mean response for the mean z; for a logarithm with normal noise g it is exp(offset + scale z +
-    /// scale^2 g/2).
+    /// Returns the mean response for the mean z; for a logarithm with a normal scatter v it is exp(offset + scale z +
+    /// scale^2 v/2).
     [[nodiscard]] double mean_at(double z) const;
+    /// Return the parts of g that are scatter of single runs, and error of the mean.
+    [[nodiscard]] double scatter() const { return quality.noise == Noise::scatter ? kriging.h.noise() : 0; }
+    [[nodiscard]] double misfit() const { return kriging.h.noise() - scatter(); }
     /// Returns the standard deviation around the mean for the variance v of z; for a logarithm it is mean
     /// sqrt(exp(scale^2 v) - 1).
     [[nodiscard]] double deviation(double mean, double variance) const;

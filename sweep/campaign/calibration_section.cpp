@@ -30,7 +30,7 @@ constexpr double largest = 1e100;          // whose square, and the sum of such 
 std::size_t level_of(ParameterSpace& space, const std::string& name, Value value) {
     auto found = std::ranges::find(space.factors, name, &Factor::name);
     if (found == space.factors.end()) {
-        space.factors.push_back({name, Levels{}});
+        space.factors.push_back({.name = name, .range = Levels{}, .unit = space.scene->find_parameter(name)->unit});
         found = space.factors.end() - 1;
     }
     auto& values = std::get<Levels>(found->range).values;
@@ -59,9 +59,10 @@ std::map<std::string, std::size_t> read_condition(const Cursor& inputs, Paramete
 }
 
 /// A number in the unit of the observable, or a text with a unit that fits.
-double measured_number(const Cursor& place, const ObservableSpec& observable, const Interval& bounds) {
+double measured_number(const Cursor& place, const ObservableSpec& observable, const Interval& bounds,
+                       Reads reads = Reads::value) {
     if (!place.json().is_string()) return place.number(bounds);
-    return std::get<double>(read_value(place, {observable.name, observable.unit, {}, 0.0, bounds, {}}, {}));
+    return std::get<double>(read_value(place, {observable.name, observable.unit, {}, 0.0, bounds, {}}, {}, reads));
 }
 
 double cell_number(const Cursor& file, std::size_t record, const std::string& cell) {
@@ -186,6 +187,19 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const Observ
     return targets;
 }
 
+/// Reads how many of the measured runs had no value, and the discrepancy of their share.
+void read_without_value(const Cursor& place, designs::MeasuredTarget& target) {
+    const Section section(place, without_value_keys());
+    const auto count = static_cast<double>(section.whole("count", 0)), of = static_cast<double>(section.whole("of", 1));
+    if (count > of) section.at("count").refuse(fmt::format("must be at most the number of measured runs, {}", of));
+    const double share = (count + 0.5) / (of + 1);  // neither 0 nor 1
+    target.observable = designs::word_of({target.observable, std::nullopt, true});
+    target.value = count / of;
+    target.of = static_cast<std::size_t>(of);
+    target.error = std::sqrt(share * (1 - share) / of);
+    target.discrepancy = section.number("discrepancy", 0);
+}
+
 /// One, or as many as its curve has lines.
 std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign& campaign, std::size_t calibrated,
                                                  const std::filesystem::path& folder, std::size_t curve) {
@@ -195,39 +209,55 @@ std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign
     designs::MeasuredTarget target;
     target.observable = section.at("observable").word(names_of(scene.observables));
     const bool scalar = scene.find_observable(target.observable)->shape == Shape::scalar;
-    const auto value = section.find("value"), file = section.find("file");
+    const auto value = section.find("value"), file = section.find("file"), error = section.find("error");
+    const auto inputs = section.find("inputs");
+    if (inputs) target.level = read_condition(*inputs, campaign.space, calibrated, folder);
+    if (const auto without = section.find("without_value")) {
+        if (!scalar) without->refuse("is for scalars, and the observable is a curve");
+        for (const auto& other : {value, error, file})
+            if (other)
+                other->refuse(
+                    "has no place beside \"without_value\"; the values of the other runs are a target of "
+                    "their own");
+        read_without_value(*without, target);
+        return {target};
+    }
     if (scalar && (file || !value))
-        throw input_error(element.path(), target.observable, "is a scalar: what was measured is its \"value\"");
+        throw input_error(element.path(), target.observable,
+                          "is a scalar: what was measured is its \"value\", or \"without_value\"");
     if (!scalar && (value || !file))
         throw input_error(element.path(), target.observable,
                           "is a curve: what was measured stands in a \"file\" of lines where,value[,error]");
-    const auto error = section.find("error");
     if (scalar && !error) throw input_error(element.path(), "", "'error' is missing: of what was measured");
     const auto& measured = *scene.find_observable(target.observable);
     if (value) target.value = measured_number(*value, measured, {-largest, largest});
-    if (error) target.error = measured_number(*error, measured, {0, largest});
-    if (const auto inputs = section.find("inputs"))
-        target.level = read_condition(*inputs, campaign.space, calibrated, folder);
+    if (error) target.error = measured_number(*error, measured, {0, largest}, Reads::difference);
     if (scalar) return {target};
     target.curve = curve;
     return read_curve(*file, measured, target, error.has_value(), folder);
 }
 
-/// How far the simulation may be from the experiment, per observable: to be stated, be it 0.
+/// How far the simulation may be from the experiment, per observable: to be stated, be it 0. Shares state their own.
 void read_discrepancies(const Section& section, const SceneInfo& scene, std::vector<designs::MeasuredTarget>& targets) {
-    const Cursor place = section.at("discrepancy");
+    const bool only_shares = std::ranges::all_of(targets, [](const auto& target) { return target.of.has_value(); });
+    const auto given = section.find("discrepancy");
+    if (only_shares && !given) return;
+    if (!given) throw input_error(section.place().path(), "", "key 'discrepancy' is missing");
+    const Cursor& place = *given;
     if (!place.json().is_object()) place.refuse("must be an object of observables and standard deviations");
-    std::vector<std::string> measured;
-    for (const auto& target : targets) measured.push_back(designs::place_on_curve(target.observable).observable);
+    std::vector<std::string> measured;  // of each target; a share has none
+    for (const auto& target : targets)
+        measured.push_back(target.of ? "" : designs::place_on_curve(target.observable).observable);
     for (const auto& [name, json] : place.json().items()) {
         const Cursor here(json, path_of(place.path(), name));
         if (std::ranges::find(measured, name) == measured.end())
-            here.refuse("no target measures this observable", nearest_word(name, measured));
-        const double discrepancy = measured_number(here, *scene.find_observable(name), {0, largest});
+            here.refuse("no target measures a value of this observable", nearest_word(name, measured));
+        const double discrepancy = measured_number(here, *scene.find_observable(name), {0, largest}, Reads::difference);
         for (std::size_t k = 0; k < targets.size(); ++k)
             if (measured[k] == name) targets[k].discrepancy = discrepancy;
     }
     for (std::size_t k = 0; k < targets.size(); ++k) {
+        if (targets[k].of) continue;
         if (!place.json().contains(measured[k])) {
             throw input_error(place.path(), "",
                               fmt::format("'{0}' is missing: how far the simulation itself may be from the experiment "

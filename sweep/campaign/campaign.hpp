@@ -21,33 +21,10 @@
 
 namespace grainsweep::campaign {
 
-enum class Scale { linear, log };
-
-/// Range: u in [0, 1] -> low + u (high - low), or low (high/low)^u, with the same bits on every platform.
-struct Between {
-    double low = 0;
-    double high = 1;
-    Scale scale = Scale::linear;
-    bool operator==(const Between&) const = default;
-};
-
-/// Levels: u -> level floor(k u), the last one at u = 1.
-struct Levels {
-    std::vector<Value> values;
-    bool operator==(const Levels&) const = default;
-};
-
-struct Factor {
-    std::string name;
-    std::variant<Between, Levels, stats::Distribution> range;
-    std::optional<double> step = {};  ///< for a range: its values are multiples of this (step.hpp)
-    bool share = false;               ///< for a range: it and the other shares add to one (simplex.hpp)
-    std::string group = {};           ///< factors of a group change together in saltelli and morris; empty: its own
-                                      ///< group
-    std::string when = {};            ///< SQL condition; where it is false the factor has its default; empty: always
-                                      ///< true
-    bool operator==(const Factor&) const = default;
-};
+using designs::Between;
+using designs::Factor;
+using designs::Levels;
+using designs::Scale;
 
 /// Filter: whether a candidate point belongs to the campaign (`where`), or whether a factor counts (`when`).
 using Filter = std::function<bool(const Inputs&)>;
@@ -70,8 +47,6 @@ inline constexpr std::string_view group_of_shares = "simplex";
 /// True with a `when`, a sample, or steps of a nonlinear range. Otherwise all cases are equally likely and count once.
 [[nodiscard]] bool repeats_weigh(std::span<const Factor> factors);
 
-/// Returns a factor's value at the coordinate u in [0, 1], not yet in the type of its parameter.
-[[nodiscard]] Value value_at(const Factor& factor, double u);
 /// Returns the value of factor j at a point of all factors; columns of one sample are chosen together
 /// (joint_column.hpp).
 [[nodiscard]] Value value_at(std::span<const Factor> factors, std::size_t j, std::span<const double> u);

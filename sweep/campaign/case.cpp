@@ -58,12 +58,6 @@ std::string shortest(double x) {
     return {buffer.data(), end};
 }
 
-std::string to_text(const Value& value) {
-    if (const auto* real = std::get_if<double>(&value)) return shortest(*real);
-    if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
-    return std::get<std::string>(value);
-}
-
 std::string identity_text(const Value& value) {
     const auto* word = std::get_if<std::string>(&value);
     const auto file = word == nullptr ? std::nullopt : file_word(*word);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/scenes/values.hpp"
+#include "sweep/designs/factor.hpp"
 
 #include <array>
 #include <compare>
@@ -123,8 +124,7 @@ void add_canonical_seed(std::string& text, std::uint64_t seed);
                                       std::int64_t replicate);
 /// Returns a number as in the canonical text.
 [[nodiscard]] std::string shortest(double x);
-/// Returns a value as text, words unquoted.
-[[nodiscard]] std::string to_text(const Value& value);
+using designs::to_text;
 /// Returns a value as in the canonical text: to_text(), but a file without its path.
 [[nodiscard]] std::string identity_text(const Value& value);
 

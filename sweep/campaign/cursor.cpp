@@ -45,10 +45,10 @@ std::string Cursor::text() const {
 }
 
 std::string Cursor::word(const WordList& words) const {
-    const std::string rule = fmt::format("must be {}", in_words(words));
-    if (!value_->is_string()) refuse(rule);
+    const auto rule = [&] { return fmt::format("must be {}", in_words(words)); };
+    if (!value_->is_string()) refuse(rule());
     const auto& word = value_->get_ref<const std::string&>();
-    if (std::ranges::find(words, word) == words.end()) refuse(rule, nearest_word(word, words));
+    if (std::ranges::find(words, word) == words.end()) refuse(rule(), nearest_word(word, words));
     return word;
 }
 
@@ -60,38 +60,47 @@ std::vector<Cursor> Cursor::elements() const {
     return cursors;
 }
 
+/// Calls visit(name) for every member but notes, which are checked. No path is made before there is an error: a
+/// campaign reads its machine once a case.
+template <class Visit>
+static void each_member(const Cursor& place, Visit&& visit) {
+    for (const auto& [name, value] : place.json().items()) {
+        if (name == schema_key) continue;
+        if (name != notes_key) {
+            visit(name);
+            continue;
+        }
+        const bool texts = value.is_array() && std::ranges::all_of(value, [](const Json& x) { return x.is_string(); });
+        if (!value.is_string() && !texts) place[name].refuse("notes are a text or a list of texts");
+    }
+}
+
 std::vector<std::pair<std::string, Cursor>> Cursor::members(std::string_view rule) const {
     if (!value_->is_object()) refuse(rule);
     std::vector<std::pair<std::string, Cursor>> members;
-    for (const auto& [name, value] : value_->items()) {
-        if (name == schema_key) continue;
-        const Cursor here(value, path_of(path_, name));
-        const bool texts = value.is_array() && std::ranges::all_of(value, [](const Json& x) { return x.is_string(); });
-        if (name != notes_key)
-            members.emplace_back(name, here);
-        else if (!value.is_string() && !texts)
-            here.refuse("notes are a text or a list of texts");
-    }
+    each_member(*this, [&](const std::string& name) { members.emplace_back(name, (*this)[name]); });
     return members;
 }
 
 Section::Section(Cursor place, std::span<const Field> keys) : place_(std::move(place)), keys_(keys) {
-    for (const auto& [name, here] : place_.members("must be an object")) {
-        if (std::ranges::find(keys_, name, &Field::name) != keys_.end()) continue;
+    if (!place_.json().is_object()) place_.refuse("must be an object");
+    each_member(place_, [&](const std::string& name) {
+        if (std::ranges::find(keys_, name, &Field::name) != keys_.end()) return;
         WordList known(std::views::transform(keys_, &Field::name));
         known.push_back(notes_key);
-        throw input_error(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
+        throw input_error(path_of(place_.path(), name), "",
+                          fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
                           nearest_word(name, known));
-    }
+    });
     for (const auto& key : keys_) {
-        if (key.required && !find(key.name)) {
+        if (key.required && !place_.json().contains(key.name)) {
             throw input_error(place_.path(), "", fmt::format("key '{}' is missing: {}", key.name, meaning_text(key)));
         }
     }
 }
 
 std::optional<Cursor> Section::find(std::string_view key) const {
-    if (!place_.json().contains(std::string(key))) return std::nullopt;
+    if (!place_.json().contains(key)) return std::nullopt;
     return place_[key];
 }
 

@@ -23,9 +23,7 @@ public:
     [[nodiscard]] const Json& json() const { return *value_; }
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] Cursor operator[](std::size_t index) const { return {(*value_)[index], path_of(path_, index)}; }
-    [[nodiscard]] Cursor operator[](std::string_view key) const {
-        return {value_->at(std::string(key)), path_of(path_, key)};
-    }
+    [[nodiscard]] Cursor operator[](std::string_view key) const { return {value_->at(key), path_of(path_, key)}; }
 
     [[noreturn]] void refuse(std::string_view rule, std::string_view suggestion = {}) const;
 

@@ -1,7 +1,7 @@
 // "design": its options against the OptionSpecs that the design declares.
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/step.hpp"
+#include "sweep/designs/step.hpp"
 
 #include <fmt/format.h>
 
@@ -104,47 +104,29 @@ std::string read_option_word(const Cursor& place, const OptionSpec& option, cons
 
 }  // namespace
 
-designs::FactorRange range_of(const Factor& factor) {
-    designs::FactorRange range{factor.name, {}};
-    if (const auto* levels = std::get_if<Levels>(&factor.range)) {
-        for (const auto& value : levels->values) range.levels.push_back(to_text(value));
-        range.parts = range.levels.size();
-        return range;
-    }
-    range.value_at = [factor](double u) { return std::get<double>(value_at(factor, u)); };
-    if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
-        range.endless = !distribution->has_ends();
-    else
-        range.parts = equal_parts(std::get<Between>(factor.range), factor.step);
-    return range;
-}
-
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value) {
-    if (const auto* levels = std::get_if<Levels>(&factor.range)) {
+    if (const auto* levels = factor.levels()) {
         if (std::ranges::find(levels->values, value) == levels->values.end()) {
             place.refuse(fmt::format("is none of the levels of factor '{}'", factor.name));
         }
         return;
     }
-    const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
-    const double low = distribution != nullptr ? distribution->low() : std::get<Between>(factor.range).low;
-    const double high = distribution != nullptr ? distribution->high() : std::get<Between>(factor.range).high;
+    const auto* distribution = factor.distribution();
+    const double low = distribution != nullptr ? distribution->low() : factor.between()->low;
+    const double high = distribution != nullptr ? distribution->high() : factor.between()->high;
     const double number = std::get<double>(coerced(value, Value{0.0}));
     if (!Interval{low, high}.contains(number))
         place.refuse(fmt::format("factor '{}' goes from {} to {}", factor.name, shortest(low), shortest(high)));
-    if (factor.step && !is_multiple(*factor.step, number))
+    if (factor.step && !designs::is_multiple(*factor.step, number))
         place.refuse(fmt::format("factor '{}' takes multiples of {}", factor.name, shortest(*factor.step)));
 }
 
 void set_factors(Campaign& campaign) {
     auto& request = campaign.request;
     request.seed = campaign.seed;
-    for (const auto& factor : campaign.space.factors) {
-        const auto* levels = std::get_if<Levels>(&factor.range);
-        request.levels.push_back(levels == nullptr ? 0 : levels->values.size());
-        request.factors.push_back(range_of(factor));
-    }
-    request.groups = groups_of(campaign.space.factors);
+    request.factors = campaign.space.factors;
+    for (const auto& factor : request.factors) request.levels.push_back(factor.continuous() ? 0 : factor.parts());
+    request.groups = groups_of(request.factors);
 }
 
 void check_growing(const Cursor& place, const Campaign& campaign) {

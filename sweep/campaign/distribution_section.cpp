@@ -26,11 +26,11 @@ struct Reading {
         return std::get<double>(read_value(section.at(key), parameter, folder));
     }
     /// A number in the unit of the parameter, which need not be one of its values.
-    [[nodiscard]] double amount(std::string_view key, const Interval& bounds = {}) const {
+    [[nodiscard]] double amount(std::string_view key, const Interval& bounds = {}, Reads reads = Reads::value) const {
         ParameterSpec figure = parameter;
         figure.name = key;
         figure.bounds = bounds;
-        return std::get<double>(read_value(section.at(key), figure, folder));
+        return std::get<double>(read_value(section.at(key), figure, folder, reads));
     }
 };
 
@@ -118,12 +118,12 @@ std::variant<Between, stats::Distribution> read_distribution(const Section& fact
         });
     if (key == "gumbel")
         return shaped(gumbel_keys(), [](const Reading& read) -> stats::Distribution::Form {
-            return stats::Gumbel{read.amount("location"), read.amount("scale", above_zero)};
+            return stats::Gumbel{read.amount("location"), read.amount("scale", above_zero, Reads::difference)};
         });
     if (key == "triangular") return shaped(triangular_keys(), read_triangular);
     if (key == "beta") return shaped(beta_keys(), read_beta);
     return shaped(normal_keys(), [](const Reading& read) -> stats::Distribution::Form {
-        return stats::Normal{read.amount("mean"), read.amount("sd", above_zero)};
+        return stats::Normal{read.amount("mean"), read.amount("sd", above_zero, Reads::difference)};
     });
 }
 

@@ -1,6 +1,7 @@
 #include "sweep/campaign/experiments.hpp"
 
 #include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/designs/calibration.hpp"
 
 #include <fmt/format.h>
@@ -123,10 +124,16 @@ Experiment experiment_file(const Json& file, const Cursor& place, const std::str
     section.erase("experiments");
     section["targets"] = targets_of(calibration, names, experiment);
     const auto& discrepancy = file.at("calibration").value("discrepancy", Json::object());
-    if (!discrepancy.is_object() || !discrepancy.contains(name))
+    const bool stated = discrepancy.is_object() && discrepancy.contains(name);
+    const bool only_shares = std::ranges::all_of(
+        section["targets"], [](const Json& target) { return target.is_object() && target.contains("without_value"); });
+    if (!stated && !only_shares)
         throw input_error("$.calibration.discrepancy", "",
                           fmt::format("'{}' is missing: an object of the discrepancies in this experiment", name));
-    section["discrepancy"] = discrepancy[name];
+    if (stated)
+        section["discrepancy"] = discrepancy[name];
+    else
+        section.erase("discrepancy");
     try {
         const auto scene = read_scene(Section(Cursor(document, "$"), campaign_keys()), folder);
         keep_known(file, place.json(), *scene, experiment);
@@ -150,15 +157,12 @@ void join(std::vector<Campaign>& campaigns, const std::vector<std::string>& name
         }
     }
     std::vector<Factor> together;
-    std::vector<designs::FactorRange> ranges;
     for (const auto& factor : factors)
         for (const auto& campaign : campaigns) {
             const auto found =
                 std::ranges::find(campaign.space.factors, factor["name"].get<std::string>(), &Factor::name);
             if (found == campaign.space.factors.end()) continue;
             together.push_back(*found);
-            ranges.push_back(
-                campaign.request.factors[static_cast<std::size_t>(found - campaign.space.factors.begin())]);
             break;
         }
     for (std::size_t i = 0; i < campaigns.size(); ++i) {
@@ -166,7 +170,7 @@ void join(std::vector<Campaign>& campaigns, const std::vector<std::string>& name
         request.options["targets"] = designs::text_of(targets);
         request.options["experiment"] = names[i];
         request.options["together"] = factors_line(together);
-        request.shared = ranges;
+        request.shared = together;
     }
 }
 
@@ -219,10 +223,8 @@ std::vector<Campaign> read_experiments(const Json& document, const std::filesyst
 }
 
 std::string name_in_file(const Identity& identity) {
-    const auto options = options_in(identity);
-    const auto own = options.find("experiment");
-    if (own == options.end()) return identity.name;
-    return identity.name.substr(0, identity.name.size() - own->second.size() - 1);
+    const auto* own = word_of(identity, "experiment");
+    return own == nullptr ? identity.name : identity.name.substr(0, identity.name.size() - own->size() - 1);
 }
 
 std::string name_beside(const Identity& identity, std::string_view experiment) {
@@ -231,10 +233,9 @@ std::string name_beside(const Identity& identity, std::string_view experiment) {
 
 std::vector<std::string> experiments_of(const Identity& identity) {
     std::vector<std::string> names;
-    const auto options = options_in(identity);
-    const auto targets = options.find("targets");
-    if (!options.contains("experiment") || targets == options.end()) return names;
-    for (const auto& target : designs::targets_in(targets->second))
+    const auto* targets = word_of(identity, "targets");
+    if (word_of(identity, "experiment") == nullptr || targets == nullptr) return names;
+    for (const auto& target : designs::targets_in(*targets))
         if (std::ranges::find(names, target.experiment) == names.end()) names.push_back(target.experiment);
     return names;
 }

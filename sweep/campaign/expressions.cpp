@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -56,7 +55,14 @@ std::variant<Formula, std::string> parse_expression(std::string_view text, const
     std::vector<std::string_view> numbers;
     for (const auto& parameter : scene.parameters)
         if (!std::holds_alternative<std::string>(parameter.default_value)) numbers.push_back(parameter.name);
-    return Formula::parse(text, numbers);
+    auto parsed = Formula::parse(text, numbers);
+    auto* why = std::get_if<std::string>(&parsed);
+    if (why == nullptr) return parsed;
+    for (const auto& parameter : scene.parameters)
+        if (std::holds_alternative<std::string>(parameter.default_value) &&
+            why->starts_with(fmt::format("'{}' is no name", parameter.name)))
+            *why += fmt::format("; the values of {} are words, and expressions are of numbers", parameter.name);
+    return parsed;
 }
 
 std::vector<Expression> in_order(std::vector<Expression> expressions) {
@@ -92,6 +98,24 @@ void refuse_mixed_units(const Expression& expression, const SceneInfo& scene) {
                                               listed));
 }
 
+void refuse_degrees(const Expression& expression, const SceneInfo& scene) {
+    const auto& text = expression.formula.text();
+    const auto has = [&](std::string_view part) { return text.find(part) != std::string::npos; };
+    const auto any_of = [&](auto... parts) { return (has(parts) || ...); };
+    if (!any_of("sin(", "cos(", "tan(", "atan2(") || any_of("pi", "180", "0.0174", "57.29")) return;
+    auto names = expression.formula.names();
+    names.push_back(expression.name);
+    for (const auto& name : names) {
+        const auto radians = in_si(fmt::format("1 {}", scene.find_parameter(name)->unit), "rad");
+        const auto* factor = std::get_if<double>(&radians);
+        if (factor == nullptr || *factor == 1) continue;
+        refuse_expression(expression, fmt::format("sin, cos, tan and atan2 are of radians, and {0} is in {1}: {2}",
+                                                  name, scene.find_parameter(name)->unit,
+                                                  name == expression.name ? "multiply the angle by 180/pi"
+                                                                          : fmt::format("write {}*pi/180", name)));
+    }
+}
+
 void evaluate_expressions(std::span<const Expression> expressions, Inputs& inputs) {
     for (const auto& [name, formula, whole] : expressions) {
         const double x = formula([&](std::string_view other) { return as_number(inputs.find(other)->second); });
@@ -105,7 +129,7 @@ void check_expressions(const ParameterSpace& space, const Inputs& inputs) {
     for (const auto& expression : space.expressions) {
         const auto& parameter = *space.scene->find_parameter(expression.name);
         const Value& value = inputs.find(expression.name)->second;
-        const bool fits = value.index() == parameter.default_value.index() &&
+        const bool fits = value.index() == parameter.default_value.index() && std::isfinite(as_number(value)) &&
                           std::get<Interval>(parameter.bounds).contains(as_number(value));
         const bool counts = is_whole_of_program(space.scene->name, expression.name);
         if (fits && !(counts && as_number(value) != std::floor(as_number(value)))) continue;
@@ -129,15 +153,12 @@ Inputs fixed_as_stated(const ParameterSpace& space) {
 
 std::vector<Expression> expressions_of(const Identity& identity, const SceneInfo& scene) {
     std::vector<Expression> expressions;
-    std::istringstream lines(identity.fixed);
-    for (std::string line; std::getline(lines, line);) {
-        const auto sign = line.find(" = ");  // no blanks are in a formula
-        if (sign == std::string::npos) continue;
-        const auto name = line.substr(0, sign), text = line.substr(sign + 3);
+    for (const auto& [name, value] : identity.fixed) {
+        const auto* text = std::get_if<std::string>(&value);
         const auto* parameter = scene.find_parameter(name);
-        if (parameter == nullptr || std::holds_alternative<std::string>(parameter->default_value)) continue;
-        if (std::holds_alternative<double>(in_si(text, parameter->unit))) continue;
-        auto formula = parse_expression(text, scene);
+        if (text == nullptr || parameter == nullptr || std::holds_alternative<std::string>(parameter->default_value))
+            continue;
+        auto formula = parse_expression(*text, scene);
         if (auto* sound = std::get_if<Formula>(&formula))
             expressions.push_back(
                 {name, std::move(*sound), std::holds_alternative<std::int64_t>(parameter->default_value)});

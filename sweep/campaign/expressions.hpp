@@ -20,6 +20,8 @@ namespace grainsweep::campaign {
 
 /// Refuses an expression of a program's parameters if its numbers are in different units, not all of them SI units.
 void refuse_mixed_units(const Expression& expression, const SceneInfo& scene);
+/// Refuses an expression with functions of angles and a parameter in degrees that it converts nowhere.
+void refuse_degrees(const Expression& expression, const SceneInfo& scene);
 
 /// Evaluates the expressions in complete inputs, without checks: a result may be out of bounds, or not finite.
 void evaluate_expressions(std::span<const Expression> expressions, Inputs& inputs);

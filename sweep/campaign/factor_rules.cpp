@@ -2,7 +2,7 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/simplex.hpp"
-#include "sweep/campaign/step.hpp"
+#include "sweep/designs/step.hpp"
 
 #include <fmt/format.h>
 
@@ -20,14 +20,15 @@ double read_step_size(const Cursor& place, const ParameterSpec& parameter) {
     ParameterSpec size = parameter;
     size.name = "step";
     size.bounds = Interval{0, std::numeric_limits<double>::infinity(), true, true};
-    return std::get<double>(coerced(read_value(place, size, {}), Value{0.0}));
+    return std::get<double>(coerced(read_value(place, size, {}, Reads::difference), Value{0.0}));
 }
 
 void check_multiples(const Cursor& place, const Between& range, std::pair<double, double> ends, double step) {
     const double farthest = std::max(std::abs(ends.first), std::abs(ends.second));
-    if (farthest / step > static_cast<double>(most_multiples))
-        place.refuse(fmt::format("the values end more than {} steps from 0: give a larger step", most_multiples));
-    const auto count = multiples_in(step, range.low, range.high).count();
+    if (farthest / step > static_cast<double>(designs::most_multiples))
+        place.refuse(
+            fmt::format("the values end more than {} steps from 0: give a larger step", designs::most_multiples));
+    const auto count = designs::multiples_in(step, range.low, range.high).count();
     if (count < 2)
         place.refuse(
             fmt::format("{} multiple of it, counted from 0, lies between {} and {}: give a smaller step or a "
@@ -40,7 +41,7 @@ void check_rounded(const Cursor& place, const stats::Distribution& distribution,
                    double step) {
     const auto* bounds = std::get_if<Interval>(&parameter.bounds);
     for (const double u : {0.0, 1.0})
-        if (const double x = stepped(distribution, step, u); bounds != nullptr && !bounds->contains(x))
+        if (const double x = designs::stepped(distribution, step, u); bounds != nullptr && !bounds->contains(x))
             place.refuse(
                 fmt::format("values round to {}, where '{}' has no value: give a smaller step, or {} to the "
                             "distribution",

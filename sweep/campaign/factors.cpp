@@ -103,6 +103,27 @@ const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) 
         name.json().is_string() ? nearest_word(name.json().get<std::string>(), names_of(scene.parameters)) : "");
 }
 
+Factor read_factor(const Section& section, const ParameterSpec& parameter, const std::filesystem::path& folder) {
+    (void)section.word("role", "control");  // read again from the stored file: remarks_in
+    const auto key = range_key(section);
+    check_key(section, key, parameter);
+    Factor factor{.name = parameter.name, .range = {}, .unit = parameter.unit};
+    if (key == "between") {
+        factor.range = read_between(section, parameter, folder);
+    } else if (key == "levels") {
+        factor.range = read_levels(section, parameter, folder);
+    } else if (key != "sample") {
+        std::visit([&](auto&& range) { factor.range = std::move(range); },
+                   read_distribution(section, key, parameter, folder));
+    }
+    if (key == "levels" || key == "sample")
+        refuse_steps(section, fmt::format("the values of a factor with \"{}\" are taken as they are", key));
+    else
+        factor.step = read_step(section, parameter, factor);
+    read_ties(section, factor);
+    return factor;
+}
+
 std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, const std::filesystem::path& folder) {
     std::vector<Factor> factors;
     std::vector<NamedColumn> sampled;
@@ -112,30 +133,12 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
         if (std::ranges::find(factors, parameter.name, &Factor::name) != factors.end()) {
             section.at("name").refuse("this factor is there twice");
         }
-        (void)section.word("role", "control");  // read again from the stored file: remarks_in
-        const auto key = range_key(section);
-        check_key(section, key, parameter);
-        Factor factor{parameter.name, {}};
-        if (key == "between") {
-            factor.range = read_between(section, parameter, folder);
-        } else if (key == "levels") {
-            factor.range = read_levels(section, parameter, folder);
-        } else if (key == "sample") {
-            sampled.push_back(read_named_column(section, factors.size(), parameter, folder));
-        } else {
-            std::visit([&](auto&& range) { factor.range = std::move(range); },
-                       read_distribution(section, key, parameter, folder));
-        }
-        if (key == "levels" || key == "sample")
-            refuse_steps(section, fmt::format("the values of a factor with \"{}\" are taken as they are", key));
-        else
-            factor.step = read_step(section, parameter, factor);
-        read_ties(section, factor);
-        factors.push_back(std::move(factor));
+        if (section.find("sample")) sampled.push_back(read_named_column(section, factors.size(), parameter, folder));
+        factors.push_back(read_factor(section, parameter, folder));
     }
     read_samples(sampled, factors, scene, folder);
     for (std::size_t j = 0; j < factors.size(); ++j)
-        if (!factors[j].when.empty() && column_of(std::get_if<stats::Distribution>(&factors[j].range)) != nullptr)
+        if (!factors[j].when.empty() && column_of(factors[j].distribution()) != nullptr)
             place[j]["when"].refuse("factors that take rows of one sample count at every point: leave out 'when'");
     if (factors.empty()) place.refuse("a campaign varies at least one factor");
     return factors;
@@ -161,6 +164,7 @@ void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesyste
         space.expressions.push_back(
             {key, std::move(*formula), std::holds_alternative<std::int64_t>(parameter->default_value)});
         if (is_program(space.scene->name)) refuse_mixed_units(space.expressions.back(), *space.scene);
+        refuse_degrees(space.expressions.back(), *space.scene);
     }
     space.expressions = in_order(std::move(space.expressions));
 }

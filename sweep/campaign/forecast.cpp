@@ -3,6 +3,7 @@
 #include "sweep/campaign/file_contents.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_warnings.hpp"
 #include "sweep/designs/calibration_layout.hpp"
 
 #include <fmt/format.h>
@@ -72,7 +73,10 @@ Prediction predict(const SceneInfo& scene, const Inputs& inputs, const Files& fi
 
 Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
     NamedFiles named;
-    return predict(scene, inputs, named.of(inputs));
+    const Files& files = named.of(inputs);
+    Prediction prediction = predict(scene, inputs, files);
+    if (prediction.impossible.empty() && scene.warnings) prediction.warnings = scene.warnings(inputs, files);
+    return prediction;
 }
 
 std::function<bool(const Inputs&)> acceptance(const SceneInfo& scene) {
@@ -150,7 +154,7 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
             warnings.push_back(fmt::format(
                 "the discrepancy of {0} is 0: where the simulation is not exactly the experiment, the posterior "
                 "will be too narrow, about a wrong setting",
-                target.observable));
+                target.shown_observable()));
     std::ranges::sort(warnings);
     const auto twice = std::ranges::unique(warnings);
     warnings.erase(twice.begin(), twice.end());
@@ -207,6 +211,7 @@ std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& f
         warnings.emplace_back(
             "execution.threads has no effect on a program: program.cores says how many cores a case of it takes");
     warn_of_counts(campaign, warnings);
+    for (auto& sentence : program_warnings(campaign)) warnings.push_back(std::move(sentence));
     if (auto never = never_converges(campaign); !never.empty()) warnings.push_back(std::move(never));
     return warnings;
 }

@@ -44,6 +44,7 @@ struct Prediction {
     bool proven = false;     ///< the answer is known without simulation
     CostEstimate cost;       ///< 0 if it is proven or impossible
     std::string impossible;  ///< why the combination of its inputs is impossible; empty: it is possible
+    std::vector<Warning> warnings = {};
 };
 /// Returns the prediction. Throws std::invalid_argument if a file among the inputs cannot be read.
 [[nodiscard]] Prediction predict(const SceneInfo& scene, const Inputs& inputs);

@@ -1,6 +1,7 @@
 #include "sweep/campaign/keys.hpp"
 
 #include "stats/convergence_rule.hpp"
+#include "stats/distribution.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,13 @@ constexpr auto rule_words = [] {
     std::ranges::transform(stats::convergence_rules, words.begin(), &stats::RuleInfo::name);
     return words;
 }();
+
+/// Returns the field with its member.
+template <auto member>
+constexpr Field of(Field field) {
+    field.at = fields::at<member>;
+    return field;
+}
 
 /// Without its default.
 Field key_of(const designs::OptionSpec& option) {
@@ -150,8 +158,8 @@ std::span<const Field> uniform_keys() {
 
 std::span<const Field> normal_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        needed({"mean", Kind::value, "mean, a number or a text with a unit"}),
-        needed({"sd", Kind::value, "standard deviation, above 0"}),
+        needed(of<&stats::Normal::mean>({"mean", Kind::value, "mean, a number or a text with a unit"})),
+        needed(of<&stats::Normal::sd>({"sd", Kind::value, "standard deviation, above 0"})),
         truncated_low,
         truncated_high,
     });
@@ -160,8 +168,10 @@ std::span<const Field> normal_keys() {
 
 std::span<const Field> lognormal_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        needed({"median", Kind::value, "median, a number or a text with a unit, above 0"}),
-        {"sigma", Kind::number, "standard deviation of the natural logarithm", {}, {0, 10, true}},
+        needed(
+            of<&stats::Lognormal::median>({"median", Kind::value, "median, a number or a text with a unit, above 0"})),
+        of<&stats::Lognormal::sigma>(
+            {"sigma", Kind::number, "standard deviation of the natural logarithm", {}, {0, 10, true}}),
         {"ratio", Kind::number, "exp(sigma): 68 % lie between median/ratio and median*ratio", {}, {1, 20'000, true}},
         truncated_low,
         truncated_high,
@@ -171,8 +181,10 @@ std::span<const Field> lognormal_keys() {
 
 std::span<const Field> weibull_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        needed({"scale", Kind::value, "63.2 % are smaller: a number or a text with a unit, above 0"}),
-        needed({"shape", Kind::number, "exponent: P(value > x) = exp(-(x/scale)^shape)", {}, {0, 1000, true}}),
+        needed(of<&stats::Weibull::scale>(
+            {"scale", Kind::value, "63.2 % are smaller: a number or a text with a unit, above 0"})),
+        needed(of<&stats::Weibull::shape>(
+            {"shape", Kind::number, "exponent: P(value > x) = exp(-(x/scale)^shape)", {}, {0, 1000, true}})),
         truncated_low,
         truncated_high,
     });
@@ -181,8 +193,9 @@ std::span<const Field> weibull_keys() {
 
 std::span<const Field> gumbel_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        needed({"location", Kind::value, "likeliest value, a number or a text with a unit; 36.8 % are smaller"}),
-        needed({"scale", Kind::value, "width, above 0: sd times sqrt(6)/pi"}),
+        needed(of<&stats::Gumbel::location>(
+            {"location", Kind::value, "likeliest value, a number or a text with a unit; 36.8 % are smaller"})),
+        needed(of<&stats::Gumbel::scale>({"scale", Kind::value, "width, above 0: sd times sqrt(6)/pi"})),
         truncated_low,
         truncated_high,
     });
@@ -191,19 +204,21 @@ std::span<const Field> gumbel_keys() {
 
 std::span<const Field> triangular_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
-        needed({"mode", Kind::value, "likeliest value, from low to high"}),
-        needed({"high", Kind::value, "largest value"}),
+        needed(of<&stats::Triangular::low>({"low", Kind::value, "smallest value, a number or a text with a unit"})),
+        needed(of<&stats::Triangular::mode>({"mode", Kind::value, "likeliest value, from low to high"})),
+        needed(of<&stats::Triangular::high>({"high", Kind::value, "largest value"})),
     });
     return keys;
 }
 
 std::span<const Field> beta_keys() {
     static constexpr auto keys = std::to_array<Field>({
-        needed({"low", Kind::value, "smallest value, a number or a text with a unit"}),
-        needed({"high", Kind::value, "largest value"}),
-        needed({"a", Kind::number, "first shape parameter: the density grows as (x - low)^(a-1)", {}, shapes_of_beta}),
-        needed({"b", Kind::number, "second shape parameter: it falls as (high - x)^(b-1)", {}, shapes_of_beta}),
+        needed(of<&stats::Beta::low>({"low", Kind::value, "smallest value, a number or a text with a unit"})),
+        needed(of<&stats::Beta::high>({"high", Kind::value, "largest value"})),
+        needed(of<&stats::Beta::a>(
+            {"a", Kind::number, "first shape parameter: the density grows as (x - low)^(a-1)", {}, shapes_of_beta})),
+        needed(of<&stats::Beta::b>(
+            {"b", Kind::number, "second shape parameter: it falls as (high - x)^(b-1)", {}, shapes_of_beta})),
     });
     return keys;
 }
@@ -215,6 +230,18 @@ std::span<const Field> sample_keys() {
         {"column", Kind::text, "its column; without it the name of the factor"},
     });
     return keys;
+}
+
+std::span<const Type> distribution_types() {
+    using Form = stats::Distribution::Form;
+    static const auto types = std::to_array<Type>(
+        {fields::alternative<Form, stats::Normal>("normal", "normal distribution", normal_keys()),
+         fields::alternative<Form, stats::Lognormal>("lognormal", "lognormal distribution", lognormal_keys()),
+         fields::alternative<Form, stats::Weibull>("weibull", "Weibull distribution", weibull_keys()),
+         fields::alternative<Form, stats::Gumbel>("gumbel", "Gumbel distribution", gumbel_keys()),
+         fields::alternative<Form, stats::Triangular>("triangular", "triangular distribution", triangular_keys()),
+         fields::alternative<Form, stats::Beta>("beta", "beta distribution", beta_keys())});
+    return types;
 }
 
 std::span<const Field> convergence_keys() {
@@ -281,9 +308,9 @@ std::span<const Field> calibration_keys() {
         {"experiments", Kind::object,
          "several experiments with the same factors, each a scene or machine with its fixed values"},
         needed({"targets", Kind::array, "what was measured, one entry each"}),
-        needed({"discrepancy", Kind::object,
-                "of each observable measured: how far the simulation itself may be from the experiment, as a standard "
-                "deviation; with experiments an object of these for each"}),
+        {"discrepancy", Kind::object,
+         "of each observable with a measured value: how far the simulation itself may be from the experiment, as a "
+         "standard deviation; with experiments an object of these for each"},
         {"waves", Kind::whole, "waves of points at most", "4", {1, 100}},
         {"points_per_wave", Kind::whole, "settings of a wave; each is run under every condition", "40", {12, 10'000}},
         {"checks", Kind::whole, "settings drawn from the posterior that are run to check it", "8", {1, 1000}},
@@ -319,7 +346,22 @@ std::span<const Field> target_keys() {
          "standard error of the measurement; of a curve that of every line without one of its own",
          {},
          {0, measurable.high}},
+        {"without_value", Kind::object, "of a scalar: how many of the measured runs had no value, such as jams"},
         {"inputs", Kind::object, "the condition it was measured under: parameters of the scene"},
+    });
+    return keys;
+}
+
+std::span<const Field> without_value_keys() {
+    static constexpr auto keys = std::to_array<Field>({
+        needed({"count", Kind::whole, "measured runs without a value", {}, {0, 1000}}),
+        needed({"of", Kind::whole, "measured runs", {}, {1, 1000}}),
+        needed({"discrepancy",
+                Kind::number,
+                "how far the simulation's probability may be from the experiment's where it is 1/2, as a standard "
+                "deviation",
+                {},
+                {0, 0.45}}),
     });
     return keys;
 }

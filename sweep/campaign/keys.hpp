@@ -30,12 +30,15 @@ inline constexpr std::string_view schema_key = "$schema";
 [[nodiscard]] std::span<const Field> triangular_keys();
 [[nodiscard]] std::span<const Field> beta_keys();
 [[nodiscard]] std::span<const Field> sample_keys();
+/// Returns the distributions with figures, in the order of stats::Distribution::Form.
+[[nodiscard]] std::span<const Type> distribution_types();
 [[nodiscard]] std::span<const Field> convergence_keys();
 [[nodiscard]] std::span<const Field> accuracy_keys();
 [[nodiscard]] std::span<const Field> model_keys();
 [[nodiscard]] std::span<const Field> calibration_keys();
 [[nodiscard]] std::span<const Field> experiment_keys();
 [[nodiscard]] std::span<const Field> target_keys();
+[[nodiscard]] std::span<const Field> without_value_keys();
 [[nodiscard]] std::span<const Field> stop_keys();
 [[nodiscard]] std::span<const Field> limits_keys();
 [[nodiscard]] std::span<const Field> execution_keys();

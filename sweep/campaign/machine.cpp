@@ -103,7 +103,8 @@ Json answering_part(const Machine& machine) {
             hashes.push_back(content_hash(machine.files.find(name)->second));
         identity[place] = std::move(hashes);
     });
-    identity.erase("name"), identity.erase("summary"), identity.erase("main"), identity.erase("accuracy");
+    identity.erase("name"), identity.erase("summary"), identity.erase("main"), identity.erase("shown"),
+        identity.erase("accuracy");
     if (identity.contains("parameters"))
         for (auto& parameter : identity["parameters"])
             parameter.erase("meaning"), parameter.erase("bounds"), parameter.erase("above");
@@ -137,7 +138,8 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::vector<
                                 ? dem::Method::Precision::double_precision
                                 : dem::Method::Precision::mixed;
     spec.time_step = input_number(inputs, "time_step");
-    const double longest = machine::time_step_of(spec, 1, machine::fastest_of(spec));
+    const double longest =
+        machine::time_step_of(spec, 1, spec.impact_speed ? *spec.impact_speed : machine::fastest_of(spec));
     if (spec.time_step > longest)
         throw input_error("time_step", fmt::format("{:.4g}", spec.time_step),
                           fmt::format("must be at most {:.4g} s, the shortest Rayleigh time or contact time of these "
@@ -152,11 +154,13 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::vector<
 }
 
 machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& inputs, const Files& files) {
-    MachineReading reading(machine.files, machine_scope(top, machine.parameters, inputs));
+    std::map<std::string, std::string_view, std::less<>> named(machine.files.begin(), machine.files.end());
     for (const auto& [parameter, contents] : files)
-        reading.chosen.emplace(std::get<std::string>(inputs.find(parameter)->second), contents);
+        named.insert_or_assign(std::get<std::string>(inputs.find(parameter)->second), contents);
+    MachineReading reading(machine_scope(top, machine.parameters, inputs, named), machine.observables);
     reading.particles_scale = input_number(inputs, "particles_scale");
     reading.stiffness_scale = input_number(inputs, stiffness_parameter);
+    if (takes_ratio(*machine.document)) reading.aspect_ratio = input_number(inputs, ratio_parameter);
     reading.spec.gravity = gravity_of(top, reading.scope);
     read_phase_names(top, reading);
     (void)reading.scope.read(top, "shaking", &reading.spec.shaking);
@@ -169,12 +173,15 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     refuse_rolling_shapes(top, reading);
     read_walls(top, reading);
     read_fills(top, reading);
+    read_removals(top, reading);
     read_feeds(top, reading);
     read_measures(top, reading);
     read_phases(top, reading);
     if (reading.spec.fills.empty() && reading.spec.feeds.empty())
         throw input_error(top.place().path(), "", "a machine needs particles: \"fill\" or \"feed\"");
     read_surroundings(top, reading);
+    if (const auto speed = top.find("impact_speed"))
+        reading.spec.impact_speed = reading.scope.number(*speed, "m/s", positive_number);
     try {
         set_time_step(reading.spec, inputs, reading.phase_paths);
     } catch (const std::invalid_argument& why) {  // walls that cannot be in this domain
@@ -201,6 +208,7 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
     machine->parameters = read_machine_parameters(top);
     machine->accuracy = read_machine_accuracy(top, machine->parameters);
     machine->observables = machine_observables(top);
+    machine->shown = shown_observables(top);
     for_each_file(*machine->document, [&](const Json::json_pointer& pointer) {
         const Cursor place = cursor_at(*machine->document, root, pointer);
         for (const auto& name : expansions(place.text(), machine->parameters)) {
@@ -221,17 +229,6 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
 }
 
 }  // namespace
-
-std::string_view MachineReading::contents(const Cursor& place) const {
-    const std::string name = scope.text(place);
-    if (const auto given = chosen.find(name); given != chosen.end()) return given->second;
-    const auto found = files.find(name);
-    if (found == files.end())
-        place.refuse(file_word(name)        ? fmt::format("the contents of {} are not given", file_word(name)->path)
-                     : name == place.text() ? fmt::format("there is no file '{}'", name)
-                                            : fmt::format("the case names no file here, but '{}'", name));
-    return found->second;
-}
 
 std::shared_ptr<const Machine> make_machine(Json document, std::string root, const FileReader& read_file) {
     std::map<std::string, std::string, std::less<>> made;

@@ -35,6 +35,7 @@ struct Machine {
     std::map<std::string, std::string, std::less<>> files;  ///< contents, by the name in the document
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
+    std::vector<MainObservable> shown;                    ///< in short tables; empty: the first ones
     std::map<std::string, Inputs, std::less<>> accuracy;  ///< as of SceneInfo
 };
 

@@ -47,6 +47,14 @@ std::uint8_t all_but(const Cursor& only, const MachineReading& reading) {
     return static_cast<std::uint8_t>(passing);
 }
 
+machine::Again read_again(const Section& section, const MachineReading& reading) {
+    machine::Again again;
+    reading.scope.read(section, machine_keys::again(), &again);
+    again.each = reading.copies[reading.scope.place_in(section.at("each"), reading.phases, "phase")];
+    if (const auto first = section.find("first")) again.first = reading.scope.whole(*first, {0, most_repeats});
+    return again;
+}
+
 /// Reads "glued" of "contacts". A property as in other contacts is none of its own.
 void read_glued(const Section& contacts, MachineReading& reading, const dem::Material& others) {
     dem::Surface& glued = reading.spec.glued;
@@ -157,11 +165,16 @@ void read_walls(const Section& top, MachineReading& reading) {
                                                 : material_of_walls(place, reading);
                 for (const std::size_t particles : reading.of_particles)
                     wall.materials.push_back(reading.contacts[particles][of]);
+                wall.scattered = reading.scope.vector(section, "scattered", "m");
+                wall.fitted = section.find("fit").has_value();
+                if (const auto again = section.find("again"))
+                    wall.again = read_again(Section(*again, machine_keys::again()), reading);
                 if (const auto only = section.find("only")) wall.passing = all_but(*only, reading);
                 numbers.push_back(reading.spec.walls.size());
                 reading.spec.walls.push_back(std::move(wall));
             }
         });
+        reading.scope.set_wall(name, numbers.empty() ? std::nullopt : std::optional(numbers.front()));
     }
 }
 
@@ -186,6 +199,9 @@ geometry::Shape read_shape(const Section& wall, const MachineReading& reading) {
             given->refuse(
                 "only stl, triangles, rectangle, perforated, disc and box are placed; other shapes say where they are");
     if (const auto scale = wall.find("scale"); scale && !stl) scale->refuse("only an stl file has a scale");
+    const auto fit = wall.find("fit");
+    if (fit && !stl) fit->refuse("only an stl file is fitted");
+    if (fit && wall.find("turned")) wall.at("turned").refuse("a surface that is fitted is not turned");
     if (const auto angle = wall.find("facet_angle"); angle && type != nullptr)
         angle->refuse("only stl and triangles have facets of a curved surface");
 
@@ -194,6 +210,14 @@ geometry::Shape read_shape(const Section& wall, const MachineReading& reading) {
         scope.read(Section(*turned, machine::placement_fields()), machine::placement_fields(), &placement);
     const double facets = scope.number(wall, "facet_angle", "rad", 0, {0, 0.76});
     try {
+        if (fit) {
+            const auto mesh =
+                machine::fitted_mesh(reading.contents(place), scope.number(wall, "scale", "m", 1, positive_number),
+                                     facets, scope.number(*fit, "m", positive_number));
+            geometry::TriangleSurface moved = mesh.surface();
+            for (auto& corner : moved.corners) corner = geometry::operator+(corner, placement.at);
+            return geometry::Mesh(std::move(moved), mesh.one_contact_angle());
+        }
         if (stl)
             return machine::stl_mesh(reading.contents(place), scope.number(wall, "scale", "m", 1, positive_number),
                                      facets, placement);

@@ -1,6 +1,10 @@
 // Which values of a measurement count, and from when on its times do: "shares", "while" and "since".
 #include "sweep/campaign/machine_reading.hpp"
 
+#include "solver/machine/reduction.hpp"
+
+#include <array>
+
 namespace grainsweep::campaign {
 namespace {
 
@@ -28,6 +32,15 @@ void read_while(const Cursor& place, const MachineReading& reading, machine::Mea
         if (!(into.only.back().low < into.only.back().high))
             bounds.refuse("the lower bound must be below the upper one");
     }
+}
+
+void read_repeats(const Cursor& place, const MachineReading& reading, machine::Measure& into) {
+    using Repeats = machine::Measure::Repeats;
+    constexpr std::array<std::string_view, 3> words = {"all", "last", "each"};
+    const auto word = reading.scope.word(place, words);
+    into.repeats = word == "each" ? Repeats::each : word == "last" ? Repeats::last : Repeats::all;
+    if (into.repeats == Repeats::each && machine::find_reduction(into.reduction)->shape != Shape::scalar)
+        place.refuse("'each' is of measurements that are one number");
 }
 
 }  // namespace
@@ -59,11 +72,12 @@ void read_counting(const Cursor& place, const MachineReading& reading, machine::
     if (place.json().contains("shares")) read_shares(place["shares"], reading, into);
     if (place.json().contains("while")) read_while(place["while"], reading, into);
     if (place.json().contains("relative")) into.relative = place["relative"].flag();
+    if (place.json().contains("repeats")) read_repeats(place["repeats"], reading, into);
     if (place.json().contains("every")) into.every = reading.scope.whole(place["every"], {1, 1e6});
     read_scale(place, reading, into.scale);
     if (!place.json().contains("since")) return;
     const Cursor since = place["since"];
-    if (into.reduction != "series") since.refuse("only a series has times");
+    if (machine::find_reduction(into.reduction)->shape != Shape::series) since.refuse("only a series has times");
     into.since = reading.copies[reading.scope.place_in(since, reading.phases, "phase")].front();
     for (std::size_t p = 0; p < *into.since; ++p)
         if (machine::holds(into.during, p))

@@ -25,6 +25,13 @@ EntryKind entry_kind(const Cursor& place) {
     return place.json().contains("time_of") ? EntryKind::time_of : EntryKind::probe;
 }
 
+/// Returns the name of the standard error of a measurement.
+std::string error_name(const Cursor& place, const std::string& name) {
+    if (!place.json().contains("error")) return name + "_error";
+    require_name(place["error"], place["error"].text());
+    return place["error"].text();
+}
+
 /// The text of an expression, alone or with its unit and meaning.
 Cursor expression_of(const Cursor& place) {
     return place.json().is_string() ? place : Section(place, machine_keys::expression()).at("expression");
@@ -46,24 +53,28 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
             found = probe;
         }
     }
-    const WordList probes = names_of(machine::probe_catalogue());
     if (!unknown.empty()) {
-        WordList known = probes;
+        WordList known = names_of(machine::probe_catalogue());
         for (const Field& key : machine_keys::measure()) known.push_back(key.name);
         throw input_error(path_of(place.path(), unknown), "", "there is no such probe", nearest_word(unknown, known));
     }
     if (found == nullptr)
         place.refuse(fmt::format("a measurement needs one of the {} probes, such as 'mass', 'profile' or 'wall_torque'",
-                                 probes.size()));
+                                 machine::probe_catalogue().size()));
     return *found;
+}
+
+std::string_view default_reduction(const machine::ProbeInfo& probe) {
+    if (probe.over.empty()) return probe.so_far ? "last" : "mean";
+    return probe.so_far ? "last_profile" : "profile";
 }
 
 const machine::ReductionInfo& reduction_of(const Cursor& place, const machine::ProbeInfo& probe) {
     const bool profile = !probe.over.empty();
+    if (!place.json().contains("as")) return *machine::find_reduction(default_reduction(probe));
     std::vector<std::string_view> words;
     for (const auto& reduction : machine::reduction_catalogue())
         if ((reduction.shape == Shape::profile) == profile) words.push_back(reduction.name);
-    if (!place.json().contains("as")) return *machine::find_reduction(profile ? "profile" : "mean");
     return *machine::find_reduction(place["as"].word(words));
 }
 
@@ -108,15 +119,16 @@ machine::OptionValue option_value(const Cursor& place, const Field& option, cons
 
 machine::Options read_options(const Cursor& place, const machine::ProbeInfo& probe, const MachineReading& reading) {
     machine::Options options;
-    const WordList known = names_of(probe.options);
-    for (const auto& [key, here] :
-         place.members(fmt::format("must be an object with the options of '{}'", probe.name))) {
+    if (!place.json().is_object()) place.refuse(fmt::format("must be an object with the options of '{}'", probe.name));
+    for (const auto& [key, here] : place.members("")) {
         const auto option = std::ranges::find(probe.options, key, &Field::name);
-        if (option == probe.options.end())
+        if (option == probe.options.end()) {
+            const WordList known = names_of(probe.options);
             throw input_error(
                 here.path(), "",
                 fmt::format("'{}' has {}", probe.name, probe.options.empty() ? "no options" : in_words(known)),
                 nearest_word(key, known));
+        }
         options.set(key, option_value(here, *option, reading));
     }
     for (const Field& option : probe.options)
@@ -152,10 +164,15 @@ void put_in_order(const Cursor& all, std::vector<machine::Derived>& derived) {
 /// Expression of measurements and of names that are numbers in this case.
 machine::Derived derived_of(const std::string& name, const Cursor& text, const std::vector<std::string>& known,
                             const MachineScope& scope) {
-    auto names = known;
-    const auto constants = scope.names();
-    names.insert(names.end(), constants.begin(), constants.end());
-    const auto parsed = Formula::parse(text.text(), names);
+    auto parsed = Formula::parse(text.text(), names_in(text.text(), [&](std::string_view used) {
+                                     return scope.has_number(used) || std::ranges::find(known, used) != known.end();
+                                 }));
+    if (!std::holds_alternative<Formula>(parsed)) {  // the sentence finds the nearest name
+        auto names = known;
+        const auto constants = scope.names();
+        names.insert(names.end(), constants.begin(), constants.end());
+        parsed = Formula::parse(text.text(), names);
+    }
     if (const auto* why = std::get_if<std::string>(&parsed)) text.refuse(*why);
     const auto& formula = std::get<Formula>(parsed);
     machine::Derived derived{name, {}, {}};
@@ -179,7 +196,8 @@ machine::Derived derived_of(const std::string& name, const Cursor& text, const s
 }
 
 /// A measurement that is undefined where the condition holds.
-machine::Derived withdrawn(machine::Derived condition) {
+machine::Derived withdrawn(machine::Derived condition, std::string error) {
+    condition.error = std::move(error);
     auto value = [name = condition.name,
                   holds = std::move(condition.value)](const std::map<std::string, double, std::less<>>& measured) {
         return holds(measured) != 0 ? std::numeric_limits<double>::quiet_NaN() : measured.find(name)->second;
@@ -198,8 +216,10 @@ void read_measures(const Section& top, MachineReading& reading) {
         const Cursor place = all[name];
         if (entry_kind(place) != EntryKind::probe) continue;
         const auto& probe = probe_of(place);
+        if (place.json().contains("when") && reading.scope.number(place["when"], "1") == 0) continue;
         machine::Measure measure;
         measure.name = name;
+        measure.error = error_name(place, name);
         measure.probe = probe.name;
         measure.options = read_options(place[probe.name], probe, reading);
         measure.reduction = reduction_of(place, probe).name;
@@ -219,7 +239,7 @@ void read_measures(const Section& top, MachineReading& reading) {
     }
     // Expressions may use parameters, "let", measurements, and one another.
     std::vector<std::string> known;
-    for (const auto& observable : machine_observables(top))
+    for (const auto& observable : reading.observables)
         if (observable.shape == Shape::scalar) known.push_back(observable.name);
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
@@ -229,8 +249,10 @@ void read_measures(const Section& top, MachineReading& reading) {
             if (std::ranges::find(spec.derived.back().needs, name) != spec.derived.back().needs.end())
                 place.refuse("it depends on itself");
         }
-        if (kind == EntryKind::probe && place.json().contains("unless"))
-            spec.derived.push_back(withdrawn(derived_of(name, place["unless"], known, reading.scope)));
+        if (kind == EntryKind::probe && place.json().contains("unless") &&
+            std::ranges::find(reading.measures, name) != reading.measures.end())
+            spec.derived.push_back(
+                withdrawn(derived_of(name, place["unless"], known, reading.scope), error_name(place, name)));
     }
     put_in_order(all, spec.derived);
 }
@@ -276,6 +298,15 @@ void add_phase_observables(const Cursor& phases, bool repeated, std::vector<Obse
 
 }  // namespace
 
+std::vector<MainObservable> shown_observables(const Section& top) {
+    std::vector<MainObservable> all;
+    if (const auto place = top.find("shown"))
+        for (const auto& one : place->elements())
+            for (const auto& [name, words] : one.members("must be {MEASUREMENT: its meaning in a few words}"))
+                all.push_back({name, words.text()});
+    return all;
+}
+
 std::vector<ObservableSpec> machine_observables(const Section& top) {
     std::vector<ObservableSpec> all;
     const Cursor measures = top.at("measure");
@@ -306,16 +337,18 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         const auto& probe = probe_of(place);
         const auto& reduction = reduction_of(place, probe);
         const auto meaning = meaning_of(place, fmt::format("{}: {}", probe.meaning, reduction.meaning));
-        std::string over = reduction.shape == Shape::series    ? "time, s"
+        const bool each = place.json().contains("repeats") && place["repeats"].text() == "each";
+        const Shape shape = each ? Shape::profile : reduction.shape;
+        std::string over = each                                ? "number of the repeat"
+                           : reduction.shape == Shape::series  ? "time, s"
                            : reduction.shape == Shape::profile ? std::string(probe.over)
                                                                : std::string();
         const bool relative = place.json().contains("relative") && place["relative"].flag();
         std::string unit = relative ? "1" : std::string(probe.unit) + std::string(reduction.unit);
         unit = scale_text(place, "unit", unit), over = scale_text(place, "over", over);
-        all.push_back(
-            {name, unit, meaning, reduction.shape, over, reduction.shape == Shape::scalar ? why_nothing(place) : ""});
-        if (reduction.error != nullptr)
-            all.push_back({name + "_error",
+        all.push_back({name, unit, meaning, shape, over, shape == Shape::scalar ? why_nothing(place) : ""});
+        if (reduction.error != nullptr && !each)
+            all.push_back({error_name(place, name),
                            unit,
                            fmt::format("standard error of {}, which counts how long values stay alike", name),
                            Shape::scalar,
@@ -361,9 +394,15 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         }
     }
     add_phase_observables(top.at("phases"), false, all);
+    const auto place_of = [&all](const Cursor& place, const std::string& name) {
+        const auto found = std::ranges::find(all, name, &ObservableSpec::name);
+        if (found == all.end()) place.refuse("there is no such measurement", nearest_word(name, names_of(all)));
+        return found;
+    };
+    if (const auto shown = top.find("shown"))
+        for (const auto& one : shown_observables(top)) (void)place_of(*shown, one.name);
     if (const auto main = top.find("main")) {
-        const auto found = std::ranges::find(all, main->text(), &ObservableSpec::name);
-        if (found == all.end()) main->refuse("there is no such measurement", nearest_word(main->text(), names_of(all)));
+        const auto found = place_of(*main, main->text());
         std::rotate(all.begin(), found, found + 1);
     }
     std::set<std::string> names;

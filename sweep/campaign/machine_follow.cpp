@@ -1,6 +1,7 @@
 // Courses of a wall over time, as a table or an expression of the time t. "follow" of a motion becomes motions of
 // constant velocity from time to time, so that the wall is at the stated place at every stated time. The load of a
 // press or a drive changes along straight lines between its values.
+#include "sweep/campaign/case.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@ namespace grainsweep::campaign {
 namespace {
 
 using geometry::operator*;
+using geometry::norm;
 using geometry::operator-;
 using machine::Vec3;
 
@@ -92,6 +94,19 @@ Course course_of_expression(const Section& follow, const MachineScope& outer) {
     return course;
 }
 
+/// A wall starts where it is drawn.
+void require_start(const Course& course, const Section& follow) {
+    double largest = 0;
+    for (const Vec3& place : course.places) largest = std::max(largest, norm(place));
+    if (norm(course.places.front()) <= 1e-9 * largest) return;
+    follow.place().refuse(fmt::format(
+        "its first {} is {}, and must be 0: a wall starts where it is drawn; subtract the first value from all",
+        course.turns ? "angle" : "position",
+        course.turns ? shortest(course.places.front()[0])
+                     : fmt::format("[{}, {}, {}]", shortest(course.places.front()[0]),
+                                   shortest(course.places.front()[1]), shortest(course.places.front()[2]))));
+}
+
 }  // namespace
 
 geometry::LoadCourse read_load(const Section& motion, std::string_view name, std::string_view unit,
@@ -143,6 +158,7 @@ std::vector<machine::WallMotion> read_follow(const Section& motion, const Machin
             if (const auto place = follow.find(key)) place->refuse("belongs to angles");
     const Vec3 axis = course.turns ? scope.direction(needed_key(follow, "axis")) : Vec3{};
     const Vec3 through = scope.vector(follow, "through", "m");
+    require_start(course, follow);
     std::vector<machine::WallMotion> motions;
     for (std::size_t k = 1; k < course.times.size(); ++k) {
         const double begin = start + course.times[k - 1], end = start + course.times[k];

@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, 6> spread_words = {"monodisperse", "unifo
                                                           "weibull_wide", "weibull_narrow", "file"};
 constexpr std::array<std::string_view, 3> file_words = {"sizes", "stl", "packing"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
-constexpr std::array<std::string_view, 4> as_words = {"lattice", "random", "rain", "packed"};
+constexpr std::array<std::string_view, 5> as_words = {"lattice", "random", "rain", "packed", "cells"};
+constexpr std::array<std::string_view, 3> part_words = {"centre", "part", "whole"};
 
 constexpr auto parameter_keys = std::to_array<Field>({
     {"unit", MachineKey::text,
@@ -35,12 +36,21 @@ constexpr auto parameter_keys = std::to_array<Field>({
     {"file",
      MachineKey::word,
      "it is a file, of sizes, an stl or a packing: \"{NAME}\" where a file is named stands for it; its default is a "
-     "word",
+     "word, and so may be others in \"words\"",
      {},
      {},
      file_words},
     {"only_if", MachineKey::object,
      "where it has an effect: by the name of another parameter 0, \"set\" (not 0), a word or a list of words"},
+});
+
+constexpr auto extent_keys = std::to_array<Field>({
+    needed({"stl", MachineKey::text, "the file, as of a wall"}),
+    {"scale", MachineKey::quantity, "length of the file's unit, m", "1"},
+    {"fit", MachineKey::quantity, "as of a wall, m"},
+    {"facet_angle", MachineKey::quantity, "as of a wall, rad", "0"},
+    needed({"along", MachineKey::direction, "the direction"}),
+    {"when", MachineKey::quantity, "0: there is none, and it is 0", "1"},
 });
 
 constexpr auto gravity_keys = std::to_array<Field>({
@@ -124,6 +134,13 @@ constexpr std::array packing_keys = {
           "instead: a CSV file with the header x,y,z, centres in diameters; or \"{NAME}\" of a parameter that is one"},
 };
 
+using machine::Again;
+constexpr std::array again_keys = {
+    needed(Field{"each", MachineKey::text, "the phase, which repeats"}),
+    fields::vector<&Again::by>("by", "m", "how far it is moved on, each time but the first"),
+    Field{"first", MachineKey::quantity, "time of the phase from which on it is there, counted from 0", "0"},
+};
+
 using machine::Fill;
 constexpr std::array fill_keys = {
     Field{"species", MachineKey::text, "the species; or a mix"},
@@ -137,8 +154,15 @@ constexpr std::array fill_keys = {
         "as",
         "lattice: 1.15 diameters apart, shaken by a twentieth, from the bottom up; random: at random places; rain: "
         "layer above layer at random places, to fall one after the other; packed: cut from a random close packing, "
-        "touching",
+        "touching; cells: one in each cell of a grid, shaken so that none touch, from the bottom up",
         as_words, "\"lattice\""),
+    fields::quantity<&Fill::spacing>("spacing", "1", "of cells: their least width in largest diameters", {1, 10}),
+    Field{"exact", MachineKey::flag,
+          "true: with mass or volume: particles are drawn until theirs is nearest to it, whatever their number",
+          "false"},
+    Field{"at", MachineKey::text, "phase at whose beginning it is filled, each time; default: at the start"},
+    Field{"counter", MachineKey::text, "with at: name that counts the times in expressions, from 0"},
+    fields::flag<&Fill::on_top>("on_top", "true: the region is raised above the particles that lie in it"),
     fields::vector<&Fill::velocity>("velocity", "m/s", ""),
     fields::quantity<&Fill::shaken>("shaken", "m/s", "random velocity in each direction, up to this",
                                     no_negative_number),
@@ -156,6 +180,16 @@ constexpr std::array fill_keys = {
     Field{"name", MachineKey::text,
           "with packing: of its observables NAME_particles and NAME_packing, the numbers of spheres in the region and "
           "in the whole packing"},
+    Field{"when", MachineKey::quantity, "0: it is left out", "1"},
+};
+
+using machine::Removal;
+constexpr std::array removal_keys = {
+    needed(fields::region<&Removal::in>("in", "the region")),
+    fields::choice<&Removal::of>("of", "what of a particle lies in the region: its centre, a part, or the whole",
+                                 part_words, "\"centre\""),
+    needed({"at", MachineKey::text, "phase at whose beginning they are taken away, each time"}),
+    Field{"counter", MachineKey::text, "name that counts the times in expressions, from 0"},
     Field{"when", MachineKey::quantity, "0: it is left out", "1"},
 };
 
@@ -184,6 +218,15 @@ constexpr std::array feed_keys = {
     Field{"when", MachineKey::quantity, "0: it is left out", "1"},
 };
 
+constexpr auto start_keys = std::to_array<Field>({
+    needed({"phase", MachineKey::text, "the phase with which the start ends"}),
+    {"seed", MachineKey::quantity,
+     "of its random numbers: it is computed once for all cases with the same start and kept beside the database; 0: "
+     "that "
+     "of the case, which shares nothing",
+     "0"},
+});
+
 constexpr auto check_keys = std::to_array<Field>({
     needed({"when", MachineKey::quantity, "not 0: it is said"}),
     {"refuse", MachineKey::text, "the case is impossible: why; \"{NAME}\" is a number or word"},
@@ -205,6 +248,15 @@ constexpr std::array quiet_keys = {
     needed(fields::quantity<&Quiet::time>("for", "s", "", positive_number)),
 };
 
+using machine::Known;
+constexpr std::array known_keys = {
+    needed({"measure", MachineKey::text, "a measurement with a standard error"}),
+    needed(fields::quantity<&Known::error>("error", "1", "below which it is known, in the unit in which it is shown",
+                                           no_negative_number)),
+    fields::quantity<&Known::from>("from", "1", "share of the phase from which on it is looked at", {0, 1}),
+    Field{"every", MachineKey::quantity, "frames from look to look: rare ones are no chance", "10"},
+};
+
 constexpr auto until_keys = std::to_array<Field>({
     {"at_rest", MachineKey::flag, "kinetic energy below a thousandth of m g d per particle for sqrt(d/g)"},
     {"empty", MachineKey::region, "no particle in a region"},
@@ -212,6 +264,9 @@ constexpr auto until_keys = std::to_array<Field>({
     holding({"quiet", MachineKey::object,
              "for a time at most a share of the particles in a region was faster, and their number changed by no more"},
             quiet_keys),
+    holding({"known", MachineKey::object,
+             "the standard error of a measurement in this phase is below a value, or it has not changed at all"},
+            known_keys),
     {"measure", MachineKey::text, "a measurement passes a value: above or below"},
     {"above", MachineKey::quantity, "of measure"},
     {"below", MachineKey::quantity, "of measure"},
@@ -249,8 +304,11 @@ constexpr std::array scale_keys = {
 };
 
 using machine::Measure;
+constexpr std::array<std::string_view, 3> repeats_words = {"all", "last", "each"};
 constexpr auto measure_keys = std::to_array<Field>({
-    {"as", MachineKey::word, "what becomes of the values at the frames; default: mean, of a profile profile"},
+    {"as", MachineKey::word,
+     "what becomes of the values at the frames; default: mean, of a profile profile; of what counts all so far last, "
+     "last_profile"},
     {"during", MachineKey::words, "phases in which it is measured; default: all"},
     {"shares", MachineKey::array, "only values from the first to the second of these shares of the first value count"},
     {"while", MachineKey::object,
@@ -258,6 +316,14 @@ constexpr auto measure_keys = std::to_array<Field>({
     {"unless", MachineKey::text,
      "an expression of measurements: where it is not 0, this value and its error are undefined, such as a rate that a "
      "jam cut short"},
+    {"repeats",
+     MachineKey::word,
+     "how phases that repeat count: all together; last: the last time; each: a profile of one value for each time",
+     "\"all\"",
+     {},
+     repeats_words},
+    {"error", MachineKey::text, "name of its standard error; default: NAME_error"},
+    {"when", MachineKey::quantity, "0: it is left out", "1"},
     fields::flag<&Measure::relative>("relative", "true: values are divided by the first one, of a profile bin by bin"),
     {"every", MachineKey::quantity, "measured at each n-th frame of a phase, and at its last", "1"},
     holding({"scale", MachineKey::object, "units in which it is shown"}, scale_keys),
@@ -307,14 +373,15 @@ std::vector<Field> with_alternatives(std::span<const Type> types, std::string_vi
 std::span<const Field> follow() {
     static constexpr auto keys = std::to_array<Field>({
         {"times", MachineKey::array, "rising times from the start of the run, or from \"from\", s"},
-        {"positions", MachineKey::array, "where the wall is at each time, a vector from where it is drawn, m"},
-        {"angles", MachineKey::array, "or how far it has turned at each time, right hand, rad"},
+        {"positions", MachineKey::array,
+         "where the wall is at each time, a vector from where it is drawn, m; the first is 0"},
+        {"angles", MachineKey::array, "or how far it has turned at each time, right hand, rad; the first is 0"},
         {"position", MachineKey::vector, "or three expressions of the time t, m"},
         {"angle", MachineKey::quantity, "or an expression of the time t, rad"},
         {"every", MachineKey::quantity, "with an expression: time from value to value, s"},
         {"until", MachineKey::quantity, "with an expression: the last time, s"},
         {"axis", MachineKey::direction, "of angles"},
-        {"through", MachineKey::vector, "of angles: a point on the axis, m", "[0, 0, 0]"},
+        {"through", MachineKey::vector, "of angles: a point on the axis, as of rotate, m", "[0, 0, 0]"},
     });
     return keys;
 }
@@ -342,6 +409,10 @@ std::span<const Field> wall() {
             {"triangles", MachineKey::array, "a shape: a list of triangles [[x, y, z], [x, y, z], [x, y, z]], m"},
             {"stl", MachineKey::text, "a shape: an STL file beside the machine file"},
             {"scale", MachineKey::quantity, "of stl: length of the file's unit, m", "1"},
+            {"fit", MachineKey::quantity,
+             "of stl: made so long along y, from y = 0 on, for a domain that is periodic; its lowest points, of these "
+             "the "
+             "foremost, at the origin, m"},
             {"facet_angle", MachineKey::quantity,
              "of stl and triangles: facets that meet at less than this angle stand for a curved surface, rad", "0"},
             holding({"turned", MachineKey::object,
@@ -353,6 +424,11 @@ std::span<const Field> wall() {
             {"only", MachineKey::species,
              "the species that it touches; all others pass through it as if it were not there; default: all touch it"},
             {"during", MachineKey::words, "phases in which it is there; default: all"},
+            holding({"again", MachineKey::object,
+                     "each time that a phase comes again it starts anew where it is drawn, moved on"},
+                    again_keys),
+            {"scattered", MachineKey::vector,
+             "it stands away from its place by a random share of this, another one in each case, m", "[0, 0, 0]"},
             {"when", MachineKey::quantity, "0: it is not there at all", "1"},
             {"repeat", MachineKey::quantity, "so many of them", "1"},
             {"as", MachineKey::text, "name that counts the repeated ones in expressions, from 0"},
@@ -384,7 +460,7 @@ std::span<const Field> top() {
         Field{"let", MachineKey::object,
               "by name: expressions that other expressions may use; those that use numbers of species are known from "
               "\"walls\" on; or {\"opening\": a level set}: the diameter of the largest disc of it in the lower face "
-              "of a cell, m",
+              "of a cell, m; or {\"extent\": ...}: how far the surface of a file reaches along a direction, m",
               "{}"},
         holding({"checks", MachineKey::array, "what a case is refused for, or warned of", "[]"}, check_keys),
         Field{"gravity", MachineKey::value, "[x, y, z] in m/s2, or size, tilt and azimuth", "[0, 0, -9.81]"},
@@ -394,6 +470,10 @@ std::span<const Field> top() {
               "m/s: powder slower than this for 256 time steps, with nothing faster near and no net force of half its "
               "weight, is not advanced; only in precision mixed, without moving walls and shaking",
               "0"},
+        Field{
+            "impact_speed", MachineKey::quantity,
+            "m/s: fastest impact of two particles to be expected, from which the time step follows; default: the fall "
+            "through the machine with its fastest wall"},
         holding({"domain", MachineKey::object,
                  "the box outside of which particles are gone; default: around walls, fillings and feeds at all times",
                  "{}"},
@@ -403,19 +483,29 @@ std::span<const Field> top() {
         needed(holding({"species", MachineKey::named, "by name: kinds of particles"}, species_keys)),
         holding({"walls", MachineKey::named, "by name: shape, material, motion", "{}"}, wall()),
         holding({"fill", MachineKey::array, "particles at the start", "[]"}, fill_keys),
+        holding({"remove", MachineKey::array, "particles taken away at the beginning of a phase", "[]"}, removal_keys),
         holding({"feed", MachineKey::array, "particles added while it runs", "[]"}, feed_keys),
         needed(holding({"phases", MachineKey::array, "what happens, one after the other"}, phase_keys)),
+        holding({"start", MachineKey::object,
+                 "the first phases: they are not measured, and behind them contacts with walls begin anew"},
+                start_keys),
         needed({"measure", MachineKey::object, "by name: what a case answers"}),
         Field{"accuracy", MachineKey::object,
-              "by the words fast, balanced, fine, reference: values of parameters; default: those of every machine"},
+              "by the words survey, fast, balanced, fine, reference: values of parameters; default: those of every "
+              "machine"},
         Field{"main", MachineKey::text,
               "the measurement that reports and tables show first; default: the first by name"},
+        Field{"shown", MachineKey::array,
+              "what short tables show: a list of {MEASUREMENT: its meaning in a few words}; default: the first six"},
     };
     return keys;
 }
 
 std::span<const Field> parameter() {
     return parameter_keys;
+}
+std::span<const Field> extent() {
+    return extent_keys;
 }
 std::span<const Field> gravity() {
     return gravity_keys;
@@ -441,6 +531,9 @@ std::span<const Field> fill() {
 std::span<const Field> sphere() {
     return sphere_keys;
 }
+std::span<const Field> removal() {
+    return removal_keys;
+}
 std::span<const Field> feed() {
     return feed_keys;
 }
@@ -449,6 +542,15 @@ std::span<const Field> phase() {
 }
 std::span<const Field> until() {
     return until_keys;
+}
+std::span<const Field> known() {
+    return known_keys;
+}
+std::span<const Field> again() {
+    return again_keys;
+}
+std::span<const Field> start() {
+    return start_keys;
 }
 std::span<const Field> check() {
     return check_keys;
@@ -489,6 +591,7 @@ std::span<const Type> all() {
         std::vector<Type> all = {
             {"The file", "", top()},
             {"A parameter", "", parameter_keys},
+            {"extent, in let", "", extent_keys},
             {"gravity", "", gravity_keys},
             {"domain", "", domain_keys},
             {"A material", "", material_keys, fields::initial<dem::Elasticity>},
@@ -497,6 +600,7 @@ std::span<const Type> all() {
             {"sizes of a species", "", size_keys},
             {"shape of a species", "", grain_shape_keys},
             {"A wall", "", wall()},
+            {"again, of a wall", "", again_keys, fields::initial<Again>},
             {"turned, of a wall", "", machine::placement_fields(), fields::initial<machine::Placement>},
             {"A motion of a wall", "", motion()},
         };
@@ -506,11 +610,14 @@ std::span<const Type> all() {
             {"A filling", "", fill_keys, fields::initial<Fill>},
             {"packing, of a filling", "", packing_keys, fields::initial<Cut>},
             {"A sphere of a filling", "", sphere_keys, fields::initial<dem::Sphere>},
+            {"A removal", "", removal_keys, fields::initial<Removal>},
             {"A feed", "", feed_keys, fields::initial<Feed>},
             {"A phase", "", phase_keys, fields::initial<Phase>},
             {"until, of a phase", "", until_keys},
             {"flow_stops", "", flow_stops_keys},
             {"quiet", "", quiet_keys, fields::initial<Quiet>},
+            {"known", "", known_keys, fields::initial<Known>},
+            {"start", "", start_keys},
             {"A check", "", check_keys},
             {"A measurement", "", measure_keys},
             {"scale, of a measurement", "", scale_keys, fields::initial<Scale>},

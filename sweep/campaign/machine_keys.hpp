@@ -10,6 +10,7 @@ namespace grainsweep::campaign::machine_keys {
 
 [[nodiscard]] std::span<const Field> top();
 [[nodiscard]] std::span<const Field> parameter();
+[[nodiscard]] std::span<const Field> extent();
 [[nodiscard]] std::span<const Field> gravity();
 [[nodiscard]] std::span<const Field> domain();
 [[nodiscard]] std::span<const Field> material();
@@ -22,9 +23,13 @@ namespace grainsweep::campaign::machine_keys {
 [[nodiscard]] std::span<const Field> follow();
 [[nodiscard]] std::span<const Field> fill();
 [[nodiscard]] std::span<const Field> sphere();
+[[nodiscard]] std::span<const Field> removal();
 [[nodiscard]] std::span<const Field> feed();
 [[nodiscard]] std::span<const Field> phase();
 [[nodiscard]] std::span<const Field> until();
+[[nodiscard]] std::span<const Field> known();
+[[nodiscard]] std::span<const Field> again();
+[[nodiscard]] std::span<const Field> start();
 [[nodiscard]] std::span<const Field> check();
 [[nodiscard]] std::span<const Field> scale();
 [[nodiscard]] std::span<const Field> measure();

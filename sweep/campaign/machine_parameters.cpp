@@ -21,7 +21,9 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <regex>
 #include <set>
+#include <utility>
 
 namespace grainsweep::campaign {
 namespace {
@@ -64,24 +66,29 @@ double in_si_units(const Cursor& place, double value, const std::string& unit) {
     place.refuse(fmt::format("'{}' is no unit that a machine calculates with: {}", unit, why));
 }
 
+std::vector<std::string> words_in(const Section& section) {
+    std::vector<std::string> words;
+    for (const auto& word : section.at("words").elements()) {
+        require_name(word, word.text());
+        words.push_back(word.text());
+    }
+    if (words.empty()) section.at("words").refuse("must name a word");
+    return words;
+}
+
 ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
     for (const char* key : {"unit", "counted_in", "bounds", "above", "whole"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a word has none");
-    Words words;
-    for (const auto& word : section.at("words").elements()) {
-        require_name(word, word.text());
-        words.allowed.push_back(word.text());
-    }
-    if (words.allowed.empty()) section.at("words").refuse("must name a word");
+    Words words{words_in(section)};
     spec.unit = "";
     spec.default_value = section.at("default").word(words.allowed);
     spec.bounds = std::move(words);
     return spec;
 }
 
-/// A file, or the default word that stands for none.
+/// A file, or a word: one of several, or the default that stands for none.
 ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
-    for (const char* key : {"unit", "counted_in", "bounds", "above", "whole", "words"})
+    for (const char* key : {"unit", "counted_in", "bounds", "above", "whole"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a file has none");
     const auto rows = machine_keys::parameter();
     const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Field::name)->words);
@@ -89,12 +96,19 @@ ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
     const std::string none = section.at("default").text();
     require_name(section.at("default"), none);
     spec.default_value = none;
+    Words words{{none}, true};
+    if (section.find("words")) {
+        words.allowed = words_in(section);
+        if (std::ranges::find(words.allowed, none) == words.allowed.end())
+            section.at("default").refuse("must be one of the words", nearest_word(none, words.allowed));
+    }
     if (kind == "sizes")
-        spec.bounds = Words{{none}, true, [](std::string_view csv) { (void)particles::SizeTable::read(csv); }};
+        words.check_file = [](std::string_view csv) { (void)particles::SizeTable::read(csv); };
     else if (kind == "packing")  // whatever its edge
-        spec.bounds = Words{{none}, true, [](std::string_view csv) { machine::require_packing(csv); }};
+        words.check_file = [](std::string_view csv) { machine::require_packing(csv); };
     else
-        spec.bounds = Words{{none}, true, [](std::string_view stl) { (void)machine::stl_mesh(stl, 1, 0, {}); }};
+        words.check_file = [](std::string_view stl) { (void)machine::stl_mesh(stl, 1, 0, {}); };
+    spec.bounds = std::move(words);
     return spec;
 }
 
@@ -172,7 +186,14 @@ ParameterSpec number_parameter(const Section& section, ParameterSpec spec) {
 }
 
 /// Those that every machine has.
-void add_common(std::vector<ParameterSpec>& all) {
+void add_common(std::vector<ParameterSpec>& all, bool with_ratio) {
+    if (with_ratio)
+        all.push_back({std::string(ratio_parameter),
+                       "1",
+                       "length of filled and fed particles divided by their width: equal spheres in a row; 1: spheres",
+                       1.0,
+                       Interval{1, longest_row},
+                       {}});
     all.push_back(
         {"particles_scale", "1", "diameters times this: fewer, coarser particles", 1.0, Interval{0.1, 100}, {}});
     all.push_back({std::string(stiffness_parameter),
@@ -184,7 +205,7 @@ void add_common(std::vector<ParameterSpec>& all) {
     all.push_back({"time_step", "s", "time step; 0: time_step_fraction of the limits", 0.0, Interval{0, 1e-3}, {}});
     all.push_back({"time_step_fraction",
                    "1",
-                   "time step over the shortest Rayleigh time and Hertz contact time",
+                   "time step over the shortest Rayleigh time and Hertz contact time, or a quarter of a linear impact",
                    0.2,
                    Interval{0, 1, true, false},
                    {{"time_step", Relevance::Condition::zero, {}}}});
@@ -208,8 +229,7 @@ std::string suffix_of(const std::string& unit) {
 std::vector<std::string> names_in_expressions(const ParameterSpec& parameter) {
     std::vector<std::string> names{parameter.name};
     if (const auto* words = std::get_if<Words>(&parameter.bounds))
-        for (const auto& word : words->file_allowed ? std::vector<std::string>{} : words->allowed)
-            names.push_back(parameter.name + "_is_" + word);
+        for (const auto& word : words->allowed) names.push_back(parameter.name + "_is_" + word);
     else if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
         names.push_back(parameter.name + "_" + suffix);
     return names;
@@ -236,11 +256,6 @@ std::set<std::string> species_names(const Section& top) {
     return names;
 }
 
-/// A quantity alone, not in an expression.
-bool is_one_quantity(const std::string& text) {
-    return is_quantity(text) && with_si_numbers(text).empty();
-}
-
 /// A quantity in SI units, whichever they are.
 double any_quantity(const Cursor& place) {
     std::string why;
@@ -263,6 +278,35 @@ double opening_in(const Cursor& place, const MachineScope& scope) {
     return set.opening();
 }
 
+/// Reads {"extent": ...}: how far the surface of a file reaches from its origin along a direction; 0 where it is none.
+double extent_in(const Cursor& place, const MachineScope& scope) {
+    const Section section(place, machine_keys::extent());
+    if (!scope.present(section)) return 0;
+    const double facets = scope.number(section, "facet_angle", "rad", 0, {0, 0.76});
+    const double scale = scope.number(section, "scale", "m", 1, positive_number);
+    const auto contents = scope.contents(section.at("stl"));
+    const auto fit = section.find("fit");
+    try {
+        const auto mesh = fit ? machine::fitted_mesh(contents, scale, facets, scope.number(*fit, "m", positive_number))
+                              : machine::stl_mesh(contents, scale, facets, {});
+        const auto along = scope.direction(section.at("along"));
+        double most = -std::numeric_limits<double>::infinity();
+        for (const auto& corner : mesh.surface().corners) most = std::max(most, geometry::dot(corner, along));
+        return most;
+    } catch (const std::invalid_argument& why) {
+        section.at("stl").refuse(why.what());
+    }
+}
+
+/// Reads the value of a definition, all names of which are known.
+double let_in(const Cursor& place, const MachineScope& scope) {
+    const auto& value = place.json();
+    if (value.is_object())
+        return value.contains("extent") ? extent_in(place["extent"], scope) : opening_in(place, scope);
+    const bool quantity = value.is_string() && value_text(value.get_ref<const std::string&>())->quantity;
+    return quantity ? any_quantity(place) : scope.number(place, "1");
+}
+
 /// Adds the definitions of "let", except those with a name that is defined later. Refuses a circle.
 void evaluate_lets(const Section& top, const std::set<std::string>& to_come, MachineScope& scope) {
     const auto lets = top.find("let");
@@ -278,41 +322,54 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
         open.insert(name);
     }
     std::map<std::string, std::vector<std::string>, std::less<>> used;  // by an expression
-    auto names = scope.names();
-    names.insert(names.end(), open.begin(), open.end());
-    names.insert(names.end(), to_come.begin(), to_come.end());
+    const std::set<std::string> to_be = open;
+    const auto parse = [&](const std::string& given) {
+        const auto known = [&](std::string_view name) {
+            const std::string word(name);
+            return scope.has_number(name) || to_be.contains(word) || to_come.contains(word);
+        };
+        auto parsed = formula_of(given, names_in(given, known));
+        if (std::holds_alternative<Formula>(parsed)) return parsed;
+        auto names = scope.names();
+        names.insert(names.end(), to_be.begin(), to_be.end());
+        names.insert(names.end(), to_come.begin(), to_come.end());
+        return Formula::parse(given, names);
+    };
     for (const auto& name : open) {
         const auto& text = lets->json()[name];
         const Json leaves = text.is_object() ? text.flatten() : Json::object();
         for (const auto& [place, leaf] : leaves.items())
-            if (const auto parsed = Formula::parse(leaf.is_string() ? leaf.get<std::string>() : "0", names);
+            if (const auto parsed = parse(leaf.is_string() ? leaf.get<std::string>() : "0");
                 const auto* formula = std::get_if<Formula>(&parsed))
                 used[name].insert(used[name].end(), formula->names().begin(), formula->names().end());
-        if (!text.is_string() || is_one_quantity(text.get_ref<const std::string&>())) continue;
-        const std::string plain = with_si_numbers(text.get_ref<const std::string&>());
-        const auto parsed = Formula::parse(plain.empty() ? text.get<std::string>() : plain, names);
-        const auto pointed = with_decimal_point(text.get_ref<const std::string&>());
+        if (!text.is_string()) continue;
+        const auto read = value_text(text.get_ref<const std::string&>());
+        if (read->quantity) continue;
+        const auto parsed = parse(read->given);
         if (const auto* why = std::get_if<std::string>(&parsed))
-            (*lets)[name].refuse(pointed.empty() ? *why : fmt::format("the decimal sign is a point: '{}'", pointed));
+            (*lets)[name].refuse(
+                read->pointed.empty() ? *why : fmt::format("the decimal sign is a point: '{}'", read->pointed));
         used[name] = std::get<Formula>(parsed).names();
     }
-    // A definition that needs no open name is next.
-    while (!open.empty()) {
-        const auto ready = std::ranges::find_if(open, [&](const std::string& name) {
-            return std::ranges::none_of(
-                used[name], [&](const auto& needed) { return open.contains(needed) || to_come.contains(needed); });
-        });
-        if (ready == open.end()) {
+    // In rounds: a definition is next once no name in it is open.
+    const auto waits = [&](const std::string& name) {
+        return std::ranges::any_of(
+            used[name], [&](const auto& needed) { return open.contains(needed) || to_come.contains(needed); });
+    };
+    for (bool defined = true; !open.empty();) {
+        if (!std::exchange(defined, false)) {
             if (!to_come.empty()) return;
             (*lets)[*open.begin()].refuse("it depends on itself");
         }
-        const Cursor here = (*lets)[*ready];
-        const bool quantity = here.json().is_string() && is_one_quantity(here.json().get_ref<const std::string&>());
-        if (here.json().is_object())
-            scope.set_let(*ready, opening_in(here, scope));
-        else
-            scope.set_let(*ready, quantity ? any_quantity(here) : scope.number(here, "1"));
-        open.erase(ready);
+        for (auto next = open.begin(); next != open.end();) {
+            if (waits(*next)) {
+                ++next;
+                continue;
+            }
+            scope.set_let(*next, let_in((*lets)[*next], scope));
+            next = open.erase(next);
+            defined = true;
+        }
     }
 }
 
@@ -329,9 +386,16 @@ void require_name(const Cursor& place, std::string_view name) {
     if (name == notes_key) place.refuse("here are names, and 'notes' is none: put notes into the object around it");
 }
 
+bool takes_ratio(const Json& machine) {
+    return std::ranges::none_of(std::array{"parameters", "let"}, [&](const char* section) {
+        return machine.contains(section) && machine.at(section).is_object() &&
+               machine.at(section).contains(ratio_parameter);
+    });
+}
+
 std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
     std::vector<ParameterSpec> all;
-    add_common(all);
+    add_common(all, takes_ratio(top.place().json()));
     const auto place = top.find("parameters");
     if (!place) return all;
     if (!place->json().is_object()) place->refuse("must be an object of parameters by name");
@@ -381,10 +445,10 @@ std::map<std::string, Inputs, std::less<>> read_machine_accuracy(const Section& 
     const auto place = top.find("accuracy");
     if (!place) return all;
     all.clear();
-    const std::vector<std::string> levels = {"balanced", "fast", "fine", "reference"};
+    const std::vector<std::string> levels = {"balanced", "fast", "fine", "reference", "survey"};
     for (const auto& [level, here] : place->members("must be an object of levels")) {
         if (std::ranges::find(levels, level) == levels.end())
-            here.refuse("a level is fast, balanced, fine or reference", nearest_word(level, levels));
+            here.refuse("a level is survey, fast, balanced, fine or reference", nearest_word(level, levels));
         for (const auto& [name, value] : here.members("must be an object of parameters and their values")) {
             const auto found = std::ranges::find(parameters, name, &ParameterSpec::name);
             if (found == parameters.end())
@@ -396,14 +460,15 @@ std::map<std::string, Inputs, std::less<>> read_machine_accuracy(const Section& 
     return all;
 }
 
-MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters, const Inputs& inputs) {
+MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters, const Inputs& inputs,
+                           const std::map<std::string, std::string_view, std::less<>>& files) {
     MachineScope scope;
+    for (const auto& [name, contents] : files) scope.set_file(name, contents);
     for (const auto& parameter : parameters) {
         const Value& value = inputs.find(parameter.name)->second;
         if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
             const auto& word = std::get<std::string>(value);
             scope.set_word(parameter.name, word);
-            if (words->file_allowed) continue;
             for (const auto& one : words->allowed) scope.set(parameter.name + "_is_" + one, one == word ? 1 : 0);
             continue;
         }
@@ -481,9 +546,20 @@ std::string with_si_numbers(std::string_view expression) {
     return united ? plain : std::string();
 }
 
+std::string unclear_quotient(std::string_view expression) {
+    if (expression.find('/') == std::string_view::npos) return {};
+    static const std::regex quotient(R"((^|[^\w.)\]])(\d+(?:\.\d*)?)\s*/\s*(\d+(?:\.\d*)?)\s*([A-Za-z%][\w%]*))");
+    std::match_results<std::string_view::const_iterator> found;
+    std::string why;
+    if (!std::regex_search(expression.begin(), expression.end(), found, quotient)) return {};
+    const std::string over = found[2], under = found[3], unit = found[4];
+    if (!calculating_unit(unit, why)) return {};
+    return fmt::format("'({}/{})*(1 {})' or '{}/({} {})'", over, under, unit, over, under, unit);
+}
+
 void add_species_numbers(const Section& top, const machine::Spec& spec, MachineScope& scope) {
     for (const auto& species : spec.species) {
-        scope.set(species.name + "_largest", species.largest());
+        scope.set(species.name + "_largest", species.widest());
         scope.set(species.name + "_smallest", species.smallest());
         scope.set(species.name + "_volume", species.mean_volume());
     }

@@ -1,6 +1,8 @@
 // "phases" of a machine: their order, groups that repeat, lengths and conditions.
 #include "sweep/campaign/machine_reading.hpp"
 
+#include "solver/machine/reduction.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,13 +12,27 @@
 namespace grainsweep::campaign {
 namespace {
 
+constexpr std::size_t most_phases = 3000;
+
+machine::Known read_known(const Section& section, const MachineReading& reading) {
+    machine::Known known;
+    reading.scope.read(section, machine_keys::known(), &known);
+    const Cursor measure = section.at("measure");
+    known.measure = measure_named(measure, reading);
+    if (machine::find_reduction(reading.spec.measures[known.measure].reduction)->error == nullptr)
+        measure.refuse("it has no standard error");
+    if (const auto every = section.find("every")) known.every = reading.scope.whole(*every, {1, 1e6});
+    return known;
+}
+
 machine::Until read_until(const Cursor& place, const MachineReading& reading) {
     const Section section(place, machine_keys::until());
     const auto rest = section.find("at_rest"), empty = section.find("empty"), stops = section.find("flow_stops"),
-               quiet = section.find("quiet"), measure = section.find("measure");
-    if (std::ranges::count_if(std::array{rest, empty, stops, quiet, measure},
+               quiet = section.find("quiet"), measure = section.find("measure"), known = section.find("known");
+    if (std::ranges::count_if(std::array{rest, empty, stops, quiet, measure, known},
                               [](const auto& one) { return one.has_value(); }) != 1)
-        place.refuse("a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\", \"quiet\" and \"measure\"");
+        place.refuse(
+            "a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\", \"quiet\", \"known\" and \"measure\"");
     if (!measure)
         for (const char* key : {"above", "below"})
             if (const auto end = section.find(key)) end->refuse("it belongs to \"measure\"");
@@ -28,6 +44,7 @@ machine::Until read_until(const Cursor& place, const MachineReading& reading) {
     if (empty) return machine::Empty{reading.scope.region(*empty)};
     if (machine::FlowStops condition; reading.scope.read(section, "flow_stops", &condition)) return condition;
     if (machine::Quiet condition; reading.scope.read(section, "quiet", &condition)) return condition;
+    if (known) return read_known(Section(*known, machine_keys::known()), reading);
     const std::size_t number = measure_named(*measure, reading);
     if (reading.spec.measures[number].relative) measure->refuse("a relative value ends no phase");
     const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
@@ -90,13 +107,37 @@ void read_phase_names(const Section& top, MachineReading& reading) {
         } else if (paths[number] != section.place().path()) {
             name.refuse("a phase of this name is there twice");
         }
-        if (reading.phase_paths.size() == most_repeats)
-            all.refuse(fmt::format("a machine has at most {} phases, repeated ones included", most_repeats));
+        if (reading.phase_paths.size() == most_phases)
+            all.refuse(fmt::format("a machine has at most {} phases, repeated ones included", most_phases));
         reading.copies[number].push_back(reading.phase_paths.size());
         reading.phase_paths.push_back(section.place().path());
     });
     if (reading.phases.empty()) all.refuse("a machine needs a phase");
 }
+
+namespace {
+
+/// "start": a phase, with which it ends, and a seed.
+void read_start(const Section& top, MachineReading& reading) {
+    const auto place = top.find("start");
+    if (!place) return;
+    auto& spec = reading.spec;
+    const Section section(*place, machine_keys::start());
+    const Cursor end = section.at("phase");
+    spec.start.phases = reading.copies[reading.scope.place_in(end, reading.phases, "phase")].front() + 1;
+    if (const double seed = reading.scope.number(section, "seed", "1", 0, {0, 9.0e15}); seed > 0)
+        spec.start.seed = seed;
+    const auto within = [&](std::size_t phase) { return phase > 0 && phase < spec.start.phases; };
+    bool changes = std::ranges::any_of(spec.removals, within, &machine::Removal::at);
+    for (const auto& one : spec.fills)
+        if (const auto* fill = std::get_if<machine::Fill>(&one)) changes = changes || within(fill->at);
+    for (std::size_t p = 0; p < spec.start.phases; ++p) changes = changes || !spec.phases[p].until.empty();
+    for (const auto& feed : spec.feeds)
+        for (std::size_t p = 0; p < spec.start.phases; ++p) changes = changes || machine::holds(feed.during, p);
+    if (changes) end.refuse("up to its end nothing is fed, filled or removed, and phases last \"for\" a time");
+}
+
+}  // namespace
 
 void read_phases(const Section& top, MachineReading& reading) {
     each_phase(top.at("phases"), reading, [&](const Section& section) {
@@ -120,9 +161,14 @@ void read_phases(const Section& top, MachineReading& reading) {
         phase.frames_given = phase.frames_given || phase.every;
         if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");
         if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
+        if (!phase.ends_at_frames && std::ranges::any_of(phase.until, [](const machine::Until& one) {
+                return std::holds_alternative<machine::Known>(one);
+            }))
+            until->refuse("\"known\" is looked at when it is measured: \"ends_at_frames\": true");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
         reading.spec.phases.push_back(std::move(phase));
     });
+    read_start(top, reading);
 }
 
 }  // namespace grainsweep::campaign

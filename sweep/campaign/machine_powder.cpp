@@ -1,8 +1,10 @@
 // "species", "fill" and "feed" of a machine.
 #include "sweep/campaign/csv_table.hpp"
+#include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
 #include "solver/machine/filling.hpp"
+#include "solver/machine/grain_shapes.hpp"
 #include "solver/machine/shapes.hpp"
 #include "solver/plain_text.hpp"
 
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -125,6 +128,34 @@ std::int64_t count_of(const Section& section, const MachineReading& reading, con
     return static_cast<std::int64_t>(count);
 }
 
+/// Returns the volume that a filling states, m3.
+double volume_of(const Section& section, const MachineReading& reading, const machine::Mix& mix) {
+    if (const auto volume = section.find("volume")) return reading.scope.number(*volume, "m3", no_negative_number);
+    const Species& species = reading.spec.species[mix.front().first];
+    if (mix.size() > 1 || !section.find("mass"))
+        section.at("exact").refuse("it belongs to the \"volume\", or the \"mass\" of one species");
+    return reading.scope.number(section.at("mass"), "kg", no_negative_number) / species.density(reading.spec.densities);
+}
+
+/// Calls read(phase) for the start or, with "at", for each time that the phase begins. Within it the counter is known.
+template <class Read>
+void each_time(const Section& section, MachineReading& reading, Read read) {
+    const auto at = section.find("at"), as = section.find("counter");
+    if (as && !at) as->refuse("it belongs to \"at\"");
+    if (!at) return read(std::size_t{0});
+    const auto& copies = reading.copies[reading.scope.place_in(*at, reading.phases, "phase")];
+    const MachineScope outer = reading.scope;
+    for (std::size_t k = 0; k < copies.size(); ++k) {
+        if (as) {
+            require_name(*as, as->text());
+            if (outer.knows(as->text())) as->refuse("a parameter or \"let\" has this name");
+            reading.scope.set(as->text(), static_cast<double>(k));
+        }
+        read(copies[k]);
+        reading.scope = outer;
+    }
+}
+
 machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading, std::size_t species) {
     const Section section(place, machine_keys::sphere());
     const auto& scope = reading.scope;
@@ -233,12 +264,33 @@ machine::Cut read_cut(const Section& fill, const Cursor& place, const MachineRea
     return cut;
 }
 
+/// Returns the species of particles that "fill" and "feed" put at random orientations: not glued ones, single spheres
+/// or packings.
+std::set<std::string> species_of_powder(const Section& top, const MachineScope& scope) {
+    std::set<std::string> names;
+    for (const char* key : {"fill", "feed"}) {
+        const auto all = top.find(key);
+        if (!all || !all->json().is_array()) continue;
+        for (const auto& one : all->elements()) {
+            const Json& entry = one.json();
+            const auto has = [&](const char* name) { return entry.is_object() && entry.contains(name); };
+            if (has("spheres") || has("packing") || (has("glued") && entry.at("glued") == true)) continue;
+            if (has("species") && entry.at("species").is_string()) names.insert(scope.text(one["species"]));
+            if (has("mix") && entry.at("mix").is_object())
+                for (const auto& [name, share] : entry.at("mix").items()) names.insert(name);
+        }
+    }
+    return names;
+}
+
 }  // namespace
 
 void read_species(const Section& top, MachineReading& reading) {
     const Cursor all = top.at("species");
     if (!all.json().is_object() || all.json().empty()) all.refuse("must be an object of species by name");
     auto& spec = reading.spec;
+    const auto powder = reading.aspect_ratio > 1 ? species_of_powder(top, reading.scope) : std::set<std::string>();
+    bool elongated = false;
     std::vector<std::pair<std::size_t, std::vector<bool>>> kinds;  // material, and walls of some species that touch
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
@@ -277,13 +329,20 @@ void read_species(const Section& top, MachineReading& reading) {
         species.diameter = reading.scope.number(section, "diameter", "m", 0, {1e-7, 10});
         if (const auto sizes = section.find("sizes"))
             species.sizes = sizes_of(Section(*sizes, machine_keys::sizes()), reading, species.diameter);
-        if (const auto shape = section.find("shape")) read_grain_shape(*shape, reading, species);
+        if (const auto shape = section.find("shape"))
+            read_grain_shape(*shape, reading, species);
+        else if (powder.contains(name))
+            species.shape = machine::row_shape(reading.aspect_ratio).clump, elongated = true;
         if (!(species.diameter > 0)) throw input_error(place.path(), "", "key 'diameter' is missing");
         species.diameter *= reading.particles_scale;
         reading.species.push_back(name);
         spec.species.push_back(std::move(species));
     }
     if (spec.species.size() > 200) all.refuse("a machine has at most 200 species");
+    if (reading.aspect_ratio > 1 && !elongated)
+        throw input_error(std::string(ratio_parameter), fmt::format("{:.4g}", reading.aspect_ratio),
+                          "must be 1: the particles of this machine are single ones, cut from a packing, or of a "
+                          "\"shape\" of their own");
 }
 
 void read_fills(const Section& top, MachineReading& reading) {
@@ -321,12 +380,31 @@ void read_fills(const Section& top, MachineReading& reading) {
             reading.spec.fills.emplace_back(std::move(placed));
             continue;
         }
-        machine::Fill fill;
-        fill.mix = read_mix(section, reading);
-        fill.count = count_of(section, reading, fill.mix);
         if (!section.find("in")) throw input_error(place.path(), "", "key 'in' is missing: the region they lie in");
-        reading.scope.read(section, machine_keys::fill(), &fill);
-        reading.spec.fills.emplace_back(std::move(fill));
+        each_time(section, reading, [&](std::size_t phase) {
+            machine::Fill fill;
+            fill.mix = read_mix(section, reading);
+            fill.count = count_of(section, reading, fill.mix);
+            reading.scope.read(section, machine_keys::fill(), &fill);
+            if (section.flag("exact", false)) fill.drawn_to = volume_of(section, reading, fill.mix);
+            fill.at = phase;
+            reading.spec.fills.emplace_back(std::move(fill));
+        });
+    }
+}
+
+void read_removals(const Section& top, MachineReading& reading) {
+    const auto all = top.find("remove");
+    if (!all) return;
+    for (const auto& place : all->elements()) {
+        const Section section(place, machine_keys::removal());
+        if (!reading.scope.present(section)) continue;
+        each_time(section, reading, [&](std::size_t phase) {
+            machine::Removal removal;
+            reading.scope.read(section, machine_keys::removal(), &removal);
+            removal.at = phase;
+            if (phase > 0) reading.spec.removals.push_back(std::move(removal));
+        });
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,14 +19,12 @@ inline constexpr double endless = std::numeric_limits<double>::infinity();
 
 /// State of the reading of a machine: names read so far, and the incomplete Spec.
 struct MachineReading {
-    MachineReading(const std::map<std::string, std::string, std::less<>>& given, MachineScope names)
-        : files(given), scope(std::move(names)) {}
+    MachineReading(MachineScope names, std::span<const ObservableSpec> all)
+        : scope(std::move(names)), observables(all) {}
 
-    const std::map<std::string, std::string, std::less<>>& files;
-    std::map<std::string, std::string_view, std::less<>> chosen;  ///< contents of parameters that are files, by value
-                                                                  ///< of the parameter
     MachineScope scope;
-    double particles_scale = 1, stiffness_scale = 1;
+    std::span<const ObservableSpec> observables;  ///< of the machine
+    double particles_scale = 1, stiffness_scale = 1, aspect_ratio = 1;
 
     machine::Spec spec;
     std::vector<std::string> materials;                ///< all materials, including those of walls
@@ -43,7 +42,7 @@ struct MachineReading {
     std::vector<std::string> measures;              ///< measures with a probe, in the order of the Spec
 
     /// Returns the contents of a file that a text names.
-    [[nodiscard]] std::string_view contents(const Cursor& place) const;
+    [[nodiscard]] std::string_view contents(const Cursor& place) const { return scope.contents(place); }
     /// Returns the phases of the Spec that one name or a list of names means, ascending.
     [[nodiscard]] machine::Phases phases_in(const Cursor& place) const;
 };
@@ -79,11 +78,14 @@ void read_contacts(const Section& top, MachineReading& reading);
 void read_phase_names(const Section& top, MachineReading& reading);
 void read_walls(const Section& top, MachineReading& reading);
 void read_fills(const Section& top, MachineReading& reading);
+void read_removals(const Section& top, MachineReading& reading);
 void read_feeds(const Section& top, MachineReading& reading);
 void read_phases(const Section& top, MachineReading& reading);
 void read_measures(const Section& top, MachineReading& reading);
 void read_surroundings(const Section& top, MachineReading& reading);
 void read_checks(const Section& top, MachineReading& reading);
+
+inline constexpr double longest_row = 20;  ///< aspect ratio
 
 /// Reads the "shape" of a species with material and, unless its spheres have one, diameter.
 void read_grain_shape(const Cursor& place, const MachineReading& reading, machine::Species& species);
@@ -110,6 +112,8 @@ void read_motion(const Cursor& place, const MachineReading& reading, machine::Ma
 void read_scale(const Cursor& place, const MachineReading& reading, machine::Scale& into);
 /// Reads what counts of a measurement and how it is shown, after all measurements have their numbers.
 void read_counting(const Cursor& place, const MachineReading& reading, machine::Measure& into);
+/// Returns the measurements that short tables show; none if they are not stated.
+[[nodiscard]] std::vector<MainObservable> shown_observables(const Section& top);
 /// Returns names and observables of "measure", in the order of the names.
 [[nodiscard]] std::vector<ObservableSpec> machine_observables(const Section& top);
 

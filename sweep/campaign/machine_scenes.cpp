@@ -8,6 +8,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -36,6 +37,30 @@ machine::Spec possible_spec(const Machine& machine, const Inputs& inputs, const 
     }
 }
 
+/// The machine of the last case: a plan asks for its cost and its warnings, one after the other.
+class LastSpec {
+public:
+    explicit LastSpec(std::shared_ptr<const Machine> machine) : machine_(std::move(machine)) {}
+
+    /// Returns ask(spec) of a case. Throws std::invalid_argument for an impossible one.
+    auto of(const Inputs& inputs, const Files& files, auto ask) {
+        const std::lock_guard lock(mutex_);
+        if (!spec_ || inputs != inputs_ || files != files_) {
+            spec_.reset();
+            spec_ = possible_spec(*machine_, inputs, files);
+            inputs_ = inputs, files_ = files;
+        }
+        return ask(*spec_);
+    }
+
+private:
+    std::shared_ptr<const Machine> machine_;
+    std::mutex mutex_;
+    Inputs inputs_;
+    Files files_;
+    std::optional<machine::Spec> spec_;
+};
+
 SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::string name) {
     SceneInfo scene;
     scene.name = std::move(name);
@@ -44,17 +69,19 @@ SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::s
     scene.revision = machine_revision;
     scene.parameters = machine->parameters;
     scene.observables = machine->observables;
+    scene.main = machine->shown;
     scene.accuracy = machine->accuracy;
     scene.stiffness = stiffness_parameter;
     scene.maker = [machine](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
                             const Files& files) -> std::unique_ptr<Scene> {
         return std::make_unique<machine::Run>(possible_spec(*machine, inputs, files), seed, &artefacts);
     };
-    scene.estimate_cost = [machine](const Inputs& inputs, const Files& files) {
-        return machine::cost_of(possible_spec(*machine, inputs, files));
+    const auto last = std::make_shared<LastSpec>(machine);
+    scene.estimate_cost = [last](const Inputs& inputs, const Files& files) {
+        return last->of(inputs, files, machine::cost_of);
     };
-    scene.warnings = [machine](const Inputs& inputs, const Files& files) {
-        return machine::warnings_of(possible_spec(*machine, inputs, files));
+    scene.warnings = [last](const Inputs& inputs, const Files& files) {
+        return last->of(inputs, files, machine::warnings_of);
     };
     return scene;
 }

@@ -10,8 +10,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 
@@ -53,6 +56,75 @@ void MachineScope::require_unit(const Cursor& place, const std::string& name, st
                              turns ? fmt::format(": write 2*pi*{}, or give it the unit rpm", name) : ""));
 }
 
+namespace {
+
+/// Results by what they are made from. Every case reads every text of its machine, and texts repeat.
+template <class Value>
+class Memory {
+public:
+    template <class Make>
+    std::shared_ptr<const Value> of(std::string key, const Make& make) {
+        constexpr std::size_t most = 10'000;
+        const std::lock_guard lock(guard_);
+        if (const auto found = known_.find(key); found != known_.end()) return found->second;
+        if (known_.size() == most) known_.clear();
+        return known_.emplace(std::move(key), std::make_shared<const Value>(make())).first->second;
+    }
+
+private:
+    std::mutex guard_;
+    std::unordered_map<std::string, std::shared_ptr<const Value>> known_;
+};
+
+/// A quantity as in_si reads it.
+std::shared_ptr<const std::variant<double, std::string>> quantity_in(const std::string& text, std::string_view unit) {
+    static Memory<std::variant<double, std::string>> quantities;
+    return quantities.of(fmt::format("{}\n{}", text, unit), [&] { return in_si(text, unit); });
+}
+
+/// Whether expressions calculate in a unit; bounds of a speed in rpm are in rpm.
+bool calculates_in(std::string_view unit) {
+    static Memory<bool> units;
+    std::string name(unit);
+    return unit == "1" || *units.of(name, [&] { return value_in_expressions(name, 1).empty(); });
+}
+
+}  // namespace
+
+std::shared_ptr<const ValueText> value_text(const std::string& written, std::string_view unit) {
+    static Memory<ValueText> texts;
+    const bool si = calculates_in(unit);
+    return texts.of(fmt::format("{}{:d}", written, si), [&] {
+        const std::string united = si ? with_si_numbers(written) : std::string();
+        return ValueText{united.empty() ? written : united, unclear_quotient(written), with_decimal_point(written),
+                         united.empty() && is_quantity(written)};
+    });
+}
+
+std::variant<Formula, std::string> formula_of(const std::string& text, const std::vector<std::string>& names) {
+    static Memory<std::variant<Formula, std::string>> formulas;
+    return *formulas.of(fmt::format("{}\n{}", text, fmt::join(names, "\n")),
+                        [&] { return Formula::parse(text, names); });
+}
+
+/// An expression with the names in it; where it is wrong, with all, so that the sentence finds the nearest one.
+std::variant<Formula, std::string> MachineScope::parsed_here(const std::string& text) const {
+    auto parsed = formula_of(text, names_in(text, [this](std::string_view name) { return numbers_.contains(name); }));
+    return std::holds_alternative<Formula>(parsed) ? parsed : Formula::parse(text, names());
+}
+
+std::vector<std::string> names_in(std::string_view text, const std::function<bool(std::string_view)>& known) {
+    const auto of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    std::vector<std::string> names;
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t end = at;
+        while (end < text.size() && of_name(text[end])) ++end;
+        if (end > at && known(text.substr(at, end - at))) names.emplace_back(text.substr(at, end - at));
+        at = std::max(end, at + 1);
+    }
+    return names;
+}
+
 /// A word in an expression is named as such.
 void MachineScope::refuse_expression(const Cursor& place, const std::string& text, const std::string& why) const {
     const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
@@ -74,23 +146,21 @@ double MachineScope::number(const Cursor& place, std::string_view unit, const In
     if (place.json().is_number()) {
         value = place.json().get<double>();
     } else if (place.json().is_string()) {
-        const bool si = value_in_expressions(std::string(unit), 1).empty();  // bounds of a speed in rpm are in rpm
-        const std::string written = place.json().get<std::string>(),
-                          united = si ? with_si_numbers(written) : std::string();
-        const std::string& given = united.empty() ? written : united;
-        if (united.empty() && is_quantity(given)) {
-            const auto read = in_si(given, unit);
-            if (const auto* why = std::get_if<std::string>(&read)) place.refuse(*why);
-            value = std::get<double>(read);
+        const auto& written = place.json().get_ref<const std::string&>();
+        const auto text = value_text(written, unit);
+        const std::string& given = text->given;
+        if (!text->unclear.empty()) place.refuse(fmt::format("a quotient and a unit need brackets: {}", text->unclear));
+        if (text->quantity) {
+            const auto read = quantity_in(given, unit);
+            if (const auto* why = std::get_if<std::string>(&*read)) place.refuse(*why);
+            value = std::get<double>(*read);
         } else if (const auto named = numbers_.find(given);
                    named != numbers_.end() && std::isfinite(named->second) && bounds.contains(named->second)) {
             require_unit(place, given, unit);
             value = named->second;
         } else {
-            const auto known = names();
-            const auto parsed = Formula::parse(given, known);
-            if (const auto pointed = with_decimal_point(written); !pointed.empty())
-                place.refuse(fmt::format("the decimal sign is a point: '{}'", pointed));
+            const auto parsed = parsed_here(given);
+            if (!text->pointed.empty()) place.refuse(fmt::format("the decimal sign is a point: '{}'", text->pointed));
             if (const auto* why = std::get_if<std::string>(&parsed)) refuse_expression(place, written, *why);
             require_unit(place, given, unit);
             value = std::get<Formula>(parsed)([this](std::string_view name) { return numbers_.find(name)->second; });
@@ -111,7 +181,9 @@ double MachineScope::number(const Section& section, std::string_view key, std::s
 }
 
 std::int64_t MachineScope::whole(const Cursor& place, const Interval& bounds) const {
-    return std::llround(number(place, "1", bounds));
+    const double value = number(place, "1", bounds);
+    if (place.json().is_number() && value != std::round(value)) place.refuse("must be a whole number");
+    return std::llround(value);
 }
 
 bool MachineScope::present(const Section& section) const {
@@ -159,6 +231,14 @@ std::string MachineScope::text(const Cursor& place) const {
     return text;
 }
 
+std::string_view MachineScope::contents(const Cursor& place) const {
+    const std::string name = text(place);
+    if (const auto found = files_.find(name); found != files_.end()) return found->second;
+    place.refuse(file_word(name)        ? fmt::format("the contents of {} are not given", file_word(name)->path)
+                 : name == place.text() ? fmt::format("there is no file '{}'", name)
+                                        : fmt::format("the case names no file here, but '{}'", name));
+}
+
 std::string MachineScope::sentence(const Cursor& place) const {
     std::string text = place.text();
     for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', open)) {
@@ -169,8 +249,7 @@ std::string MachineScope::sentence(const Cursor& place) const {
         if (const auto word = words_.find(name); word != words_.end()) {
             value = word->second;
         } else {
-            const auto known = names();
-            const auto parsed = Formula::parse(name, known);
+            const auto parsed = parsed_here(name);
             if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
             value = fmt::format("{:.4g}", std::get<Formula>(parsed)(
                                               [this](std::string_view used) { return numbers_.find(used)->second; }));
@@ -182,10 +261,10 @@ std::string MachineScope::sentence(const Cursor& place) const {
 }
 
 std::string MachineScope::word(const Cursor& place, const WordList& words) const {
-    const std::string rule = fmt::format("must be {}", in_words(words));
-    if (!place.json().is_string() || place.json().get_ref<const std::string&>().empty()) place.refuse(rule);
+    const auto rule = [&] { return fmt::format("must be {}", in_words(words)); };
+    if (!place.json().is_string() || place.json().get_ref<const std::string&>().empty()) place.refuse(rule());
     auto word = text(place);
-    if (std::ranges::find(words, word) == words.end()) place.refuse(rule, nearest_word(word, words));
+    if (std::ranges::find(words, word) == words.end()) place.refuse(rule(), nearest_word(word, words));
     return word;
 }
 
@@ -214,6 +293,14 @@ std::vector<std::size_t> MachineScope::places_in(const Cursor& place, const std:
     }
     if (places.empty()) place.refuse(fmt::format("must name a {} or several", what));
     return places;
+}
+
+std::size_t MachineScope::wall(const Cursor& place) const {
+    std::vector<std::string> names;
+    for (const auto& [name, number] : walls_) names.push_back(name);
+    for (const std::size_t one : places_in(place, names, "wall"))
+        if (const auto number = walls_.find(names[one])->second) return *number;
+    place.refuse("this case has no such wall");
 }
 
 std::vector<std::string> MachineScope::names() const {
@@ -296,8 +383,11 @@ Region MachineScope::region(const Cursor& place) const {
     const Cursor inner = place[type.name];
     std::visit(
         [&](auto& combined) {
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(combined)>, machine::NotRegion>)
+            using Combined = std::remove_cvref_t<decltype(combined)>;
+            if constexpr (std::is_same_v<Combined, machine::NotRegion>)
                 combined.of = {this->region(inner)};
+            else if constexpr (std::is_same_v<Combined, machine::MovingRegion>)
+                combined.of = {this->region(inner["in"])}, combined.wall = wall(inner["with"]);
             else if constexpr (requires { combined.of; })
                 for (const auto& one : inner.elements()) combined.of.push_back(this->region(one));
         },

@@ -5,14 +5,18 @@
 #include "solver/machine/region.hpp"
 #include "solver/scenes/values.hpp"
 #include "sweep/campaign/cursor.hpp"
+#include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine_keys.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -26,14 +30,23 @@ public:
     void set_unit(const std::string& name, std::string unit) { units_.insert_or_assign(name, std::move(unit)); }
     /// Sets a number that "let" defines.
     void set_let(const std::string& name, double value) { set(name, value), lets_.insert(name); }
+    /// Sets the contents of a file, by the name in the document or the value of a parameter.
+    void set_file(const std::string& name, std::string_view contents) { files_.insert_or_assign(name, contents); }
+    /// Returns the contents of a file that a text names.
+    [[nodiscard]] std::string_view contents(const Cursor& place) const;
+    /// Sets the number of a wall, by which regions name it; none: this case is without it.
+    void set_wall(std::string name, std::optional<std::size_t> number) {
+        walls_.insert_or_assign(std::move(name), number);
+    }
     [[nodiscard]] bool is_let(const std::string& name) const { return lets_.contains(name); }
+    [[nodiscard]] bool has_number(std::string_view name) const { return numbers_.contains(name); }
     [[nodiscard]] bool knows(std::string_view name) const { return numbers_.contains(name) || words_.contains(name); }
 
     /// Returns a finite SI number of the unit within the bounds. Refuses other values.
     [[nodiscard]] double number(const Cursor& place, std::string_view unit, const Interval& bounds = {}) const;
     [[nodiscard]] double number(const Section& section, std::string_view key, std::string_view unit, double standard,
                                 const Interval& bounds = {}) const;
-    /// Returns the nearest whole number of a value.
+    /// Returns the nearest whole number of an expression's value; a number must be a whole one.
     [[nodiscard]] std::int64_t whole(const Cursor& place, const Interval& bounds) const;
     /// Returns whether "when" holds.
     [[nodiscard]] bool present(const Section& section) const;
@@ -52,6 +65,8 @@ public:
     [[nodiscard]] std::string word(const Section& section, std::string_view key, const WordList& words,
                                    std::string_view standard) const;
     [[nodiscard]] machine::Region region(const Cursor& place) const;
+    /// Returns the number of a wall; of a list, of the first one that there is.
+    [[nodiscard]] std::size_t wall(const Cursor& place) const;
     /// Returns the index of one of the names.
     [[nodiscard]] std::size_t place_in(const Cursor& place, const std::vector<std::string>& names,
                                        std::string_view what) const;
@@ -77,11 +92,30 @@ private:
     std::map<std::string, std::string, std::less<>> words_;
     std::set<std::string> lets_;
     std::map<std::string, std::string, std::less<>> units_;
+    std::map<std::string, std::optional<std::size_t>, std::less<>> walls_;
+    std::map<std::string, std::string_view, std::less<>> files_;
 
+    [[nodiscard]] std::variant<Formula, std::string> parsed_here(const std::string& text) const;
     void require_unit(const Cursor& place, const std::string& name, std::string_view unit) const;
     [[noreturn]] void refuse_expression(const Cursor& place, const std::string& text, const std::string& why) const;
 };
 
+/// What a text says whatever the numbers in it are.
+struct ValueText {
+    std::string given;             ///< the text, with quantities within expressions as SI numbers
+    std::string unclear, pointed;  ///< corrections (unclear_quotient, with_decimal_point); empty: none
+    bool quantity = false;         ///< one number with or without a unit
+};
+
+/// Returns a text where a unit is wanted. Quantities become SI numbers where expressions calculate in it. Remembers
+/// it.
+[[nodiscard]] std::shared_ptr<const ValueText> value_text(const std::string& written, std::string_view unit = "1");
+/// Returns Formula::parse of the names. Remembers it.
+[[nodiscard]] std::variant<Formula, std::string> formula_of(const std::string& text,
+                                                            const std::vector<std::string>& names);
+/// Returns the names in a text that are known.
+[[nodiscard]] std::vector<std::string> names_in(std::string_view text,
+                                                const std::function<bool(std::string_view)>& known);
 /// Returns whether a text is a number with or without a unit, not an expression.
 [[nodiscard]] bool is_quantity(std::string_view text);
 /// Returns the only type whose name is a key of the object; null: none or several.

@@ -14,7 +14,6 @@
 namespace grainsweep::campaign {
 namespace {
 
-constexpr double longest_row = 20;  // aspect ratio
 constexpr double largest_error = 0.5;
 
 using geometry::Ball;
@@ -117,7 +116,13 @@ void read_grain_shape(const Cursor& place, const MachineReading& reading, machin
     // Spheres in metres have a size of their own.
     if (!(species.diameter > 0) && section.find("spheres") && !section.find("stl"))
         species.diameter = shape->clump.diameter;
-    if (!(species.diameter > 0)) throw input_error(place.path(), "", "key 'diameter' of the species is missing");
+    if (!(species.diameter > 0))
+        throw input_error(place.path(), "",
+                          section.find("stl")
+                              ? fmt::format("key 'diameter' of the species is missing: that of the sphere of equal "
+                                            "volume, {0:.4g} in the unit of the file; \"{0:.4g} mm\" of a file in mm",
+                                            shape->clump.diameter)
+                              : "key 'diameter' of the species is missing");
     machine::OwnMass own;
     if (const auto mass = section.find("mass")) own.mass = reading.scope.number(*mass, "kg", positive_number);
     if (const auto inertia = section.find("inertia")) own.inertia = inertia_of(*inertia, reading);
@@ -133,6 +138,7 @@ void read_grain_shape(const Cursor& place, const MachineReading& reading, machin
     species.damping_mass = reading.scope.word(section, "damping_mass", words, "contact") == "body"
                                ? dem::DampingMass::body
                                : dem::DampingMass::contact;
+    species.cover = shape->overlap;
     species.shape = std::move(shape->clump);
 }
 

@@ -1,6 +1,8 @@
 #include "sweep/campaign/machine_shape_file.hpp"
+#include "sweep/campaign/file_contents.hpp"
 
 #include "solver/machine/grain_shapes.hpp"
+#include "solver/machine/spec.hpp"
 
 #include <fmt/format.h>
 
@@ -35,6 +37,18 @@ ShapeFile shape_of_stl(std::string_view contents, std::optional<std::int64_t> sp
     for (std::size_t k = 0; k < 3; ++k)
         file.inertia_error = std::max(file.inertia_error, std::abs(of_spheres[k] / of_body[k] - 1));
     return file;
+}
+
+std::vector<Grain> grains_of(const Machine& machine, const Inputs& inputs) {
+    std::vector<Grain> grains;
+    const auto files = std::get<Files>(files_named(inputs));
+    for (const auto& species : machine_spec(machine, inputs, files).species) {
+        if (!species.shape) continue;
+        const std::size_t spheres = species.shape->balls.size();
+        const double smallest = 2 * species.shape->smallest();
+        grains.push_back({species.name, spheres, species.cover, smallest, machine::cost_of_clump(spheres) / smallest});
+    }
+    return grains;
 }
 
 }  // namespace grainsweep::campaign

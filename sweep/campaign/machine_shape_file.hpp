@@ -1,11 +1,14 @@
-// Spheres that cover an STL file, for the command "shape".
+// Spheres that cover an STL file, for the command "shape"; shaped grains of a machine, for "plan".
 #pragma once
+
+#include "sweep/campaign/machine.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::campaign {
 
@@ -25,5 +28,16 @@ struct ShapeFile {
 /// Throws std::invalid_argument with one sentence for a file that is no closed surface.
 [[nodiscard]] ShapeFile shape_of_stl(std::string_view contents, std::optional<std::int64_t> spheres,
                                      std::optional<double> error);
+
+/// Shaped grains of a species.
+struct Grain {
+    std::string species;
+    std::size_t spheres = 0;
+    std::optional<double> cover;  ///< volume that an STL file and the spheres share, divided by the volume of either
+    double smallest = 0;          ///< diameter of the smallest sphere divided by the grain's
+    double cost = 0;              ///< as of ShapeFile
+};
+/// Returns the species with a shape in a case of a machine that is possible.
+[[nodiscard]] std::vector<Grain> grains_of(const Machine& machine, const Inputs& inputs);
 
 }  // namespace grainsweep::campaign

@@ -8,8 +8,24 @@
 #include <array>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::campaign {
+namespace {
+
+/// Lets measurements, conditions and removals see particles whose images lie in their regions.
+void give_images(const Section& top, machine::Spec& spec) {
+    machine::each_region(
+        spec, [&spec](machine::Region& region) { region = machine::with_images(std::move(region), spec.domain); });
+    for (const machine::Measure& measure : spec.measures) {
+        const auto* probe = machine::find_probe(measure.probe);
+        const std::string flaw = probe->flaw != nullptr ? probe->flaw(measure.options) : "";
+        if (!flaw.empty())
+            top.at("measure")[measure.name][probe->name].refuse(flaw + "; its region is longer than the period");
+    }
+}
+
+}  // namespace
 
 void read_surroundings(const Section& top, MachineReading& reading) {
     auto& spec = reading.spec;
@@ -63,6 +79,7 @@ void read_surroundings(const Section& top, MachineReading& reading) {
         if (!(spec.domain.low[k] < spec.domain.high[k]))
             place->refuse(fmt::format("\"low\" must lie below \"high\" along {}", "xyz"[k]));
     }
+    give_images(top, spec);
 }
 
 void read_checks(const Section& top, MachineReading& reading) {

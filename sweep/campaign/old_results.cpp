@@ -8,6 +8,7 @@
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
+#include "sweep/designs/calibration_layout.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -113,9 +114,23 @@ private:
             if (!found) absent.push_back(observable.name);
         }
         if (!any) refuse_file(fmt::format("it has no column of an observable; they are {}", listed(absent)));
+        for (const auto& name : counted_observables())
+            if (std::ranges::find(absent, name) != absent.end())
+                refuse_file(
+                    fmt::format("it has no column for '{}', whose missing values the calibration counts", name));
         if (!absent.empty() && !request_.partial)
             refuse_file(fmt::format("it has no column for {}; --partial imports cases without a value of {}",
                                     listed(absent), absent.size() == 1 ? "it" : "them"));
+    }
+    /// Returns the observables of a calibration's targets that count missing values.
+    [[nodiscard]] std::vector<std::string> counted_observables() const {
+        std::vector<std::string> names;
+        const auto& options = campaign_.request.options;
+        if (!options.contains("targets")) return names;
+        for (const auto& target : designs::targets_in(campaign_.request.word("targets")))
+            if (target.of && target.experiment == designs::experiment_of(campaign_.request))
+                names.push_back(designs::place_on_curve(target.observable).observable);
+        return names;
     }
     [[nodiscard]] OldColumn column_of(const std::string& cell) const {
         using Role = OldColumn::Role;

@@ -3,7 +3,6 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/simplex.hpp"
-#include "sweep/campaign/step.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -18,41 +17,12 @@ double unsigned_zero(double x) {
     return x == 0 ? 0 : x;
 }
 
-/// Exactly low at 0 and high at 1, and by rounding never outside of them.
-double value_at(const Between& range, double u) {
-    if (u <= 0) return range.low;
-    if (u >= 1) return range.high;
-    const double x = range.scale == Scale::log ? range.low * std::pow(range.high / range.low, u)
-                                               : range.low + u * (range.high - range.low);
-    return std::clamp(x, range.low, range.high);
-}
-
-const Value& value_at(const Levels& range, double u) {
-    const auto count = static_cast<double>(range.values.size());
-    const double index = std::clamp(std::floor(count * u), 0.0, count - 1);  // the last level also at u = 1
-    return range.values[static_cast<std::size_t>(index)];
-}
-
-double value_at(const stats::Distribution& range, double u) {
-    return range.quantile(u);
-}
-
 }  // namespace
 
-Value value_at(const Factor& factor, double u) {
-    if (factor.step) {
-        if (const auto* distribution = std::get_if<stats::Distribution>(&factor.range))
-            return stepped(*distribution, *factor.step, u);
-        return stepped(std::get<Between>(factor.range), *factor.step, u);
-    }
-    return std::visit([u](const auto& range) -> Value { return value_at(range, u); }, factor.range);
-}
-
 Value value_at(std::span<const Factor> factors, std::size_t j, std::span<const double> u) {
-    const auto joint = joint_value(factors.size(), j, u, [&](std::size_t k) {
-        return column_of(std::get_if<stats::Distribution>(&factors[k].range));
-    });
-    return joint ? Value{*joint} : value_at(factors[j], u[j]);
+    const auto joint =
+        joint_value(factors.size(), j, u, [&](std::size_t k) { return column_of(factors[k].distribution()); });
+    return joint ? Value{*joint} : factors[j].value(u[j]);
 }
 
 namespace {

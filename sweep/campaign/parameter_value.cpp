@@ -70,7 +70,7 @@ std::string rule_of(const ParameterSpec& parameter) {
                        in_words(std::get<Interval>(parameter.bounds)), unit_of(parameter));
 }
 
-Value read_value(const Cursor& place, const ParameterSpec& parameter, const fs::path& folder) {
+Value read_value(const Cursor& place, const ParameterSpec& parameter, const fs::path& folder, Reads reads) {
     if (std::holds_alternative<std::string>(parameter.default_value)) return read_word(place, parameter, folder);
     const auto& bounds = std::get<Interval>(parameter.bounds);
     const bool whole = std::holds_alternative<std::int64_t>(parameter.default_value);
@@ -79,7 +79,11 @@ Value read_value(const Cursor& place, const ParameterSpec& parameter, const fs::
     if (json.is_string()) {
         const auto value = in_si(json.get_ref<const std::string&>(), parameter.unit);
         if (const auto* why = std::get_if<std::string>(&value)) place.refuse(fmt::format("{}: {}", rule, *why));
-        const double number = std::get<double>(value);
+        double number = std::get<double>(value);
+        if (reads == Reads::difference) {  // 5 degC more are 5 K more
+            const auto unit = unit_of_quantity(json.get_ref<const std::string&>());
+            number -= std::get<double>(in_si(fmt::format("0 {}", unit), parameter.unit));
+        }
         const Value counted = coerced(Value{number}, parameter.default_value);
         if (!bounds.contains(number) || counted.index() != parameter.default_value.index())
             place.refuse(fmt::format("{}, and this is {}{}", rule, shortest(number), unit_of(parameter)));

@@ -6,6 +6,7 @@
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/file_contents.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/powder_sizes.hpp"
 #include "sweep/campaign/relevance.hpp"
@@ -88,7 +89,7 @@ bool is_given(const ParameterSpace& space, std::string_view name) {
            std::ranges::find(space.expressions, name, &Expression::name) != space.expressions.end();
 }
 
-std::string names_in(const std::vector<std::string>& names) {
+std::string listed_names(const std::vector<std::string>& names) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -147,9 +148,9 @@ Powder read_powder(const fs::path& file) {
 }
 
 std::string PowderUse::sentence() const {
-    std::string text = set.empty() ? std::string("sets nothing") : "sets " + names_in(set);
-    if (!overridden.empty()) text += "; the campaign itself gives " + names_in(overridden);
-    if (!unused.empty()) text += "; the scene has no place for " + names_in(unused);
+    std::string text = set.empty() ? std::string("sets nothing") : "sets " + listed_names(set);
+    if (!overridden.empty()) text += "; the campaign itself gives " + listed_names(overridden);
+    if (!unused.empty()) text += "; the scene has no place for " + listed_names(unused);
     return text;
 }
 
@@ -183,7 +184,15 @@ PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
     });
     const bool takes_files = space.scene->find_parameter("size_file") != nullptr &&
                              space.scene->find_parameter("size_distribution") != nullptr;
-    if (powder.document->contains("shape")) use.unused.emplace_back("shape");
+    if (const auto shape = top_of(powder).find("shape")) {
+        const Json& json = shape->json();
+        const std::string ratio(ratio_parameter);
+        const bool row = json.contains(ratio) && json.at(ratio).is_number() && json.size() == 1;
+        if (row && space.scene->find_parameter(ratio) != nullptr)
+            hold_value(ratio, [&](const auto& parameter) { return read_value((*shape)[ratio], parameter, {}); });
+        else
+            use.unused.emplace_back("shape");
+    }
     if (powder.sizes && !takes_files) use.unused.emplace_back("sizes beside their d50");
     if (powder.sizes && takes_files) {
         const auto& sizes = *powder.sizes;
@@ -202,7 +211,7 @@ PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
     }
     if (!defaults.empty())
         use.lacks = fmt::format("powder '{}' has no {}: the scene's own are taken, {}", powder.name, lacks_of(powder),
-                                names_in(defaults));
+                                listed_names(defaults));
     for (const auto& name : ours) {  // after all inputs are set: an input without effect on any case keeps its default
         if (!no_effect(space, *space.scene->find_parameter(name)))
             use.set.push_back(name);

@@ -123,17 +123,39 @@ private:
         }
         return std::nullopt;
     }
+    /// Whether the shares fade to a printed 0: the class may be one that rounds to 0, and no bare edge.
+    [[nodiscard]] bool fades_to(const Entry& end, const Entry& next) const {
+        constexpr double little = 0.01;  // of the whole
+        return end.stated && next.share <= little * meaning_.whole;
+    }
+    /// What the other edges would give.
+    [[nodiscard]] std::string doubt_of(const std::string& taken) const {
+        std::string others;
+        for (const auto edge : export_edges) {
+            if (edge == taken) continue;
+            try {
+                const double middle = with_edge(std::string(edge)).curve.quantile(0.5);
+                others += fmt::format("{} with --edge {} d50 is {}", others.empty() ? "" : ",", edge,
+                                      micrometre_text(middle));
+            } catch (const InputError&) {  // an end is missing with this edge
+            }
+        }
+        return "the edge is a guess from shares that fade to 0;" + others;
+    }
     /// By the kind of the instrument, by empty ends, or by the percentiles that the file states.
     [[nodiscard]] Curved by_evidence() const {
         std::string edge, why;
         const bool first_is_edge = entries_.front().share == 0, last_is_edge = entries_.back().share == 0;
-        if (columns_.sieved) {  // a sieve holds back particles larger than its openings
-            edge = "lower", why = "sieves";
-        } else if (columns_.edge) {
+        bool fades = false;
+        if (columns_.edge) {
             edge = *columns_.edge, why = "the header of the sizes";
+        } else if (columns_.sieved) {  // a sieve holds back particles larger than its openings
+            edge = "lower", why = "sieves";
         } else if (first_is_edge != last_is_edge) {
             edge = first_is_edge ? "upper" : "lower";
             why = first_is_edge ? "no share at the smallest size" : "no share at the largest size";
+            fades = first_is_edge ? fades_to(entries_.front(), entries_[1])
+                                  : fades_to(entries_.back(), entries_[entries_.size() - 2]);
         }
         if (!edge.empty())
             if (auto curved = fitting(edge)) return from(*curved, why);
@@ -150,7 +172,9 @@ private:
                 fmt::format("column {} gives the share of each class, and whether its size is the lower edge of the "
                             "class, the upper one or the middle is not stated: give it by --edge",
                             columns_.share_name));
-        return from(with_edge(edge), why);
+        Curved curved = with_edge(edge);
+        if (fades) curved.notes.push_back(doubt_of(edge));
+        return from(std::move(curved), why);
     }
 
     const std::vector<Entry>& entries_;
@@ -224,6 +248,9 @@ ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices)
     const ExportColumns columns = export_columns(grid, choices);
     ImportedSizes result;
     result.notes = grid.notes;
+    if (columns.radius)
+        result.notes.push_back(
+            fmt::format("column {} holds radii: diameters are twice as large", grid.numbers[columns.size]));
     const auto entries = export_entries::entries_of(grid, columns, result.notes);
     const Meaning meaning = meaning_of(entries, columns, choices, result.notes);
     const bool classes = std::ranges::any_of(entries, [](const auto& one) { return one.size.kind == SizeKind::range; });
@@ -263,7 +290,8 @@ ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices)
                                             curved.edge_from.empty() ? "" : "; the edge: " + curved.edge_from)},
                     {"by", fmt::format("{} ({})", meaning.by, choices.by ? "--by" : "the file")}};
     if (conversion.is_compared())
-        result.facts.emplace_back("percentiles stated", result.warnings.empty() ? "agree with the import" : "differ");
+        result.facts.emplace_back("percentiles stated",
+                                  result.warnings.empty() ? "agree with the import, within its classes" : "differ");
     return result;
 }
 

@@ -108,8 +108,10 @@ struct ExportHeading {
     bool share = false, size = false;
     bool density = false;     ///< per length or per logarithm, neither a share nor a sum
     bool percentile = false;  ///< column of percents at which sizes are given
-    bool ignored = false;     ///< numbers of rows, weights of empty sieves
+    bool ignored = false;     ///< numbers of rows
+    bool with_sieve = false;  ///< weights of sieves, empty or with what they hold
     bool sieve_number = false;
+    bool radius = false;                          ///< sizes are radii
     std::string length;                           ///< unit of sizes; empty: none
     std::optional<std::string> as = {}, by = {};  ///< as: also "sum", which is passing or retained
 };
@@ -125,6 +127,7 @@ struct ExportColumns {
     std::optional<std::string> by = {};     ///< volume, area or number
     std::optional<std::string> edge = {};   ///< lower or upper, by the header of the sizes
     bool percent = false, weighed = false, sieved = false;
+    bool radius = false;  ///< sizes are radii
 };
 [[nodiscard]] ExportColumns export_columns(const ExportGrid& grid, const ExportChoices& choices);
 /// Returns "2 'Volume (%)'": number and header of columns.

@@ -29,6 +29,9 @@ constexpr auto around_number = std::to_array<std::string_view>(
      "anzahlverteilung", ": number", ";number", ",number", "\tnumber", "; number"});
 constexpr auto sieve_words = std::to_array<std::string_view>(
     {"sieve", "sieb", "mesh", "aperture", "opening", "maschen", "tamis", "tamiz", "setacci"});
+constexpr auto lower_edge_words = std::to_array<std::string_view>({"lower", "untere", "retain", "rueckst"});
+constexpr auto upper_edge_words =
+    std::to_array<std::string_view>({"upper", "obere", "passing", "through", "durchgang"});
 using Headings = std::vector<ExportHeading>;
 
 [[noreturn]] void refuse_columns(const std::string& why) {
@@ -138,9 +141,10 @@ std::size_t size_column(const ExportGrid& grid, const Headings& headings, const 
     const auto says = [&](std::size_t column, std::span<const std::string_view> words) {
         return has_any(headings[column].plain, words);
     };
-    constexpr auto low = std::to_array<std::string_view>({"lower", "untere", "from", "von", "xu", "min"});
-    constexpr auto high = std::to_array<std::string_view>({"upper", "obere", " to", "bis", "xo", "max"});
-    if (sizes.size() == 2 && says(sizes[0], low) && says(sizes[1], high)) {
+    constexpr auto low = std::to_array<std::string_view>({"from", "von", "xu", "min"});
+    constexpr auto high = std::to_array<std::string_view>({" to", "bis", "xo", "max"});
+    if (sizes.size() == 2 && (says(sizes[0], lower_edge_words) || says(sizes[0], low)) &&
+        (says(sizes[1], upper_edge_words) || says(sizes[1], high))) {
         upper = sizes[1];
         return sizes[0];
     }
@@ -172,7 +176,8 @@ std::vector<std::size_t> share_columns(const ExportGrid& grid, const Headings& h
                                        std::vector<std::size_t>& densities) {
     std::vector<std::size_t> shares;
     for (std::size_t j = 0; j < headings.size(); ++j) {
-        if (j == found.size || j == found.upper || headings[j].ignored || !is_filled(grid, j)) continue;
+        if (j == found.size || j == found.upper || headings[j].ignored || headings[j].with_sieve || !is_filled(grid, j))
+            continue;
         const bool percents = headings[j].plain.find('%') != std::string::npos;
         if ((headings[j].size && !headings[j].share) || (!percents && counts_up(grid, j) && grid.rows.size() > 3))
             continue;
@@ -184,25 +189,44 @@ std::vector<std::size_t> share_columns(const ExportGrid& grid, const Headings& h
     return shares;
 }
 
-/// Whether two columns hold the same shares, as weights and percents do.
-bool are_alike(const ExportGrid& grid, std::size_t a, std::size_t b) {
-    constexpr double rounding = 0.01;  // of the sum
-    double sum_a = 0, sum_b = 0;
-    for (std::size_t k = 0; k < grid.rows.size(); ++k) {
-        sum_a += number_at(grid, k, a).value_or(0);
-        sum_b += number_at(grid, k, b).value_or(0);
+/// Whether two columns hold the same shares in two units, as weights and percents do. Two columns of one unit are two
+/// samples unless they are equal.
+bool are_alike(const ExportGrid& grid, const Headings& headings, std::size_t a, std::size_t b) {
+    const auto is_percent = [&](std::size_t j) { return headings[j].plain.find('%') != std::string::npos; };
+    const double rounding = is_percent(a) == is_percent(b) ? 1e-9 : 0.005;  // of the whole
+    const auto value = [&](std::size_t k, std::size_t j) { return number_at(grid, k, j).value_or(0); };
+    bool rises = true, falls = true;
+    for (std::size_t k = 1; k < grid.rows.size(); ++k) {
+        rises = rises && value(k, a) >= value(k - 1, a);
+        falls = falls && value(k, a) <= value(k - 1, a);
     }
-    if (!(sum_a > 0 && sum_b > 0)) return false;
+    double whole_a = 0, whole_b = 0;  // of sums the largest one, of classes their sum
+    for (std::size_t k = 0; k < grid.rows.size(); ++k) {
+        whole_a = rises || falls ? std::max(whole_a, value(k, a)) : whole_a + value(k, a);
+        whole_b = rises || falls ? std::max(whole_b, value(k, b)) : whole_b + value(k, b);
+    }
+    if (!(whole_a > 0 && whole_b > 0)) return false;
     for (std::size_t k = 0; k < grid.rows.size(); ++k)
-        if (!(std::abs(number_at(grid, k, a).value_or(0) / sum_a - number_at(grid, k, b).value_or(0) / sum_b) <
-              rounding))
-            return false;
+        if (!(std::abs(value(k, a) / whole_a - value(k, b) / whole_b) <= rounding)) return false;
     return true;
 }
 
 std::size_t share_column(const ExportGrid& grid, const Headings& headings, const ExportChoices& choices,
                          const ExportColumns& found) {
-    if (choices.shares) return chosen_column(grid, "--shares", *choices.shares);
+    std::vector<std::size_t> with_sieves;
+    for (std::size_t j = 0; j < headings.size(); ++j)
+        if (headings[j].with_sieve && is_filled(grid, j)) with_sieves.push_back(j);
+    const auto refuse_weights = [&](const std::vector<std::size_t>& columns) {
+        refuse_columns(
+            fmt::format("{} weighs the sieve too: add a column of what each sieve retained, the difference "
+                        "of its weights with and without powder",
+                        column_list(grid, columns)));
+    };
+    if (choices.shares) {
+        const auto chosen = chosen_column(grid, "--shares", *choices.shares);
+        if (headings[chosen].with_sieve) refuse_weights({chosen});
+        return chosen;
+    }
     std::vector<std::size_t> densities;
     auto shares = share_columns(grid, headings, found, densities);
     if (choices.sample && !grid.sample_chosen) {
@@ -232,12 +256,13 @@ std::size_t share_column(const ExportGrid& grid, const Headings& headings, const
     if (shares.size() == 1) return shares.front();
     if (shares.size() > 1 && std::ranges::all_of(shares, [&](auto j) {
             const auto &a = headings[shares.front()].by, &b = headings[j].by;
-            return (!a || !b || a == b) && are_alike(grid, shares.front(), j);
+            return (!a || !b || a == b) && are_alike(grid, headings, shares.front(), j);
         }))
         return shares.back();
     if (shares.empty() && !densities.empty())
         refuse_columns(fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
                                    column_list(grid, densities)));
+    if (shares.empty() && !with_sieves.empty()) refuse_weights(with_sieves);
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j)
         if (j != found.size && is_filled(grid, j)) all.push_back(j);
@@ -363,6 +388,7 @@ ExportColumns export_columns(const ExportGrid& grid, const ExportChoices& choice
         throw input_error("--shares", grid.headers[columns.share], "is the column of the sizes");
     const auto& heading = headings[columns.share];
     columns.as = heading.as;
+    columns.radius = headings[columns.size].radius;
     columns.share_name = column_list(grid, {columns.share});
     columns.percent =
         heading.plain.find('%') != std::string::npos || heading.plain.find("percent") != std::string::npos;
@@ -372,8 +398,12 @@ ExportColumns export_columns(const ExportGrid& grid, const ExportChoices& choice
     columns.weighed = !columns.percent && heading.as != "passing" && heading.as != "sum" &&
                       (grams || has_any(heading.plain, weights));
     const auto& size_header = headings[columns.size].plain;
-    if (has_any(size_header, std::to_array<std::string_view>({"lower", "untere"}))) columns.edge = "lower";
-    if (has_any(size_header, std::to_array<std::string_view>({"upper", "obere"}))) columns.edge = "upper";
+    if (size_header.starts_with("log") || size_header.starts_with("lg ") || size_header.starts_with("ln ") ||
+        has_any(size_header, std::to_array<std::string_view>({"log10", "log(", "lg(", "ln("})))
+        refuse_columns(
+            fmt::format("column {} holds logarithms of sizes: export the sizes", column_list(grid, {columns.size})));
+    if (has_any(size_header, lower_edge_words)) columns.edge = "lower";
+    if (has_any(size_header, upper_edge_words)) columns.edge = "upper";
     const bool counted = heading.by == "number";
     const bool headed = std::ranges::any_of(headings, [](const auto& one) { return has_any(one.plain, sieve_words); });
     columns.sieved = !counted && (headed || has_any(grid.words, sieve_words) || headings[columns.size].sieve_number ||

@@ -41,7 +41,8 @@ void convert(ExportSize& size, const ExportColumns& columns, std::size_t line) {
     if (size.kind == Kind::pan) return;
     const bool own = !size.unit.empty() && size.unit != "mesh";
     const std::string unit = own ? size.unit : columns.unit;
-    const auto at = [&](double value) { return in_metres(value, unit, columns.sieved, line); };
+    const double diameters = columns.radius ? 2 : 1;
+    const auto at = [&](double value) { return diameters * in_metres(value, unit, columns.sieved, line); };
     if (unit != "phi" && size.low < 0) {  // "-200": through the sieve
         size.kind = Kind::below;
         size.low = size.high = at(-size.low);

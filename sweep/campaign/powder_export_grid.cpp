@@ -134,6 +134,7 @@ struct ExportTable {
     ExportGrid grid;
     std::size_t head = 0, end = 0;  ///< lines, from 0; end: behind it
     std::size_t text = 0;           ///< of the export
+    std::string broken;             ///< why a row of it is missing; empty: none is
 
     [[nodiscard]] std::string place() const {
         return fmt::format("{}lines {} to {}", grid.sheet.empty() ? "" : "sheet '" + grid.sheet + "', ", head + 1, end);
@@ -347,6 +348,32 @@ void keep_sample(ExportGrid& grid, const std::optional<std::string>& sample) {
     }
 }
 
+/// The one cell of a line of numbers that is none; empty: there is no such cell, or the line is another one.
+std::optional<std::string> odd_cell(const Lines& lines, std::size_t line, const Block& block, bool amid_rows) {
+    if (line >= lines.size()) return std::nullopt;
+    const Cells cells = export_blocks::cells_of_line(lines[line], block.separator);
+    if (cells.size() < 2 || cells.size() != block.width) return std::nullopt;
+    std::vector<std::string> odd;
+    for (const auto& cell : cells)
+        if (!export_number(cell, block.decimal_comma) && !export_size(cell, block.decimal_comma)) odd.push_back(cell);
+    if (odd.size() != 1) return std::nullopt;
+    const bool digits = !odd[0].empty() && std::string_view("0123456789.-+").find(odd[0][0]) != std::string_view::npos;
+    return digits || amid_rows ? std::optional(odd[0]) : std::nullopt;
+}
+
+/// Why a block lacks a row: a line at its end, or above it, of which one cell is no number. Empty: it lacks none.
+std::string broken_row(const Lines& lines, const std::vector<Block>& blocks, const Block& block) {
+    const std::size_t end = block.first + block.rows;
+    const bool goes_on = std::ranges::any_of(blocks, [&](const Block& next) { return next.first == end + 1; });
+    const auto sentence = [](std::size_t line, const std::string& cell) {
+        return fmt::format("line {}: '{}' is no number", line + 1, cell);
+    };
+    if (const auto odd = odd_cell(lines, end, block, goes_on)) return sentence(end, *odd);
+    if (block.first == 0) return {};
+    const auto odd = odd_cell(lines, block.first - 1, block, false);
+    return odd ? sentence(block.first - 1, *odd) : std::string();
+}
+
 void append(std::vector<ExportTable>& into, std::vector<ExportTable>&& tables) {
     into.insert(into.end(), std::make_move_iterator(tables.begin()), std::make_move_iterator(tables.end()));
 }
@@ -356,15 +383,18 @@ void collect(const ExportText& text, std::size_t index, std::vector<ExportTable>
              std::vector<ExportTable>& others) {
     const Lines lines = export_blocks::lines_of(text.text);
     std::vector<ExportTable> found, rest;
-    for (const auto& block : best_blocks(lines, text.text)) {
+    const auto blocks = best_blocks(lines, text.text);
+    for (const auto& block : blocks) {
         ExportTable table = table_of(lines, block, text);
         table.text = index;
+        table.broken = broken_row(lines, blocks, block);
         auto& last = found.empty() ? rest : found;
         if (!last.empty() && &last == &found && continues(last.back(), table)) {
             auto& grid = last.back().grid;
             grid.rows.insert(grid.rows.end(), table.grid.rows.begin(), table.grid.rows.end());
             grid.lines.insert(grid.lines.end(), table.grid.lines.begin(), table.grid.lines.end());
             last.back().end = table.end;
+            if (last.back().broken.empty()) last.back().broken = std::move(table.broken);
             continue;
         }
         (is_size_table(table.grid) ? found : rest).push_back(std::move(table));
@@ -392,8 +422,9 @@ ExportGrid export_grid(std::string_view bytes, const ExportChoices& choices) {
     }
     if (tables.empty())
         throw input_error("EXPORT", "", "no table of sizes and shares is in it: two or more lines of numbers");
-    ExportGrid grid =
-        tables.size() == 1 ? std::move(tables.front().grid) : std::move(chosen_table(tables, choices.sample).grid);
+    ExportTable& table = tables.size() == 1 ? tables.front() : chosen_table(tables, choices.sample);
+    if (!table.broken.empty()) throw input_error("EXPORT", "", table.broken);
+    ExportGrid grid = std::move(table.grid);
     grid.sample_chosen = tables.size() > 1 && choices.sample;
     if (!grid.sample_chosen) keep_sample(grid, choices.sample);
     return grid;

@@ -43,7 +43,8 @@ constexpr auto area_words = std::to_array<std::string_view>({"surface", "area", 
 constexpr auto density_words =
     std::to_array<std::string_view>({"%/um", "1/um", "% / um", "1 / um", "%/mm", "1/mm", "per um", "log", "3lg", "0lg",
                                      "dlg", "/lg", "lg(", "d(ln", "dln", "pdf", "error", "std"});
-constexpr auto empty_sieve_words =
+constexpr auto radius_words = std::to_array<std::string_view>({"radius", "radii", "rayon", "raggio", "radio "});
+constexpr auto sieve_weight_words =
     std::to_array<std::string_view>({"empty", "tare", "leer", "tara", "sieve +", "sieve+", "with sample", "sieve and",
                                      "voll", "brutto", "gross", "vide"});
 
@@ -155,8 +156,9 @@ ExportHeading export_heading(const std::string& header) {
     heading.length = length_in(plain);
     heading.percentile = plain.find("%tile") != plain.npos || plain.find("percentile") != plain.npos ||
                          plain.find("perzentil") != plain.npos || plain.find("% tile") != plain.npos;
-    heading.ignored = counts_only(plain) || has_word(plain, empty_sieve_words);
-    if (heading.ignored) return heading;
+    heading.ignored = counts_only(plain);
+    heading.with_sieve = has_word(plain, sieve_weight_words);
+    if (heading.ignored || heading.with_sieve) return heading;
     set_kind(heading, symbols);
     const bool per_length = has_word(plain, density_words);
     const bool named_density = plain.find("densit") != plain.npos || plain.find("dichte") != plain.npos;
@@ -180,6 +182,7 @@ ExportHeading export_heading(const std::string& header) {
     heading.size = !heading.share && !heading.density &&
                    (has_word(plain, size_words) || !heading.length.empty() || heading.sieve_number || symbol);
     if (heading.size) heading.as.reset();
+    heading.radius = heading.size && has_word(plain, radius_words);
     return heading;
 }
 

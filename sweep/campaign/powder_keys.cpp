@@ -15,7 +15,9 @@ constexpr auto top_keys = std::to_array<Field>({
     {"sizes", PowderKind::object, "how diameters are distributed"},
     {"cut", PowderKind::object, "sizes that are left out: what a sieve or a classifier takes away"},
     {"contacts", PowderKind::object, "how particles touch each other and walls"},
-    {"shape", PowderKind::object, "of the grains, as of a species in a machine file; scenes without shapes have spheres"},
+    {"shape", PowderKind::object,
+     "of the grains, as of a species in a machine file; of it a scene takes aspect_ratio alone, if it has this "
+     "parameter"},
     {"measured", PowderKind::array, "what was measured of the powder; for readers"},
     {"posterior", PowderKind::text, "CSV file of settings that a calibration found, beside the powder file"},
 });

@@ -57,7 +57,8 @@ struct FromReply {};
 struct ProgramObservable {
     std::string name, unit, meaning;
     Shape shape = Shape::scalar;
-    Interval bounds;  ///< of every value
+    bool optional = false;  ///< a completed case may have no value
+    Interval bounds;        ///< of every value
     std::variant<FromReply, FromJson, FromCsv, FromOutput> from;
 };
 

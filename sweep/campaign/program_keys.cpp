@@ -99,6 +99,7 @@ std::span<const Field> program_observable_keys() {
          {},
          shape_names},
         {"bounds", KeyKind::array, "[low, high], null: open; a case with a value outside is rejected"},
+        {"optional", KeyKind::flag, "true: a case without a value is completed all the same", "false"},
         {"from", KeyKind::object, "where its value is found; needed with files, absent with lines"},
     });
     return keys;

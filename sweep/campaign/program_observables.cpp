@@ -96,6 +96,7 @@ ProgramObservable read_output(const std::string& name, const Section& section, P
     if (const auto unit = section.find("unit")) observable.unit = unit->text();
     if (const auto meaning = section.find("meaning")) observable.meaning = meaning->text();
     if (const auto bounds = section.find("bounds")) observable.bounds = read_program_bounds(*bounds, observable.unit);
+    observable.optional = section.flag("optional", false);
     const auto from = section.find("from");
     const bool files = protocol == Program::Protocol::files;
     if (files != from.has_value())

@@ -256,6 +256,12 @@ void read_notes(const std::string& name, const Cursor& here, const Given& given,
         }
     }
     parameter.standard = read_standard(told, parameter, given);
+    const auto* range = std::get_if<Interval>(&parameter.bounds);
+    if (given.is_conditional(name) && !told.find("default") && range != nullptr && !range->contains(0))
+        told.at("bounds").refuse(
+            fmt::format("0 lies outside, and '{}' is 0 where its \"when\" is false: state "
+                        "\"default\"",
+                        name));
 }
 
 }  // namespace

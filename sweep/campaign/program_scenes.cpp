@@ -2,6 +2,7 @@
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_warnings.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -51,6 +52,9 @@ SceneInfo scene_of(const Program& program, std::string name) {
         const auto chosen = std::ranges::find_if(settings, is_chosen);
         const double own = chosen == settings.end() ? seconds : chosen->cost_seconds.value_or(seconds);
         return CostEstimate{.seconds = own, .particle_steps = 0, .bytes = 0};
+    };
+    scene.warnings = [placed = placed_names(program)](const Inputs& inputs, const Files&) {
+        return format_warnings(placed, inputs);
     };
     return scene;
 }

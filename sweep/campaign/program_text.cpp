@@ -67,9 +67,11 @@ decltype(ProgramObservable::from) source_in(const Json& from) {
 }
 
 Json answer_json(const ProgramObservable& observable) {
-    return {{"shape", shape_words[static_cast<std::size_t>(observable.shape)]},
-            {"bounds", json_of(observable.bounds)},
-            {"from", json_of(observable.from)}};
+    Json answer = {{"shape", shape_words[static_cast<std::size_t>(observable.shape)]},
+                   {"bounds", json_of(observable.bounds)},
+                   {"from", json_of(observable.from)}};
+    if (observable.optional) answer["optional"] = true;
+    return answer;
 }
 
 /// Returns the parts of the program that change an answer.
@@ -159,7 +161,8 @@ void read_observables(const Json& measured, const Json& settings, Program& progr
         const auto& told = settings.at("observables").at(name);
         program.observables.push_back({name, told.at("unit").get<std::string>(), told.at("meaning").get<std::string>(),
                                        enum_named<Shape>(shape_words, one.at("shape").get<std::string>()),
-                                       interval_in(one.at("bounds")), source_in(one.at("from"))});
+                                       one.value("optional", false), interval_in(one.at("bounds")),
+                                       source_in(one.at("from"))});
     }
 }
 

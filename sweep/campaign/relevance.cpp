@@ -33,7 +33,7 @@ bool can_satisfy(const Relevance& condition, const Factor& factor) {
     if (const auto* levels = std::get_if<Levels>(&factor.range)) {
         return std::ranges::any_of(levels->values, [&](const Value& value) { return satisfies(condition, value); });
     }
-    const auto value = [&](double u) { return std::get<double>(value_at(factor, u)); };
+    const auto value = [&](double u) { return factor.number(u); };
     if (condition.condition == Relevance::Condition::zero) return value(0) <= 0 && value(1) >= 0;
     return condition.condition == Relevance::Condition::nonzero;
 }
@@ -82,6 +82,12 @@ std::optional<std::string> no_effect(const ParameterSpace& space, const Paramete
                            fixed == space.fixed.end() ? " by default" : "");
     }
     return std::nullopt;
+}
+
+bool is_left_open(const ParameterSpace& space, const Inputs& stated, const std::string& name) {
+    const auto* parameter = space.scene->find_parameter(name);
+    return parameter != nullptr && !no_effect(space, *parameter) && find_factor(space, name) == nullptr &&
+           find_expression(space, name) == space.expressions.end() && !stated.contains(name);
 }
 
 void resolve_accuracy(ParameterSpace& space, std::string_view accuracy) {

@@ -13,6 +13,10 @@ namespace grainsweep::campaign {
 /// holds if one of its levels, or a value of its range, satisfies it.
 [[nodiscard]] std::optional<std::string> no_effect(const ParameterSpace& space, const ParameterSpec& parameter);
 
+/// Returns whether an accuracy setting may decide an input: the file neither varies it nor states it, and it acts on
+/// some case.
+[[nodiscard]] bool is_left_open(const ParameterSpace& space, const Inputs& stated, const std::string& name);
+
 /// Adds the inputs of an accuracy setting that are neither fixed nor varied. Inputs without effect keep their defaults.
 void resolve_accuracy(ParameterSpace& space, std::string_view accuracy);
 

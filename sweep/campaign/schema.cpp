@@ -501,6 +501,7 @@ std::string campaign_schema(int indentation) {
     calibration["targets"]["items"] = section(target_keys());
     for (const char* key : {"value", "error"})
         calibration["targets"]["items"]["properties"][key]["type"] = {"number", "string"};
+    calibration["targets"]["items"]["properties"]["without_value"].update(section(without_value_keys()));
     calibration["experiments"]["minProperties"] = 1;
     calibration["experiments"]["additionalProperties"] = section(experiment_keys());
     calibration["experiments"]["properties"][std::string(notes_key)] = notes_schema();

@@ -2,8 +2,10 @@
 #include "sweep/campaign/sections.hpp"
 
 #include "stats/levels.hpp"
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/relevance.hpp"
 
 #include <fmt/format.h>
 
@@ -118,6 +120,28 @@ AccuracyGoal read_goal(const Cursor& place, const SceneInfo& scene, const std::v
     return goal;
 }
 
+/// Refuses a goal where the campaign itself decides all that the settings differ in: they would agree whatever their
+/// error.
+void refuse_decided_settings(const Cursor& place, const AccuracyGoal& goal, const Campaign& campaign) {
+    const auto& settings = campaign.scene().accuracy;
+    const Inputs& measure = settings.find(AccuracyGoal::measure)->second;
+    const Inputs stated = fixed_as_stated(campaign.space);
+    std::string decided;
+    for (const auto& [setting, inputs] : settings) {
+        if (setting == AccuracyGoal::measure || (goal.setting && setting != *goal.setting)) continue;
+        for (const auto& [name, value] : inputs) {
+            if (const auto at = measure.find(name); at != measure.end() && at->second == value) continue;
+            if (is_left_open(campaign.space, stated, name)) return;
+            decided = name;
+        }
+    }
+    if (!decided.empty())
+        place.refuse(
+            fmt::format("the campaign fixes or varies '{}', and with it all that the accuracy settings differ "
+                        "in: they would agree whatever their error",
+                        decided));
+}
+
 /// Whether two points may be one case.
 bool may_repeat(const Factor& factor) {
     const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
@@ -137,6 +161,7 @@ std::optional<AccuracyGoal> read_accuracy(const Cursor& place, Campaign& campaig
         return std::nullopt;
     }
     auto goal = read_goal(place, scene, offered);
+    refuse_decided_settings(place, goal, campaign);
     // The parameters of a program's setting have no default.
     const bool has_no_default = is_program(scene.name);
     campaign.accuracy = goal.setting.value_or(has_no_default ? std::string(AccuracyGoal::measure) : "");

@@ -17,10 +17,12 @@ namespace grainsweep::campaign {
 
 struct Powder;
 
+/// Whether a text with a unit is a value, or the difference of two, such as a standard deviation: 5 degC are 5 K then.
+enum class Reads { value, difference };
 /// Reads a value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file
 /// in `folder` becomes "file:<hash of its contents>:<absolute path>".
-[[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter,
-                               const std::filesystem::path& folder);
+[[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter, const std::filesystem::path& folder,
+                               Reads reads = Reads::value);
 
 /// Returns the rule for a number of the parameter, such as "'gap' must be a number above 0 m".
 [[nodiscard]] std::string rule_of(const ParameterSpec& parameter);
@@ -28,6 +30,9 @@ struct Powder;
 /// Returns the parameter of a name; refuses unknown names with the nearest one.
 [[nodiscard]] const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene);
 
+/// Reads one factor, but not the values of a sample.
+[[nodiscard]] Factor read_factor(const Section& section, const ParameterSpec& parameter,
+                                 const std::filesystem::path& folder);
 [[nodiscard]] std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene,
                                                const std::filesystem::path& folder);
 /// Reads the distribution under `key` of a factor. Throws InputError if the bounds of the parameter cut off more
@@ -81,8 +86,6 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
 void read_calibration(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
 /// Writes the data of the factors that a design may use, and the seed, to the request.
 void set_factors(Campaign& campaign);
-/// Returns a factor as designs use it.
-[[nodiscard]] designs::FactorRange range_of(const Factor& factor);
 /// Refuses keys that conflict with a growing design, which chooses its next points itself.
 void check_growing(const Cursor& place, const Campaign& campaign);
 /// Reads rows of factor values from a CSV file whose header names the factors, in any order.

@@ -1,17 +1,23 @@
 #include "sweep/campaign/stated_distribution.hpp"
 
 #include "sweep/campaign/case.hpp"
-#include "sweep/campaign/overloaded.hpp"
+#include "sweep/campaign/keys.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace grainsweep::campaign {
 
 namespace {
+
+using Form = stats::Distribution::Form;
 
 std::string values_text(std::span<const double> values) {
     std::string text;
@@ -55,38 +61,51 @@ StatedColumn column_in(std::string_view text) {
     return stated;
 }
 
+const Type& type_of(const stats::Distribution& distribution) {
+    return distribution_types()[distribution.form().index()];
+}
+
+using Members = std::vector<std::pair<std::string_view, double*>>;
+
+/// Returns the members of an object of the type, in the order of its fields.
+Members members_of(const Type& type, void* object) {
+    Members members;
+    for (const auto& field : type.fields)
+        if (field.at != nullptr) members.emplace_back(field.name, static_cast<double*>(field.at(object)));
+    return members;
+}
+
+/// Returns the figures of a distribution, in the order of its fields.
+std::vector<std::pair<std::string_view, double>> figures(const stats::Distribution& distribution) {
+    Form form = distribution.form();
+    std::vector<std::pair<std::string_view, double>> found;
+    void* const object = std::visit([](auto& own) -> void* { return &own; }, form);
+    for (const auto& [name, number] : members_of(type_of(distribution), object)) found.emplace_back(name, *number);
+    return found;
+}
+
+const stats::SampleColumn* sampled(const stats::Distribution& distribution) {
+    return std::get_if<stats::SampleColumn>(&distribution.form());
+}
+
 }  // namespace
 
 std::string stated_text(const stats::Distribution& distribution) {
-    const auto within = [&] {
-        return fmt::format(" within {} {}", shortest(distribution.low()), shortest(distribution.high()));
-    };
-    return std::visit(
-        Overloaded{[&](const stats::Normal& form) {
-                       return fmt::format("normal {} {}", shortest(form.mean), shortest(form.sd)) + within();
-                   },
-                   [&](const stats::Lognormal& form) {
-                       return fmt::format("lognormal {} {}", shortest(form.median), shortest(form.sigma)) + within();
-                   },
-                   [&](const stats::Weibull& form) {
-                       return fmt::format("weibull {} {}", shortest(form.scale), shortest(form.shape)) + within();
-                   },
-                   [&](const stats::Gumbel& form) {
-                       return fmt::format("gumbel {} {}", shortest(form.location), shortest(form.scale)) + within();
-                   },
-                   [](const stats::Triangular& form) {
-                       return fmt::format("triangular {} {} {}", shortest(form.low), shortest(form.mode),
-                                          shortest(form.high));
-                   },
-                   [](const stats::Beta& form) {
-                       return fmt::format("beta {} {} {} {}", shortest(form.low), shortest(form.high), shortest(form.a),
-                                          shortest(form.b));
-                   },
-                   [](const stats::SampleColumn& form) {
-                       return fmt::format("sample {} of {} in {}:{}", form.column + 1, form.sample->columns(),
-                                          hash_of_columns(*form.sample), values_text(form.sample->column(form.column)));
-                   }},
-        distribution.form());
+    if (const auto column = stated_column(distribution))
+        return fmt::format("sample {} of {} in {}:{}", column->column + 1, sampled(distribution)->sample->columns(),
+                           column->sample, values_text(column->values));
+    std::string text(name_of(distribution));
+    for (const auto& [name, number] : figures(distribution)) text.append(" ").append(shortest(number));
+    if (!distribution.has_ends())
+        text += fmt::format(" within {} {}", shortest(distribution.low()), shortest(distribution.high()));
+    return text;
+}
+
+std::optional<StatedColumn> stated_column(const stats::Distribution& distribution) {
+    const auto* column = sampled(distribution);
+    if (column == nullptr) return std::nullopt;
+    const auto values = column->sample->column(column->column);
+    return StatedColumn{column->column, hash_of_columns(*column->sample), {values.begin(), values.end()}};
 }
 
 std::variant<std::monostate, stats::Distribution, StatedColumn> distribution_in(std::string_view text) {
@@ -94,20 +113,28 @@ std::variant<std::monostate, stats::Distribution, StatedColumn> distribution_in(
     const auto kind = text.substr(0, space);
     const auto rest = text.substr(space);
     if (kind == "sample") return column_in(rest);
+    const auto type = std::ranges::find(distribution_types(), kind, &Type::name);
+    if (type == distribution_types().end()) return {};
     const auto numbers = numbers_in_words(rest);  // "within" is none
-    if (kind == "normal" && numbers.size() == 5)
-        return stats::Distribution(stats::Normal{numbers[0], numbers[1]}, numbers[3], numbers[4]);
-    if (kind == "lognormal" && numbers.size() == 5)
-        return stats::Distribution(stats::Lognormal{numbers[0], numbers[1]}, numbers[3], numbers[4]);
-    if (kind == "weibull" && numbers.size() == 5)
-        return stats::Distribution(stats::Weibull{numbers[0], numbers[1]}, numbers[3], numbers[4]);
-    if (kind == "gumbel" && numbers.size() == 5)
-        return stats::Distribution(stats::Gumbel{numbers[0], numbers[1]}, numbers[3], numbers[4]);
-    if (kind == "triangular" && numbers.size() == 3)
-        return stats::Distribution(stats::Triangular{numbers[0], numbers[1], numbers[2]});
-    if (kind == "beta" && numbers.size() == 4)
-        return stats::Distribution(stats::Beta{numbers[0], numbers[1], numbers[2], numbers[3]});
-    return {};
+    Form form;
+    const auto members = members_of(*type, type->make(&form));
+    const bool truncated = numbers.size() == members.size() + 3;
+    if (!truncated && numbers.size() != members.size()) return {};
+    for (std::size_t k = 0; k < members.size(); ++k) *members[k].second = numbers[k];
+    if (!truncated) return stats::Distribution(form);
+    return stats::Distribution(form, numbers[members.size() + 1], numbers[members.size() + 2]);
+}
+
+std::string_view name_of(const stats::Distribution& distribution) {
+    return type_of(distribution).name;
+}
+
+std::map<std::string, double> figures_of(const stats::Distribution& distribution) {
+    std::map<std::string, double> named;
+    for (const auto& [name, number] : figures(distribution)) named.emplace(name, number);
+    if (std::isfinite(distribution.low())) named.emplace("low", distribution.low());
+    if (std::isfinite(distribution.high())) named.emplace("high", distribution.high());
+    return named;
 }
 
 std::string_view without_values(std::string_view text) {
@@ -115,32 +142,14 @@ std::string_view without_values(std::string_view text) {
 }
 
 std::string described(const stats::Distribution& distribution) {
-    return std::visit(
-        Overloaded{
-            [](const stats::Normal& form) { return fmt::format("normal, mean {:.6g}, sd {:.6g}", form.mean, form.sd); },
-            [](const stats::Lognormal& form) {
-                return fmt::format("lognormal, median {:.6g}, sigma {:.6g}", form.median, form.sigma);
-            },
-            [](const stats::Weibull& form) {
-                return fmt::format("weibull, scale {:.6g}, shape {:.6g}", form.scale, form.shape);
-            },
-            [](const stats::Gumbel& form) {
-                return fmt::format("gumbel, location {:.6g}, scale {:.6g}", form.location, form.scale);
-            },
-            [](const stats::Triangular& form) {
-                return fmt::format("triangular, low {:.6g}, mode {:.6g}, high {:.6g}", form.low, form.mode, form.high);
-            },
-            [](const stats::Beta& form) {
-                return fmt::format("beta, low {:.6g}, high {:.6g}, a {:.6g}, b {:.6g}", form.low, form.high, form.a,
-                                   form.b);
-            },
-            [](const stats::SampleColumn& form) {
-                return form.sample->columns() == 1
-                           ? fmt::format("sample of {} values", form.sample->rows())
-                           : fmt::format("column {} of {} of a sample of {} rows", form.column + 1,
-                                         form.sample->columns(), form.sample->rows());
-            }},
-        distribution.form());
+    if (const auto* column = sampled(distribution))
+        return column->sample->columns() == 1
+                   ? fmt::format("sample of {} values", column->sample->rows())
+                   : fmt::format("column {} of {} of a sample of {} rows", column->column + 1,
+                                 column->sample->columns(), column->sample->rows());
+    std::string text(name_of(distribution));
+    for (const auto& [name, number] : figures(distribution)) text += fmt::format(", {} {:.6g}", name, number);
+    return text;
 }
 
 }  // namespace grainsweep::campaign

@@ -1,4 +1,4 @@
-// Design request of a stored campaign, converted from the text in the database.
+// Design request and parameter space of a stored campaign.
 #pragma once
 
 #include "sweep/campaign/identity.hpp"
@@ -16,7 +16,5 @@ namespace grainsweep::campaign {
 [[nodiscard]] Inputs fixed_values(const Identity& identity, const SceneInfo& scene);
 /// Returns the parameter space of a stored campaign, without compiled `when` clauses; empty for an unknown scene.
 [[nodiscard]] std::optional<ParameterSpace> space_of(const Identity& identity);
-/// Returns the factors of the campaign; levels as text.
-[[nodiscard]] std::vector<Factor> factors_asked(const Identity& identity);
 
 }  // namespace grainsweep::campaign

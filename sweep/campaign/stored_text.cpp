@@ -192,24 +192,22 @@ std::string at_setting(std::string_view campaign_file, const AtSetting& at) {
 }
 
 std::string text_of_experiment(std::string_view campaign_file, const Identity& campaign) {
-    const auto options = options_in(campaign);
+    const auto* experiment = word_of(campaign, "experiment");
     Json document = document_in(campaign_file);
     const auto place = Json::json_pointer("/calibration/experiments");
-    if (!options.contains("experiment") || !document.is_object() || !document.contains(place))
-        return std::string(campaign_file);
-    const auto& name = options.find("experiment")->second;
+    if (experiment == nullptr || !document.is_object() || !document.contains(place)) return std::string(campaign_file);
+    const auto& name = *experiment;
     const Json own = document[place].value(name, Json::object());
     for (const char* key : {"scene", "machine", "program"})
         if (own.contains(key)) document[key] = own[key];
     if (!own.contains("scene")) document["scene"] = own.contains("machine") ? "machine" : "program";
-    const auto known = factor_names(campaign);
     Json factors = Json::array(), fixed = own.value("fixed", Json::object()), targets = Json::array();
     for (const auto& factor : document["factors"])
-        if (std::ranges::find(known, factor["name"].get<std::string>()) != known.end()) factors.push_back(factor);
+        if (std::ranges::count(campaign.factors, factor["name"].get<std::string>(), &Factor::name) > 0)
+            factors.push_back(factor);
     const Json shared = document.value("fixed", Json::object());
     for (const auto& [parameter, value] : shared.items())
-        if (!fixed.contains(parameter) && ("\n" + campaign.fixed).find("\n" + parameter + " = ") != std::string::npos)
-            fixed[parameter] = value;
+        if (!fixed.contains(parameter) && campaign.fixed.contains(parameter)) fixed[parameter] = value;
     for (const auto& target : document["calibration"]["targets"])
         if (target.value("of", "") == name) targets.push_back(target);
     document["factors"] = factors;

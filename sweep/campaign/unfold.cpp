@@ -19,10 +19,10 @@ namespace {
 /// A distribution without ends has no value at the end of its cube.
 void check_ends(const Campaign& campaign, const designs::PointSet& points) {
     const auto& factors = campaign.request.factors;
-    if (!points.rows.empty() || std::ranges::none_of(factors, &designs::FactorRange::endless)) return;
+    if (!points.rows.empty() || std::ranges::none_of(factors, &Factor::endless)) return;
     for (std::size_t p = 0; p < points.size(); ++p)
         for (std::size_t j = 0; j < factors.size(); ++j)
-            if (const double u = points.point(p)[j]; factors[j].endless && (u <= 0 || u >= 1))
+            if (const double u = points.point(p)[j]; factors[j].endless() && (u <= 0 || u >= 1))
                 throw input_error(
                     "$.design", campaign.design,
                     fmt::format("its point {} stands at an end of factor '{}', whose distribution has none: give "

@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/cli/stored_case.hpp"
 #include "sweep/workers/program_folder.hpp"
 #include "sweep/workers/program_results.hpp"
 
@@ -158,9 +159,8 @@ AdoptedCounts adopt_answers(store::Store& store, const campaign::Campaign& campa
             origin = ", further observables read from its folder";
         }
         result.attempt = {question.id, 1};
-        result.message =
-            fmt::format("{}{}adopted from case {} of {}{}", result.message, result.message.empty() ? "" : "; ", old_id,
-                        campaign::program_scene_name(*adopted.program), origin);
+        result.message = fmt::format("{}{}{}{} of {}{}", result.message, result.message.empty() ? "" : "; ",
+                                     adopted_from, old_id, campaign::program_scene_name(*adopted.program), origin);
         all.push_back(std::move(*taken));
     }
     store.group([&] {

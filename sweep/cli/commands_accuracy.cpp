@@ -88,17 +88,6 @@ std::vector<std::vector<Value>> first_points(const Campaign& campaign, std::int6
     return rows;
 }
 
-/// Whether a setting may decide an input: it is neither varied nor fixed by the file, and matters to some case.
-bool is_free(const Campaign& campaign, const Inputs& stated, const std::string& name) {
-    const auto& space = campaign.space;
-    const auto* parameter = space.scene->find_parameter(name);
-    if (parameter == nullptr || campaign::no_effect(space, *parameter)) return false;
-    if (std::ranges::find(space.factors, name, &campaign::Factor::name) != space.factors.end()) return false;
-    if (std::ranges::find(space.expressions, name, &campaign::Expression::name) != space.expressions.end())
-        return false;
-    return !stated.contains(name);
-}
-
 /// Returns the fixed inputs of the file without those of its accuracy setting.
 Inputs fixed_by_file(const Campaign& campaign) {
     Inputs stated = campaign.space.fixed;
@@ -135,11 +124,11 @@ std::vector<Move> moves_of(const Campaign& campaign, const std::string& against)
         for (const auto& [name, value] : inputs) {
             Inputs moved = measure;
             moved.insert_or_assign(name, value);
-            if (is_setting(scene, moved) || !is_free(campaign, stated, name)) continue;
+            if (is_setting(scene, moved) || !campaign::is_left_open(campaign.space, stated, name)) continue;
             if (known.emplace(name, value_words(value)).second) moves.push_back({name, value});
         }
     const auto* stiffness = scene.find_parameter(scene.stiffness);
-    if (stiffness == nullptr || !is_free(campaign, {}, scene.stiffness)) return moves;
+    if (stiffness == nullptr || !campaign::is_left_open(campaign.space, {}, scene.stiffness)) return moves;
     const auto held = campaign.space.fixed.find(scene.stiffness);
     const double value = std::get<double>(held == campaign.space.fixed.end() ? stiffness->default_value : held->second);
     for (const double moved : {value / 10, value * 10})
@@ -176,12 +165,32 @@ std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& a
                                             accuracy, std::move(fixed), common};
         all.push_back({name, says, campaign::with_other_numerics(campaign.text, other, rows), moved});
     };
-    // The setting that a program names as its reference would be shown twice.
+    // The setting that a program names as its reference would be shown twice; what the file decides is no difference.
+    const Inputs stated = fixed_by_file(campaign);
+    std::vector<std::string> decided;
     const auto differs = [&](const std::string& level) {
-        return scene.accuracy.find(level)->second != reference->second;
+        bool free = false;
+        for (const auto& [name, value] : scene.accuracy.find(level)->second) {
+            const auto at = reference->second.find(name);
+            if (at != reference->second.end() && at->second == value) continue;
+            if (campaign::is_left_open(campaign.space, stated, name))
+                free = true;
+            else if (std::ranges::count(decided, name) == 0)
+                decided.push_back(name);
+        }
+        return free;
     };
     for (const auto& level : offered)
         if (level != against && differs(level)) add(fmt::format("{}_{}", campaign.name, level), level, level, {});
+    if (all.empty() && !decided.empty())
+        throw campaign::input_error(
+            "CONFIG", campaign.name,
+            fmt::format("its settings differ in {} alone, which the file itself decides: they would agree whatever "
+                        "their error",
+                        campaign::listed(decided)));
+    if (!decided.empty())
+        std::cerr << fmt::format("note: {} is the same at all settings, as the file or the scene decides it\n",
+                                 campaign::listed(decided));
     for (const auto& [name, value] : moves_of(campaign, against))
         add(fmt::format("{}_{}_{}_{}", campaign.name, against, name, name_part(value_words(value))),
             fmt::format("{} with {} = {}", against, name, value_words(value)), against, {{name, value}});

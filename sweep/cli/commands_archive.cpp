@@ -354,6 +354,9 @@ int explain(const Arguments& asked, Format format) {
     }
     std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id),
                              shown_scene(question.scene), question.revision, question.seed);
+    if (const auto result = archive.result(question.id))
+        if (const auto origin = origin_of(archive, *result))
+            std::cout << fmt::format("answer adopted from case {}, computed with seed {}\n", origin->id, origin->seed);
     const auto scene = find_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
@@ -500,7 +503,7 @@ int replay(const ReplayRequest& request, Format format) {
     const Store archive(request.database, Store::Mode::read);
     const campaign::Case as_stored = require_case(archive, request.id);
     const auto program = archive.program(as_stored.scene);
-    const campaign::Case question = as_asked_today(as_stored);
+    campaign::Case question = as_asked_today(as_stored);
     archive.enter_files_of(question);
     const auto stored = archive.result(question.id);
     if (!stored || stored->outcome == Outcome::abandoned) {
@@ -524,6 +527,11 @@ int replay(const ReplayRequest& request, Format format) {
     if (program != nullptr)
         std::cerr << fmt::format("grainsweep: runs the stored command of this case: {}\n",
                                  fmt::join(program->command, " "));
+    if (const auto origin = origin_of(archive, *stored); origin && program != nullptr) {
+        question.seed = origin->seed;
+        std::cerr << fmt::format("grainsweep: with seed {}, because the answer is adopted from case {}\n", origin->seed,
+                                 origin->id);
+    }
     Pictures pictures(request.pictures, question);
     const auto now = [&] {
         if (program != nullptr)

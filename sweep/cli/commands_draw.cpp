@@ -64,7 +64,7 @@ int draw(const DrawRequest& request, report::Format format) {
                                       {"page", request.page},
                                       {"particles", static_cast<std::int64_t>(film.spheres())}});
     else
-        std::cout << fmt::format("{} ({}): {} with {} particles; open it in a browser\n", request.page,
+        std::cout << fmt::format("{} ({}): {} with {} spheres; open it in a browser\n", request.page,
                                  report::size_text(page.size()), scene->shown(), film.spheres());
     return 0;
 }

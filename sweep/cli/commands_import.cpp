@@ -62,6 +62,10 @@ void declare_import(Parser& parser, ImportArguments& request) {
                       "table with a line for each case; its header names the columns");
     parser.add_option("CONFIG", request.config, "campaign file whose cases they are");
     parser.add_option("[DB]", request.database, "database; default: NAME.db in the current folder");
+    parser.add_option("--experiment NAME", request.experiment,
+                      "experiment of the lines, for a calibration with several");
+    parser.add_option("--accuracy WORD", request.accuracy,
+                      "setting of the numerics of the lines, for a campaign with an error goal");
     parser.add_option("--decimal WORD", request.decimal, "comma: numbers have decimal commas; default: point");
     parser.add_option("--ignore COLUMN", request.results.ignored, "column that is not read; may be repeated")
         ->allow_extra_args(false);

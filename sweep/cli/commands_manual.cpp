@@ -131,6 +131,7 @@ std::string keys_section() {
     add("A calibration", campaign::calibration_keys());
     add("An experiment of a calibration", campaign::experiment_keys());
     add("A target of a calibration", campaign::target_keys());
+    add("Runs without a value of a target", campaign::without_value_keys());
     add("Program", campaign::program_keys());
     add("Limits", campaign::limits_keys());
     add("Execution", campaign::execution_keys());

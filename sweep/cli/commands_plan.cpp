@@ -4,6 +4,7 @@
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_shape_file.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
@@ -130,6 +131,20 @@ store::Table distributions_of(const Campaign& campaign) {
         row.emplace_back(density_text(*distribution));
         table.rows.push_back(std::move(row));
     }
+    return table;
+}
+
+/// Returns one row for each species with a shape in the first possible case of a machine: its spheres, how well they
+/// cover an STL file, and what they cost.
+store::Table grains_of(const Campaign& campaign, const Cases& cases, const campaign::Forecast& cost) {
+    store::Table table{{"grain", "spheres", "shared volume", "smallest sphere", "cost"}, {}};
+    const auto machine = campaign::known_machine(campaign.scene().name);
+    const auto first = std::ranges::find_if(cost.seconds, [](double seconds) { return seconds > 0; });
+    if (machine == nullptr || first == cost.seconds.end()) return table;
+    const auto inputs = cases.question(static_cast<std::size_t>(first - cost.seconds.begin())).inputs;
+    for (const auto& grain : campaign::grains_of(*machine, inputs))
+        table.rows.push_back({grain.species, static_cast<std::int64_t>(grain.spheres),
+                              grain.cover ? Cell(*grain.cover) : Cell(), grain.smallest, grain.cost});
     return table;
 }
 
@@ -332,6 +347,8 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
                  {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
     if (const auto distributions = distributions_of(campaign); !distributions.rows.empty())
         plan.add("distributions", report::to_json(distributions));
+    if (const auto grains = grains_of(campaign, cases, cost); !grains.rows.empty())
+        plan.add("grains", report::to_json(grains));
     return plan;
 }
 
@@ -429,6 +446,10 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     if (const auto distributions = distributions_of(campaign); !distributions.rows.empty()) {
         report::write(std::cout, distributions, Format::text);
         std::cout << '\n';
+    }
+    if (const auto grains = grains_of(campaign, cases, cost); !grains.rows.empty()) {
+        report::write(std::cout, grains, Format::text);
+        std::cout << "in the first case; smallest sphere in diameters of the grain, cost in that of a sphere\n\n";
     }
     store::Table shown{case_columns(campaign), {}};
     for_each_row(campaign, cases, points_shown, [&](const auto& row) { shown.rows.push_back(row); });

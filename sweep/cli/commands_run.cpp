@@ -43,8 +43,6 @@ namespace {
 using report::Format;
 namespace fs = std::filesystem;
 
-constexpr std::int64_t pilot_rounds = 2;  // points of each sequence
-
 /// Setting and predicted cost of its cases. Measured time would make the course depend on the machine.
 struct CostedSetting {
     std::string name;

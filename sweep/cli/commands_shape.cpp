@@ -47,7 +47,7 @@ int write_shape(const ShapeRequest& request, Format format) {
     row("spheres", static_cast<double>(shape.spheres));
     row("shared volume divided by the volume", shape.overlap);
     row("volume of the body, unit of the file", shape.volume);
-    row("diameter of the sphere of equal volume", shape.diameter);
+    row("diameter of the sphere of equal volume, unit of the file", shape.diameter);
     row("smallest sphere divided by this diameter", shape.smallest);
     row("largest relative error of a moment of inertia", shape.inertia_error);
     row("cost of a grain divided by a sphere's, about", shape.cost);

@@ -364,8 +364,11 @@ int solve(const SolveRequest& request, Format format) {
     use_threads(request.threads);
     const Asked asked = question_of(request);
     const auto& question = asked.question;
-    const double bytes = campaign::predict(*find_scene(question.scene), question.inputs).cost.bytes;
-    campaign::asked_in(request.config, [&] { campaign::require_memory("this case", bytes, workers::memory_room()); });
+    const auto predicted = campaign::predict(*find_scene(question.scene), question.inputs);
+    campaign::asked_in(request.config,
+                       [&] { campaign::require_memory("this case", predicted.cost.bytes, workers::memory_room()); });
+    for (const auto& warning : predicted.warnings)
+        std::cerr << fmt::format("warning: {}: {}\n", warning.kind, warning.sentence);
     Pictures pictures(request.pictures, question);
     const CaseResult result = answer_of(asked, request, pictures);
     if (::isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);

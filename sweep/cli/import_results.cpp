@@ -1,5 +1,6 @@
 #include "sweep/cli/import_results.hpp"
 
+#include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/file_contents.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
@@ -7,10 +8,12 @@
 #include "sweep/cli/adopt.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/program_campaign.hpp"
+#include "sweep/cli/run_campaign.hpp"
 #include "sweep/schedule/growth.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/study/corrected.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +22,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -46,7 +50,7 @@ class Import {
 public:
     explicit Import(const ImportRequest& request)
         : request_(request), campaign_(read_campaign()), file_(request.results.file.filename().string()) {
-        database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
+        database_ = request.database.empty() ? fs::path(name_in_file_ + ".db") : request.database;
         if (const auto folder = fs::absolute(database_).parent_path(); !fs::is_directory(folder))
             throw campaign::input_error("DB", database_.string(),
                                         fmt::format("there is no folder '{}'", folder.string()));
@@ -71,15 +75,42 @@ public:
     }
 
 private:
-    [[nodiscard]] campaign::Campaign read_campaign() const {
+    [[nodiscard]] campaign::Campaign read_campaign() {
         const auto& config = request_.config;
-        if (campaign::states_goal(config))
-            throw campaign::input_error(config.string() + ": $.accuracy", "",
-                                        "old results belong to one accuracy setting; name it as a word for the import");
-        if (!campaign::read_experiment_names(config).empty())
-            throw campaign::input_error(config.string() + ": $.calibration.experiments", "",
-                                        "results are imported into a campaign file of one experiment");
-        return read_with_program(config);
+        const bool goal = campaign::states_goal(config);
+        if (!goal) refuse_needless("--accuracy", request_.accuracy, "the campaign has no error goal");
+        const auto experiments = campaign::read_experiment_names(config);
+        if (experiments.empty())
+            refuse_needless("--experiment", request_.experiment, "the campaign is no calibration with experiments");
+        else
+            require_word("--experiment", request_.experiment, experiments, "lines belong to one of its experiments");
+        auto read = read_with_program(config, request_.experiment);
+        name_in_file_ = campaign::name_in_file(campaign::identity_of(read));
+        return goal ? at_one_setting(read) : read;
+    }
+    static void refuse_needless(const char* option, const std::string& word, const std::string& why) {
+        if (!word.empty()) throw campaign::input_error(option, word, why + "; leave the option out");
+    }
+    static void require_word(const char* option, const std::string& word, const std::vector<std::string>& words,
+                             const std::string& why) {
+        if (std::ranges::find(words, word) != words.end()) return;
+        throw campaign::input_error(option, word, fmt::format("must be one of {}: {}", campaign::listed(words), why),
+                                    campaign::nearest_word(word, words));
+    }
+    /// Returns the campaign of the first cases at a setting, which a run with the goal begins with. Later cases are the
+    /// same as those beside it.
+    [[nodiscard]] campaign::Campaign at_one_setting(const campaign::Campaign& asked) const {
+        std::vector<std::string> settings;
+        for (const auto& name : std::views::keys(asked.scene().accuracy)) settings.push_back(name);
+        require_word("--accuracy", request_.accuracy, settings, "lines belong to one setting of the numerics");
+        const auto points = pilot_rounds * designs::independent_sequences(asked.design, asked.request);
+        return parse_with_program(
+            campaign::at_setting(asked.text, {.name = study::name_at(asked.name, request_.accuracy),
+                                              .setting = request_.accuracy,
+                                              .points = points,
+                                              .numerical = asked.common_random_numbers,
+                                              .keeps_goal = false}),
+            request_.config);
     }
     /// Continues the campaign as the database has it: order of its factors, points that follow from answers.
     void continue_stored(const Store& store) {
@@ -88,18 +119,29 @@ private:
             return 0;
         });
         (void)campaign::reorder_factors(campaign_, store.factor_order(campaign_.name));
-        const auto record = campaign::asked_in(request_.config, [&] { return store.stored(campaign_); });
-        if (record && designs::design_named(campaign_.design).calibrates && has_begun(store))
-            throw campaign::input_error(request_.config.string(), "",
-                                        fmt::format("the calibration '{}' has begun, and old results would change its "
-                                                    "points: import them into a campaign of another name",
-                                                    campaign_.name));
+        if (designs::design_named(campaign_.design).calibrates)
+            for (const auto& name : names_of_calibration())
+                if (std::ranges::count(store.campaigns(), name, &store::CampaignRecord::name) > 0 &&
+                    has_begun(store, name))
+                    throw campaign::input_error(request_.config.string(), "",
+                                                fmt::format("the calibration '{}' has begun, and old results would "
+                                                            "change its points: import them into a campaign of "
+                                                            "another name",
+                                                            name));
         while (campaign::asked_in(request_.config, [&] { return schedule::grow(campaign_, store); })) {
         }
     }
-    [[nodiscard]] bool has_begun(const Store& store) const {
-        return std::ranges::any_of(store.placement(campaign_.name).states,
-                                   [](const auto& state) { return state.attempts > 0; });
+    /// Returns this campaign and those of the other experiments.
+    [[nodiscard]] std::vector<std::string> names_of_calibration() const {
+        const auto identity = campaign::identity_of(campaign_);
+        std::vector<std::string> names = {campaign_.name};
+        for (const auto& experiment : campaign::experiments_of(identity))
+            if (const auto name = campaign::name_beside(identity, experiment); name != campaign_.name)
+                names.push_back(name);
+        return names;
+    }
+    [[nodiscard]] static bool has_begun(const Store& store, const std::string& name) {
+        return std::ranges::any_of(store.placement(name).states, [](const auto& state) { return state.attempts > 0; });
     }
     /// Reads the file, and finds the case of every line. `store`: nullptr without a database.
     void gather(const Store* store) {
@@ -318,6 +360,7 @@ private:
     }
 
     const ImportRequest& request_;
+    std::string name_in_file_;  ///< of the campaign, without experiment or setting
     campaign::Campaign campaign_;
     std::string file_;
     fs::path database_;

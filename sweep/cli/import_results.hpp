@@ -13,12 +13,14 @@ struct ImportRequest {
     campaign::OldResultsRequest results;
     std::filesystem::path config;
     std::filesystem::path database;  ///< empty: NAME.db in the current folder
+    std::string experiment;          ///< of a calibration with several
+    std::string accuracy;            ///< setting of the numerics, for a campaign with an error goal
     bool network_disk = false;       ///< the database may lie on a network file system
 };
 
 struct ImportReport {
-    std::string campaign;
-    std::string beside;  ///< campaign of the cases that the design does not place
+    std::string campaign;  ///< NAME; of an experiment or a setting of the numerics NAME_EXPERIMENT or NAME_SETTING
+    std::string beside;    ///< campaign of the cases that the design does not place
     std::filesystem::path database;
     std::size_t placed = 0;      ///< imported cases of the design
     std::size_t others = 0;      ///< imported cases beside it

@@ -81,6 +81,8 @@ void declare_pictures(Parser& parser, PictureRequest& request) {
                     fmt::format("number of pictures, evenly from start to end, for --vtk or --watch; default: {}",
                                 usual_frames))
         ->check(whole_number(2, 9999));
+    parser.add_flag("--forces", request.forces,
+                    "with --watch: the page also draws the normal forces between particles");
     parser.add_option("--contacts FILE.csv", request.contacts,
                       "table of all contacts of one instant: partners, places, forces, overlap");
     parser.add_option("--contacts-at TIME", request.contacts_at,
@@ -91,6 +93,7 @@ Pictures::Pictures(PictureRequest request, campaign::Case question)
     : request_(std::move(request)), question_(std::move(question)) {
     if (request_.frames && request_.page.empty() && request_.folder.empty())
         throw campaign::input_error("--frames", std::to_string(*request_.frames), "needs --watch or --vtk");
+    if (request_.forces && request_.page.empty()) throw campaign::input_error("--forces", "", "needs --watch");
     if (!request_.contacts_at.empty()) {
         if (request_.contacts.empty())
             throw campaign::input_error("--contacts-at", request_.contacts_at, "needs --contacts");
@@ -99,8 +102,10 @@ Pictures::Pictures(PictureRequest request, campaign::Case question)
     if (!request_.contacts.empty()) check_page_file("--contacts", request_.contacts, "", contact_table);
     if (!request_.page.empty()) {
         check_page_file("--watch", request_.page, "");
-        film_ = std::make_unique<report::Film>();
+        film_ = std::make_unique<report::Film>(report::FilmLimits{.forces = request_.forces});
     }
+    if (std::filesystem::exists(request_.folder) && !std::filesystem::is_directory(request_.folder))
+        throw campaign::input_error("--vtk", request_.folder, "must be a folder; there is a file of this name");
     if (!request_.folder.empty())
         series_ = std::make_unique<report::VtkSeries>(request_.folder, shown_scene(question_.scene));
 }
@@ -167,6 +172,8 @@ void Pictures::say(bool on_standard_output) const {
         out << fmt::format("{} ({}): {} frame{} of {} particles; open it in a browser\n", request_.page,
                            report::size_text(page_bytes_), film_->frames(), film_->frames() == 1 ? "" : "s",
                            film_->spheres());
+    if (request_.forces && !film_->shows_forces())
+        out << "no forces on the page: a film of more than 65,536 spheres has none\n";
     if (!series_) return;
     std::uintmax_t bytes = 0;
     std::size_t files = 0;

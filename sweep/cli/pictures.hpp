@@ -23,6 +23,7 @@ struct PictureRequest {
     std::string folder;  ///< of VTK files; empty: none
     std::string page;    ///< page with the film; empty: none
     std::optional<std::int64_t> frames;
+    bool forces = false;      ///< the page has the normal forces of contacts
     std::string contacts;     ///< table of contacts; empty: none
     std::string contacts_at;  ///< its time; empty: the end
 

@@ -51,6 +51,9 @@ struct RunReport {
     std::int64_t points = 0;        ///< points of the design, as far as answers determine them
 };
 
+/// Points of each sequence in the pilot of a campaign with an error goal.
+inline constexpr std::int64_t pilot_rounds = 2;
+
 [[nodiscard]] RunReport run_campaign(const RunRequest& request);
 /// Does the same for one of several campaigns: a signal that came after its last case is an end, too, because others
 /// would follow.

@@ -120,10 +120,10 @@ study::Held read_held(std::span<const ModelFactor> factors, std::span<const std:
     for (std::size_t j = 0; j < factors.size(); ++j) {
         if (!values[j]) continue;
         const auto& factor = factors[j];
-        if (!factor.is_word() && !(*values[j] >= factor.low && *values[j] <= factor.high))
+        if (!factor.is_word() && !(*values[j] >= factor.low() && *values[j] <= factor.high()))
             throw campaign::input_error(
                 "--hold " + factor.name, factor.text(*values[j]),
-                fmt::format("is outside of {} to {}, where the campaign has cases", factor.low, factor.high));
+                fmt::format("is outside of {} to {}, where the campaign has cases", factor.low(), factor.high()));
         held.emplace_back(j, *values[j]);
     }
     return held;

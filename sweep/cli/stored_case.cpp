@@ -43,4 +43,11 @@ campaign::Case as_asked_today(campaign::Case question) {
     return question;
 }
 
+std::optional<campaign::Case> origin_of(const store::Store& archive, const campaign::CaseResult& result) {
+    constexpr std::size_t digits = 32;
+    const auto at = result.message.find(adopted_from);  // the first one computed it, later ones adopted it
+    if (at == std::string::npos) return std::nullopt;
+    return archive.find_case(result.message.substr(at + adopted_from.size(), digits));
+}
+
 }  // namespace grainsweep::cli

@@ -4,7 +4,9 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/store/store.hpp"
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace grainsweep::cli {
 
@@ -21,5 +23,10 @@ namespace grainsweep::cli {
 /// Returns a stored case for the present scene. New parameters of the scene get their defaults, because a missing
 /// parameter in the identity of a case means its default. Throws InputError if the case cannot be computed again.
 [[nodiscard]] campaign::Case as_asked_today(campaign::Case question);
+
+/// Words before the id of that case in the message of an adopted answer.
+inline constexpr std::string_view adopted_from = "adopted from case ";
+/// Returns the case that computed an adopted answer, whose seed is another one; empty: the answer is the case's own.
+[[nodiscard]] std::optional<campaign::Case> origin_of(const store::Store& archive, const campaign::CaseResult& result);
 
 }  // namespace grainsweep::cli

@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "stats/calibration.hpp"
+#include "stats/count_likelihood.hpp"
 #include "stats/several_responses.hpp"
 #include "sweep/designs/calibration_layout.hpp"
 #include "sweep/designs/kinds.hpp"
@@ -24,13 +25,13 @@ constexpr std::size_t most_compared = 4096;  // among which the next settings ar
 constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
 
 /// Returns the points with the coordinates of levels and multiples moved to the middle of their part.
-std::vector<double> in_the_middle(std::span<const FactorRange> factors, std::vector<double> points) {
+std::vector<double> in_the_middle(std::span<const Factor> factors, std::vector<double> points) {
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = factors[i % factors.size()].middle(points[i]);
     return points;
 }
 
 /// Sobol points of the calibrated factors, rows of d.
-std::vector<double> even_points(const DesignRequest& request, std::span<const FactorRange> factors, std::int64_t count,
+std::vector<double> even_points(const DesignRequest& request, std::span<const Factor> factors, std::int64_t count,
                                 std::uint64_t stream) {
     const DesignRequest sobol{
         .levels = std::vector<std::size_t>(factors.size(), 0),
@@ -41,16 +42,33 @@ std::vector<double> even_points(const DesignRequest& request, std::span<const Fa
 
 /// Adds the inputs of a response model for the factor at u: one number or, for more than two words, an indicator of
 /// each word but the first. Levels that are numbers count by their order.
-void add_inputs(std::vector<double>& row, const FactorRange& factor, double u) {
-    if (factor.levels.empty() || (factor.has_words() && factor.parts <= 2)) {
+void add_inputs(std::vector<double>& row, const Factor& factor, double u) {
+    const auto numbers = factor.level_numbers();
+    const bool words = !factor.continuous() && numbers.empty();
+    if (factor.continuous() || (words && factor.parts() <= 2)) {
         row.push_back(factor.middle(u));
-    } else if (factor.has_words()) {
-        for (std::size_t k = 1; k < factor.parts; ++k) row.push_back(factor.part(u) == k ? 1 : 0);
+    } else if (words) {
+        for (std::size_t k = 1; k < factor.parts(); ++k) row.push_back(factor.part(u) == k ? 1 : 0);
     } else {
-        const auto numbers = numbers_in(factor.levels);
         const auto below = std::ranges::count_if(numbers, [&](double x) { return x < numbers[factor.part(u)]; });
-        row.push_back((static_cast<double>(below) + 0.5) / static_cast<double>(factor.parts));
+        row.push_back((static_cast<double>(below) + 0.5) / static_cast<double>(factor.parts()));
     }
+}
+
+/// Error of a model from its cases, each left out in turn, divided by the standard deviation of the responses.
+double relative_error(const stats::ResponseModel& model) {
+    return model.quality().leave_one_out_error;
+}
+double relative_error(const stats::ProbabilityModel& model) {
+    const auto& quality = model.quality();
+    return quality.brier_of_share > 0 ? std::sqrt(quality.brier / quality.brier_of_share) : 0;
+}
+
+std::vector<stats::Prediction> predictions_of(const stats::ResponseModel& model, stats::Rows points) {
+    return model.predict(points);
+}
+std::vector<stats::Prediction> predictions_of(const stats::ProbabilityModel& model, stats::Rows points) {
+    return model.with_errors(points);
 }
 
 /// The course of a calibration, wave by wave.
@@ -59,9 +77,8 @@ public:
     explicit Course(const DesignRequest& request) : request_(request) {
         result_.targets = targets_in(request.word("targets"));
         layout_ = calibration_layout(request, result_.targets);
-        result_.ranges = layout_.factors;
-        d_ = result_.ranges.size();
-        for (const auto& range : result_.ranges) result_.factors.push_back(range.name);
+        result_.factors = layout_.factors;
+        d_ = result_.factors.size();
         result_.points.dimensions = request.dimensions();
         values_.resize(result_.targets.size());
         const std::vector<double> centre(d_, 0.5);
@@ -74,7 +91,7 @@ public:
     }
 
     Calibration run() {
-        auto settings = even_points(request_, result_.ranges, request_.count("points_per_wave"), 0);
+        auto settings = even_points(request_, result_.factors, request_.count("points_per_wave"), 0);
         for (std::int64_t wave = 1;; ++wave) {
             if (!ask(settings)) return std::move(result_);
             learn(settings);
@@ -90,25 +107,33 @@ public:
     }
 
 private:
-    /// Begins the settings with those that were computed elsewhere. A target under another condition has no answer
-    /// there.
+    /// Begins the settings with those that were computed elsewhere. A target of another experiment, or under another
+    /// condition, has no answer there. A factor that the experiment lacks does not act on its answers.
     void add_further() {
-        const std::size_t d = request_.dimensions();
-        if (!request_.shared.empty()) return;
-        for (std::size_t i = 0; (i + 1) * d <= request_.further.coordinates.size(); ++i) {
-            const auto point = std::span(request_.further.coordinates).subspan(i * d, d);
-            for (std::size_t j = 0; j < d_; ++j)
-                result_.settings.push_back(result_.ranges[j].middle(point[layout_.calibrated[j]]));
-            for (std::size_t t = 0; t < result_.targets.size(); ++t) {
-                const auto known = request_.further.answers.find(result_.targets[t].answers_key());
-                const bool fits = std::ranges::all_of(layout_.stated, [&](std::size_t j) {
-                    const auto level = result_.targets[t].level.find(request_.factors[j].name);
-                    const auto here = static_cast<std::size_t>(point[j] * static_cast<double>(request_.levels[j]));
-                    return here == (level == result_.targets[t].level.end() ? 0 : level->second);
-                });
-                values_[t].push_back(fits && known != request_.further.answers.end() ? known->second[i] : none);
+        for (const auto& further : request_.further) {
+            const std::size_t d = further.factors.size();
+            for (std::size_t i = 0; (i + 1) * d <= further.coordinates.size(); ++i) {
+                const auto point = std::span(further.coordinates).subspan(i * d, d);
+                const auto coordinate = [&](const std::string& name) {
+                    const auto own = std::ranges::find(further.factors, name, &Factor::name);
+                    return own == further.factors.end()
+                               ? 0.5
+                               : point[static_cast<std::size_t>(own - further.factors.begin())];
+                };
+                for (const auto& factor : result_.factors)
+                    result_.settings.push_back(factor.middle(coordinate(factor.name)));
+                for (std::size_t t = 0; t < result_.targets.size(); ++t) {
+                    const auto& target = result_.targets[t];
+                    const auto known = further.answers.find(target.answers_key());
+                    const bool fits = std::ranges::all_of(target.level, [&](const auto& condition) {
+                        const auto own = std::ranges::find(further.factors, condition.first, &Factor::name);
+                        return own != further.factors.end() && own->part(coordinate(own->name)) == condition.second;
+                    });
+                    const bool answers = known != further.answers.end() && fits;
+                    values_[t].push_back(answers ? known->second[i] : none);
+                }
+                ++result_.further;
             }
-            ++result_.further;
         }
     }
     /// Requests the settings under every condition. Returns false if an answer is still missing.
@@ -171,25 +196,49 @@ private:
         std::vector<bool> unanswered(result_.settings.size() / d_, false);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             for (std::size_t i = 0; i < rows; ++i) values_[t].push_back(*answer(t, i));
-            for (std::size_t i = result_.further; i < values_[t].size(); ++i)
-                unanswered[i] = unanswered[i] || !std::isfinite(values_[t][i]);
         }
-        const auto inputs = result_.inputs({result_.settings, d_});
-        auto fits = stats::fit_responses(inputs.rows(), values_);
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
-            auto& fitted = fits[t];
-            if (auto* model = std::get_if<stats::ResponseModel>(&fitted)) {
-                wave.model_error.push_back(model->quality().leave_one_out_error);
-                wave.refusals.emplace_back();
-                result_.models.emplace_back(std::move(*model));
-            } else {
-                wave.model_error.push_back(none);
-                wave.refusals.push_back(std::get<stats::Refusal>(fitted).sentence);
-                result_.models.emplace_back();
-            }
+            const auto counted = counted_by(t);
+            for (std::size_t i = result_.further; i < values_[t].size(); ++i)
+                unanswered[i] = unanswered[i] ||
+                                !(std::isfinite(values_[t][i]) || (counted && std::isfinite(values_[*counted][i])));
+        }
+        fit_models(wave);
+        learn_failures(unanswered);
+    }
+    /// Returns the target that counts the missing values of another one.
+    [[nodiscard]] std::optional<std::size_t> counted_by(std::size_t target) const {
+        const auto& one = result_.targets[target];
+        for (std::size_t t = 0; t < result_.targets.size(); ++t) {
+            const auto& other = result_.targets[t];
+            const auto place = place_on_curve(other.observable);
+            if (t != target && place.missing && place.observable == one.observable && other.level == one.level &&
+                other.experiment == one.experiment)
+                return t;
+        }
+        return std::nullopt;
+    }
+    void fit_models(CalibrationWave& wave) {
+        const auto inputs = result_.inputs({result_.settings, d_});
+        const std::vector<double> zeros(inputs.width, 0), ones(inputs.width, 1);
+        const auto add = [&]<class Model>(std::variant<Model, stats::Refusal> fitted) {
+            auto* model = std::get_if<Model>(&fitted);
+            wave.model_error.push_back(model != nullptr ? relative_error(*model) : none);
+            wave.refusals.push_back(model != nullptr ? "" : std::get<stats::Refusal>(fitted).sentence);
+            auto& kept = result_.models.emplace_back();
+            if (model != nullptr) kept = std::move(*model);
+        };
+        std::vector<std::vector<double>> responses;
+        for (std::size_t t = 0; t < result_.targets.size(); ++t)
+            if (!result_.targets[t].of) responses.push_back(values_[t]);
+        auto fits = stats::fit_responses(inputs.rows(), responses);
+        for (std::size_t t = 0, next = 0; t < result_.targets.size(); ++t) {
+            if (result_.targets[t].of)
+                add(stats::fit_probability(inputs.rows(), values_[t], zeros, ones));
+            else
+                add(std::move(fits[next++]));
             result_.beyond.push_back(stats::beyond_what_was_reached(measured(t), values_[t]));
         }
-        learn_failures(unanswered);
     }
     void learn_failures(const std::vector<bool>& unanswered) {
         std::vector<double> settings;
@@ -210,25 +259,63 @@ private:
         const auto& target = result_.targets[t];
         return {target.value, target.error, target.discrepancy, 1};
     }
-    /// Targets that have a model.
-    [[nodiscard]] std::vector<stats::Target> modelled() const {
-        std::vector<stats::Target> targets;
-        for (std::size_t t = 0; t < result_.targets.size(); ++t)
-            if (result_.models[t]) targets.push_back(measured(t));
-        return targets;
+    [[nodiscard]] stats::CountTarget counted(std::size_t t) const {
+        const auto& target = result_.targets[t];
+        return {target.count(), *target.of, target.discrepancy};
     }
-    [[nodiscard]] std::vector<double> modelled_covariance() const {
-        std::vector<MeasuredTarget> targets;
-        for (std::size_t t = 0; t < result_.targets.size(); ++t)
-            if (result_.models[t]) targets.push_back(result_.targets[t]);
-        return covariance_of(targets);
+    /// Returns the numbers of the targets that have a model.
+    [[nodiscard]] std::vector<std::size_t> modelled() const {
+        std::vector<std::size_t> numbers;
+        for (std::size_t t = 0; t < result_.models.size(); ++t)
+            if (result_.models[t]) numbers.push_back(t);
+        return numbers;
     }
+    /// Returns the predictions of each model, in the order of modelled().
     [[nodiscard]] std::vector<std::vector<stats::Prediction>> predict(stats::Rows points) const {
         std::vector<std::vector<stats::Prediction>> predictions;
         const auto inputs = result_.inputs(points);
-        for (const auto& model : result_.models)
-            if (model) predictions.push_back(model->predict(inputs.rows()));
+        for (const auto t : modelled())
+            predictions.push_back(std::visit([&](const auto& model) { return predictions_of(model, inputs.rows()); },
+                                             *result_.models[t]));
         return predictions;
+    }
+    /// Returns the implausibilities of a target at some points.
+    [[nodiscard]] std::vector<double> implausible(std::size_t t,
+                                                  const std::vector<stats::Prediction>& predicted) const {
+        if (result_.targets[t].of) return stats::implausibilities_of_count(counted(t), predicted);
+        const auto target = measured(t);
+        return stats::implausibilities({&target, 1}, {&predicted, 1}).front();
+    }
+    /// Returns the variance of a measurement about the true mean of the model at a point.
+    [[nodiscard]] double other_variance(std::size_t t, const stats::Prediction& predicted) const {
+        const auto& target = result_.targets[t];
+        const double run = predicted.scatter * predicted.scatter;
+        if (target.of) return run * (1 / static_cast<double>(*target.of) + 4 * target.discrepancy * target.discrepancy);
+        return target.error * target.error + target.discrepancy * target.discrepancy + run;
+    }
+    /// Returns the log likelihood of all targets at some points. Counts are independent of all other targets.
+    [[nodiscard]] std::vector<double> log_likelihood(stats::Rows points) const {
+        std::vector<double> total(points.size(), 0);
+        const auto predictions = predict(points);
+        const auto numbers = modelled();
+        std::vector<stats::Target> values;
+        std::vector<MeasuredTarget> measurements;
+        std::vector<std::vector<stats::Prediction>> predicted_values;
+        const auto add = [&](const std::vector<double>& logs) {
+            for (std::size_t i = 0; i < total.size(); ++i) total[i] += logs[i];
+        };
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            const auto& target = result_.targets[numbers[k]];
+            if (target.of) {
+                add(stats::log_likelihood_of_count(counted(numbers[k]), predictions[k]));
+                continue;
+            }
+            values.push_back(measured(numbers[k]));
+            measurements.push_back(target);
+            predicted_values.push_back(predictions[k]);
+        }
+        if (!values.empty()) add(stats::log_likelihood(values, predicted_values, covariance_of(measurements)));
+        return total;
     }
 
     /// Even points of the box and how implausible each is.
@@ -240,22 +327,23 @@ private:
     };
     [[nodiscard]] Candidates candidates(std::int64_t count, std::uint64_t stream) const {
         Candidates all;
-        const auto box = even_points(request_, result_.ranges, count, stream);
+        const auto box = even_points(request_, result_.factors, count, stream);
         for (std::size_t i = 0; i < box.size(); i += d_)
             if (admitted(std::span(box).subspan(i, d_))) append(all.points, box, i / d_);
         for (const double weight : result_.answering.log_weights({all.points, d_}))
             all.answers.push_back(weight > -std::numeric_limits<double>::infinity());
         const auto predictions = predict({all.points, d_});
         const auto targets = modelled();
-        all.implausibility = stats::deciding_implausibility(stats::implausibilities(targets, predictions));
+        std::vector<std::vector<double>> implausibilities;
+        for (std::size_t k = 0; k < targets.size(); ++k)
+            implausibilities.push_back(implausible(targets[k], predictions[k]));
+        all.implausibility = stats::deciding_implausibility(implausibilities);
         for (std::size_t i = 0; i < all.implausibility.size(); ++i) {
             if (!(all.implausibility[i] < ruled_out) || !all.answers[i]) continue;
             all.kept.push_back(i);
             for (std::size_t k = 0; k < targets.size(); ++k) {
                 const auto& p = predictions[k][i];
-                const double others = targets[k].measured_error * targets[k].measured_error +
-                                      targets[k].discrepancy * targets[k].discrepancy + p.scatter * p.scatter;
-                all.sure = all.sure && p.mean_error * p.mean_error < others;
+                all.sure = all.sure && p.mean_error * p.mean_error < other_variance(targets[k], p);
             }
         }
         return all;
@@ -266,12 +354,14 @@ private:
         auto& now = result_.waves.back();
         if (const auto target = unanswered(); target && !modelled().empty()) {
             now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
-            return fail("no case has an answer to " + result_.targets[*target].answers_key());
+            const auto& silent = result_.targets[*target];
+            return fail("no case has an answer to " + (silent.experiment.empty() ? "" : silent.experiment + '/') +
+                        silent.shown_observable());
         }
         if (modelled().empty()) {
             now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
             if (wave == request_.count("waves")) return fail("the waves asked for are done, and no target has a model");
-            return even_points(request_, result_.ranges, request_.count("points_per_wave"),
+            return even_points(request_, result_.factors, request_.count("points_per_wave"),
                                static_cast<std::uint64_t>(2 * wave));
         }
         const auto wanted = static_cast<std::size_t>(request_.count("points_per_wave"));
@@ -369,15 +459,13 @@ private:
     }
     [[nodiscard]] stats::PosteriorSample posterior(std::uint64_t stream,
                                                    std::optional<stats::PosteriorShape>* shape = nullptr) const {
-        const auto targets = modelled();
-        const auto covariance = modelled_covariance();
         stats::PosteriorSettings settings;
         settings.seed = draw_key(request_.seed, DrawPurpose::calibration, stream, 1);
         auto sample = stats::sample_posterior(
             [&](stats::Rows drawn) {
-                const auto middles = in_the_middle(result_.ranges, {drawn.values.begin(), drawn.values.end()});
+                const auto middles = in_the_middle(result_.factors, {drawn.values.begin(), drawn.values.end()});
                 const stats::Rows points{middles, d_};
-                auto density = stats::log_likelihood(targets, predict(points), covariance);
+                auto density = log_likelihood(points);
                 const auto weights = result_.answering.log_weights(points);
                 for (std::size_t i = 0; i < density.size(); ++i)
                     density[i] =
@@ -386,7 +474,7 @@ private:
             },
             {best_, d_}, settings);
         if (shape != nullptr) *shape = stats::posterior_shape(sample.rows());  // before levels lose their width
-        sample.points = in_the_middle(result_.ranges, std::move(sample.points));
+        sample.points = in_the_middle(result_.factors, std::move(sample.points));
         return sample;
     }
     void sample() {
@@ -429,7 +517,7 @@ private:
 ModelInputs Calibration::inputs(stats::Rows points) const {
     ModelInputs inputs;
     for (std::size_t i = 0; i < points.size(); ++i)
-        for (std::size_t j = 0; j < ranges.size(); ++j) add_inputs(inputs.values, ranges[j], points.row(i)[j]);
+        for (std::size_t j = 0; j < factors.size(); ++j) add_inputs(inputs.values, factors[j], points.row(i)[j]);
     if (points.size() > 0) inputs.width = inputs.values.size() / points.size();
     return inputs;
 }

@@ -10,7 +10,11 @@
 // Levels, and at most 64 multiples of a step, divide their axis into equal parts; a setting is the middle of its part.
 // A setting that comes again is run as a further replicate, so that the models see the scatter.
 //
-// Settings without an answer for some target weigh only if that depends on the factors (answering_settings.hpp).
+// A target may be the share of measured runs without a value, such as jams: its model is one of the probability of a
+// completed case without a value, and its likelihood that of a count (stats/count_likelihood.hpp).
+//
+// Settings without an answer for some target weigh only if that depends on the factors (answering_settings.hpp). Where
+// a share counts the missing values of an observable, they are no missing answers.
 // Settings that the campaign's `where` excludes are neither failures nor candidates, and the posterior is 0 there.
 //
 // With several experiments every wave runs all of them, and all targets share the posterior. If a predictive check
@@ -21,6 +25,7 @@
 #pragma once
 
 #include "stats/posterior.hpp"
+#include "stats/probability_model.hpp"
 #include "stats/response_model.hpp"
 #include "sweep/designs/answering_settings.hpp"
 #include "sweep/designs/design.hpp"
@@ -30,6 +35,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::designs {
@@ -48,7 +54,10 @@ struct CalibrationWave {
     std::vector<std::string> refusals;  ///< why a target has no model, target by target; empty: it has one
 };
 
-/// Inputs of the response models at some settings.
+/// Model of a target: of its response, or of the probability that a case has no value.
+using TargetModel = std::variant<stats::ResponseModel, stats::ProbabilityModel>;
+
+/// Inputs of the models at some settings.
 struct ModelInputs {
     std::vector<double> values;
     std::size_t width = 0;
@@ -57,18 +66,16 @@ struct ModelInputs {
 
 /// State of a calibration.
 struct Calibration {
-    std::vector<std::string> factors;  ///< calibrated factors
-    std::vector<FactorRange> ranges;   ///< ranges of these factors
+    std::vector<Factor> factors;  ///< calibrated factors
     std::vector<MeasuredTarget> targets;
     std::vector<CalibrationWave> waves;  ///< completed waves
     bool waves_end = false;
-    std::string why_they_end;                                 ///< empty while they continue
-    std::vector<std::optional<stats::ResponseModel>> models;  ///< one per target, from all cases of the waves
-    std::vector<double> beyond;                               ///< distance of each target from the range of all cases,
-                                                              ///< in sd
-    AnsweringSettings answering;                              ///< from all cases of the waves
-    std::optional<stats::PosteriorSample> posterior;          ///< in [0, 1]^d of the factors, after the last wave
-    std::optional<stats::PosteriorShape> shape;               ///< shape of the posterior
+    std::string why_they_end;                         ///< empty while they continue
+    std::vector<std::optional<TargetModel>> models;   ///< one per target, from all cases of the waves
+    std::vector<double> beyond;                       ///< distance of each target from the range of all cases, in sd
+    AnsweringSettings answering;                      ///< from all cases of the waves
+    std::optional<stats::PosteriorSample> posterior;  ///< in [0, 1]^d of the factors, after the last wave
+    std::optional<stats::PosteriorShape> shape;       ///< shape of the posterior
     double least_implausibility = std::numeric_limits<double>::quiet_NaN();  ///< smallest value found
     std::vector<double> settings;            ///< settings of the completed waves, rows of d in [0, 1]
     std::size_t further = 0;                 ///< of these the first, which were computed elsewhere

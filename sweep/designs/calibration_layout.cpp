@@ -24,7 +24,7 @@ CalibrationLayout calibration_layout(const DesignRequest& request, std::span<con
     layout.factors = request.shared;
     for (const std::size_t j : layout.calibrated) {
         if (request.shared.empty()) layout.factors.push_back(request.factors[j]);
-        const auto found = std::ranges::find(layout.factors, request.factors[j].name, &FactorRange::name);
+        const auto found = std::ranges::find(layout.factors, request.factors[j].name, &Factor::name);
         layout.column.push_back(static_cast<std::size_t>(found - layout.factors.begin()));
     }
     std::map<std::string, std::vector<std::map<std::string, std::size_t>>> conditions;

@@ -17,7 +17,7 @@ namespace grainsweep::designs {
 /// condition p mod c.
 struct CalibrationLayout {
     std::vector<std::size_t> calibrated, stated;                 ///< numbers of the request's factors
-    std::vector<FactorRange> factors;                            ///< calibrated factors, including those of other
+    std::vector<Factor> factors;                                 ///< calibrated factors, including those of other
                                                                  ///< experiments
     std::vector<std::size_t> column;                             ///< index in `factors` of each in `calibrated`
     std::vector<std::map<std::string, std::size_t>> conditions;  ///< of this experiment, in the order of its targets

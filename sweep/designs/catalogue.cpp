@@ -56,43 +56,6 @@ const T& option_of(const DesignRequest& request, std::string_view option) {
 
 }  // namespace
 
-bool FactorRange::has_words() const {
-    return !levels.empty() && numbers_in(levels).empty();
-}
-
-std::size_t FactorRange::part(double u) const {
-    return parts == 0 ? 0 : std::min(static_cast<std::size_t>(u * static_cast<double>(parts)), parts - 1);
-}
-
-double FactorRange::middle_of(std::size_t of_part) const {
-    return (static_cast<double>(of_part) + 0.5) / static_cast<double>(parts);
-}
-
-double FactorRange::middle(double u) const {
-    return parts == 0 ? u : middle_of(part(u));
-}
-
-double FactorRange::number_at(double u) const {
-    if (levels.empty()) return value_at(u);
-    return has_words() ? static_cast<double>(part(u)) : any_number_in(levels[part(u)]).value();
-}
-
-std::string FactorRange::text_at(double u) const {
-    return levels.empty() ? shortest_text(value_at(u)) : levels[part(u)];
-}
-
-FactorRange::Shown FactorRange::shown() const {
-    if (!levels.empty()) {
-        std::vector<double> numbers;
-        for (std::size_t k = 0; k < parts; ++k) numbers.push_back(number_at(middle_of(k)));
-        const auto [low, high] = std::ranges::minmax(numbers);
-        return {low, high};
-    }
-    const double outside = endless ? 0.001 : 0;  // as stats::Distribution::range
-    const double low = value_at(outside), high = value_at(1 - outside);
-    return {low, high, low > 0 && std::abs(value_at(0.5) - std::sqrt(low * high)) < 1e-6 * (high - low)};
-}
-
 std::size_t DesignRequest::group_count() const {
     return groups.empty() ? dimensions() : *std::ranges::max_element(groups) + 1;
 }

@@ -8,8 +8,11 @@ namespace grainsweep::designs {
 
 CurvePlace place_on_curve(std::string_view word) {
     const auto mark = word.find('@');
-    if (mark == std::string_view::npos) return {std::string(word), std::nullopt};
-    CurvePlace place{std::string(word.substr(0, mark)), 0.0};
+    if (mark == std::string_view::npos) {
+        const bool missing = word.ends_with('!');
+        return {std::string(word.substr(0, word.size() - (missing ? 1 : 0))), std::nullopt, missing};
+    }
+    CurvePlace place{std::string(word.substr(0, mark)), 0.0, false};
     const char* const last = word.data() + word.size();
     const auto [end, error] = std::from_chars(word.data() + mark + 1, last, *place.at);
     if (error != std::errc{} || end != last)
@@ -18,7 +21,7 @@ CurvePlace place_on_curve(std::string_view word) {
 }
 
 std::string word_of(const CurvePlace& place) {
-    if (!place.at) return place.observable;
+    if (!place.at) return place.observable + (place.missing ? "!" : "");
     std::array<char, 32> text{};
     return place.observable + '@' +
            std::string(text.data(), std::to_chars(text.data(), text.data() + text.size(), *place.at).ptr);

@@ -6,6 +6,7 @@
 
 #include "solver/scenes/values.hpp"
 #include "sweep/designs/curve_place.hpp"
+#include "sweep/designs/factor.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -47,59 +48,27 @@ struct OptionSpec {
     bool silent_by_default = false;
 };
 
-/// Data of a factor for a design.
-struct FactorRange {
-    std::string name;
-    /// Value of a continuous factor at u in [0, 1]; empty for levels.
-    std::function<double(double u)> value_at;
-    /// Whether its distribution has no ends, so that no point may have the coordinate 0 or 1.
-    bool endless = false;
-    /// Levels as text, in the order of the campaign file; empty: a range.
-    std::vector<std::string> levels = {};
-    /// Number of equal parts of [0, 1] that have one value each: levels, or few multiples of a step; 0: no parts.
-    std::size_t parts = 0;
-
-    /// Returns whether it has levels that are not all numbers.
-    [[nodiscard]] bool has_words() const;
-    /// Return the index of the part at u, the coordinate of its middle, and that of a part by index; without parts the
-    /// first two are 0 and u.
-    [[nodiscard]] std::size_t part(double u) const;
-    [[nodiscard]] double middle(double u) const;
-    [[nodiscard]] double middle_of(std::size_t of_part) const;
-    /// Returns the value at u as a number; for words the index of the level.
-    [[nodiscard]] double number_at(double u) const;
-    /// Returns the value at u as text that reads back as the same value.
-    [[nodiscard]] std::string text_at(double u) const;
-
-    /// Range of the factor in figures: the full range, or the central 99.8 % of a distribution without ends;
-    /// logarithmic if its middle is the geometric mean of the ends; of levels the smallest and the largest.
-    struct Shown {
-        double low = 0, high = 0;
-        bool log = false;
-    };
-    [[nodiscard]] Shown shown() const;
-};
-
 struct PointSet;
 
 /// Answers that belong to no point of the design, because they were computed elsewhere.
 struct FurtherAnswers {
-    std::vector<double> coordinates;                                  ///< in the unit cube, points x dimensions
-    std::map<std::string, std::vector<double>, std::less<>> answers;  ///< by observable; NaN: none
+    std::vector<Factor> factors;                                      ///< of the campaign that they were imported into
+    std::vector<double> coordinates;                                  ///< in the unit cube, points x factors
+    std::map<std::string, std::vector<double>, std::less<>> answers;  ///< by key as in the request; NaN: none
 };
 
 struct DesignRequest {
     std::vector<std::size_t> levels;                          ///< per factor: number of its levels; 0: continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< seed of the campaign
-    std::vector<std::size_t> groups = {};   ///< number of each factor's group, from 0; empty: no groups
-    std::vector<FactorRange> factors = {};  ///< names, and values for designs that grow
+    std::vector<std::size_t> groups = {};  ///< number of each factor's group, from 0; empty: no groups
+    std::vector<Factor> factors = {};      ///< names, and values for designs that grow
     /// Factors that several experiments calibrate together; empty: the factors with a range.
-    std::vector<FactorRange> shared = {};
+    std::vector<Factor> shared = {};
     /// Answers of the points so far, by observable and number; empty: the point is not settled; NaN: no answer. Used
     /// only by growing designs.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};
-    FurtherAnswers further = {};  ///< used only by designs that calibrate
+    std::vector<FurtherAnswers> further = {};  ///< used only by designs that calibrate
     /// Whether the campaign's `where` clause accepts a point of the unit cube; empty: every point, or unknown. Used
     /// only by growing designs.
     std::function<bool(std::span<const double> u)> admits = {};

@@ -11,6 +11,15 @@
 #include <utility>
 
 namespace grainsweep::designs {
+
+std::size_t MeasuredTarget::count() const {
+    return static_cast<std::size_t>(std::lround(value * static_cast<double>(of.value_or(0))));
+}
+
+std::string MeasuredTarget::shown_observable() const {
+    return of ? "share without " + place_on_curve(observable).observable : observable;
+}
+
 std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
     const std::size_t m = targets.size();
     std::vector<double> at(m, 0);
@@ -41,6 +50,12 @@ std::optional<double> miss_of(const MeasuredTarget& target, std::span<const doub
         if (std::isfinite(x)) sum += x, ++runs;
     if (runs < 2) return std::nullopt;
     const double mean = sum / runs;
+    if (target.of) {
+        const auto measured = static_cast<double>(*target.of);
+        const double p = (sum + static_cast<double>(target.count())) / (runs + measured);
+        const double variance = p * (1 - p) * (1 / measured + 1 / runs + 4 * target.discrepancy * target.discrepancy);
+        return variance > 0 ? (mean - target.value) / std::sqrt(variance) : 0;
+    }
     for (const double x : answers)
         if (std::isfinite(x)) squares += (x - mean) * (x - mean);
     const double scatter = squares / (runs - 1);
@@ -78,6 +93,7 @@ std::string text_of(const std::vector<MeasuredTarget>& targets) {
         for (const double x : {target.value, target.error, target.discrepancy}) text += ' ' + shortest_text(x);
         for (const auto& [name, level] : target.level) text += ' ' + name + ':' + std::to_string(level);
         if (target.curve > 0) text += " #" + std::to_string(target.curve);
+        if (target.of) text += " *" + std::to_string(*target.of);
         if (!target.experiment.empty()) text += " /" + target.experiment;
     }
     return text;
@@ -102,9 +118,9 @@ std::vector<MeasuredTarget> targets_in(std::string_view text) {
                 target.experiment = word.substr(1);
                 continue;
             }
-            const bool curve = word.starts_with('#');
-            const auto mark = curve ? 0 : word.find(':');
-            auto& number = curve ? target.curve : target.level[word.substr(0, mark)];
+            const bool curve = word.starts_with('#'), share = word.starts_with('*');
+            const auto mark = curve || share ? 0 : word.find(':');
+            auto& number = curve ? target.curve : share ? target.of.emplace() : target.level[word.substr(0, mark)];
             const char* const last = word.data() + word.size();
             if (mark == std::string::npos ||
                 std::from_chars(word.data() + mark + 1, last, number) != std::from_chars_result{last, std::errc{}})

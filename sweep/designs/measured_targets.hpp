@@ -1,4 +1,5 @@
-// Targets of a calibration: measurements, each under a condition.
+// Targets of a calibration: measurements, each under a condition. A measurement is a value, or the share of runs that
+// had no value, such as jams.
 #pragma once
 
 #include <cstddef>
@@ -13,25 +14,31 @@ namespace grainsweep::designs {
 
 /// Measurement and its condition.
 struct MeasuredTarget {
-    std::string observable;  ///< a scalar, or a place along a curve (curve_place.hpp)
-    double value = 0;
-    double error = 0;                            ///< standard error of the measurement
-    double discrepancy = 0;                      ///< standard deviation of the effects that the simulation does not
-                                                 ///< model
+    std::string observable;  ///< a scalar, a place along a curve, or a missing value (curve_place.hpp)
+    double value = 0;        ///< measured value, or measured share of runs without a value
+    double error = 0;        ///< standard error of the measurement
+    double discrepancy = 0;  ///< standard deviation of the effects that the simulation does not
+                             ///< model; of a share: where it is 1/2
     std::map<std::string, std::size_t> level{};  ///< level of each condition factor, by number
     std::size_t curve = 0;                       ///< targets of one measured curve share a number above 0
     std::string experiment{};                    ///< experiment of the measurement; empty: the calibration has only one
+    std::optional<std::size_t> of{};             ///< measured runs of a share; empty: the measurement is a value
     bool operator==(const MeasuredTarget&) const = default;
 
     /// Returns the key of its answers in a request: "angle", or "heap/angle" of the experiment "heap".
     [[nodiscard]] std::string answers_key() const {
         return experiment.empty() ? observable : experiment + '/' + observable;
     }
+    /// Returns the number of measured runs without a value; only for a share.
+    [[nodiscard]] std::size_t count() const;
+    /// Returns the observable as shown to users: "angle", "surface@0.0042", "share without flow_time".
+    [[nodiscard]] std::string shown_observable() const;
 };
 
 /// Returns the distance of fresh runs from the measurement in standard deviations, (mean - value)/sqrt(error^2 +
-/// discrepancy^2 + scatter^2), with the standard deviation of the runs as scatter. Empty if fewer than two runs have an
-/// answer (NaN: no answer).
+/// discrepancy^2 + scatter^2), with the standard deviation of the runs as scatter. Of a share of n measured runs and
+/// the share of N fresh ones, with p of both together: the difference divided by sqrt(p (1 - p) (1/n + 1/N + 4
+/// discrepancy^2)). Empty if fewer than two runs have an answer (NaN: no answer).
 [[nodiscard]] std::optional<double> miss_of(const MeasuredTarget& target, std::span<const double> answers);
 
 /// Largest miss of a calibration's measurements and the number of its target: |miss| for a scalar; for a curve the root

@@ -42,7 +42,7 @@ public:
           factor_(j),
           levels_(request.levels[j]),
           places_(static_cast<std::uint64_t>(request.count("grid"))),
-          endless_(j < request.factors.size() && request.factors[j].endless) {
+          endless_(j < request.factors.size() && request.factors[j].endless()) {
         if (levels_ == 1)
             throw std::invalid_argument(name_of(request, j) +
                                         " has one level, so no trajectory moves it: give it under \"fixed\"");

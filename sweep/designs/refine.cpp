@@ -34,14 +34,14 @@ struct Question {
 Question question_of(const DesignRequest& request) {
     Question question;
     const std::string& name = request.word("factor");
-    const auto found = std::ranges::find(request.factors, name, &FactorRange::name);
-    if (found == request.factors.end() || !found->value_at)
+    const auto found = std::ranges::find(request.factors, name, &Factor::name);
+    if (found == request.factors.end() || !found->continuous())
         throw std::invalid_argument("factor '" + name + "' does not vary between two values");
     question.factor = static_cast<std::size_t>(found - request.factors.begin());
     question.aim.threshold = request.number("threshold");
     question.aim.width = request.number("width");
     question.aim.repeats = static_cast<std::size_t>(request.count("replicates"));
-    const double range = found->value_at(1) - found->value_at(0);
+    const double range = found->number(1) - found->number(0);
     if (!(question.aim.width < range))
         throw std::invalid_argument("a width of " + std::to_string(question.aim.width) +
                                     " is the whole range of the factor '" + name + "' or more: nothing to refine");
@@ -63,8 +63,8 @@ Question question_of(const DesignRequest& request) {
 /// Bisection for one combination.
 class Search {
 public:
-    Search(const Aim& aim, const FactorRange& factor) : aim_(aim), middle_(factor.value_at) {
-        for (const double end : {0.0, 1.0}) levels_.push_back({end, factor.value_at(end), {}, 0, 0});
+    Search(const Aim& aim, const Factor& factor) : aim_(aim), factor_(factor) {
+        for (const double end : {0.0, 1.0}) levels_.push_back({end, factor.number(end), {}, 0, 0});
     }
 
     /// What is asked next: numbers of levels, one for each repeat; none when done.
@@ -72,7 +72,7 @@ public:
         if (state_ != Bracket::State::open) return {};
         if (settled() && levels_[low_].asked > 0) {
             const double u = (levels_[low_].coordinate + levels_[high_].coordinate) / 2;
-            levels_.push_back({u, middle_(u), {}, 0, 0});
+            levels_.push_back({u, factor_.number(u), {}, 0, 0});
         }
         std::vector<std::size_t> numbers;
         for (std::size_t k = 0; k < levels_.size(); ++k)
@@ -122,7 +122,7 @@ private:
     }
 
     Aim aim_;
-    std::function<double(double)> middle_;
+    Factor factor_;
     std::vector<RefinedLevel> levels_;  ///< in the order asked: both ends, then middles
     std::size_t low_ = 0, high_ = 1;    ///< the ends of the bracket
     Bracket::State state_ = Bracket::State::open;

@@ -4,7 +4,6 @@
 #include "sweep/plot/canvas.hpp"
 
 #include <cairo-pdf.h>
-#include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
 #include <zlib.h>
@@ -24,28 +23,44 @@ namespace {
 
 // ---- marks of a panel
 
-/// Draws a sign of Points.
-void draw_sign(Canvas& canvas, double x, double y, Points::Shape shape, double radius, Colour tone) {
-    auto* context = canvas.context();
-    switch (shape) {
-        case Points::Shape::dot:
-            canvas.use(tone);
-            cairo_new_sub_path(context);
-            cairo_arc(context, x, y, radius, 0, 2 * std::numbers::pi);
-            return canvas.fill();
-        case Points::Shape::diamond:
-            canvas.use(tone);
-            cairo_move_to(context, x, y - radius);
-            for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}})
-                cairo_line_to(context, x + dx * radius, y + dy * radius);
-            return canvas.fill();
-        case Points::Shape::cross:
-            // White around it, to stand out on every colour.
-            for (const auto& [width, colour] : {std::pair{1.8, Colour{1, 1, 1}}, {0.8, tone}}) {
-                canvas.use(colour, width);
-                for (const int up : {-1, 1}) canvas.segment(x - radius, y - up * radius, x + radius, y + up * radius);
-                canvas.stroke();
-            }
+void outline_sign(Canvas& canvas, double x, double y, Points::Shape shape, double radius) {
+    if (shape == Points::Shape::cross) {
+        for (const int up : {-1, 1}) canvas.segment(x - radius, y - up * radius, x + radius, y + up * radius);
+        return;
+    }
+    constexpr int corners = 32;
+    for (int k = 0; k < corners; ++k) {
+        const double angle = 2 * std::numbers::pi * k / corners;
+        const double across = x + radius * std::cos(angle), down = y + radius * std::sin(angle);
+        k == 0 ? canvas.move_to(across, down) : canvas.line_to(across, down);
+    }
+    canvas.close();
+}
+
+/// Draws the signs of Points. `tones`: one for each sign, or one for all.
+void draw_signs(Canvas& canvas, const std::vector<std::pair<double, double>>& places, Points::Shape shape,
+                double radius, const std::vector<Colour>& tones) {
+    using enum Points::Shape;
+    if (shape == cross || shape == ring) {
+        // White around them, to stand out on every colour.
+        for (const auto& [width, tone] : {std::pair{1.8, Colour{1, 1, 1}}, {0.8, tones.front()}}) {
+            canvas.use(tone, width);
+            for (const auto& [x, y] : places) outline_sign(canvas, x, y, shape, radius);
+            canvas.stroke();
+        }
+        return;
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const auto& [x, y] = places[k];
+        canvas.use(tones[tones.size() == 1 ? 0 : k]);
+        if (shape == dot) {
+            canvas.dot(x, y, radius);
+            continue;
+        }
+        canvas.move_to(x, y - radius);
+        for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}})
+            canvas.line_to(x + dx * radius, y + dy * radius);
+        canvas.fill();
     }
 }
 
@@ -67,9 +82,9 @@ struct Between {
         for (std::size_t k = 0; k < xs.size(); ++k) {
             const auto at = place(xs[k], ys[k]);
             if (at && open)
-                cairo_line_to(canvas.context(), at->first, at->second);
+                canvas.line_to(at->first, at->second);
             else if (at)
-                cairo_move_to(canvas.context(), at->first, at->second);
+                canvas.move_to(at->first, at->second);
             open = at.has_value();
         }
     }
@@ -80,18 +95,29 @@ struct Between {
         canvas.stroke();
     }
 
-    /// Stretch by stretch between gaps.
+    /// Stretch by stretch between gaps: along the lower edge, and back along the upper one.
     void operator()(const Band& band) const {
         canvas.use(band.tone);
-        for (std::size_t k = 0; k + 1 < band.x.size(); ++k) {
-            const auto a = place(band.x[k], band.low[k]), b = place(band.x[k + 1], band.low[k + 1]);
-            const auto c = place(band.x[k + 1], band.high[k + 1]), d = place(band.x[k], band.high[k]);
-            if (!a || !b || !c || !d) continue;
-            cairo_move_to(canvas.context(), a->first, a->second);
-            for (const auto& corner : {b, c, d}) cairo_line_to(canvas.context(), corner->first, corner->second);
-            cairo_close_path(canvas.context());
+        std::vector<std::pair<double, double>> low, high;
+        const auto end_stretch = [&] {
+            low.insert(low.end(), high.rbegin(), high.rend());
+            for (std::size_t k = 0; high.size() > 1 && k < low.size(); ++k)
+                k == 0 ? canvas.move_to(low[k].first, low[k].second) : canvas.line_to(low[k].first, low[k].second);
+            if (high.size() > 1) canvas.close();
+            low.clear();
+            high.clear();
+        };
+        for (std::size_t k = 0; k < band.x.size(); ++k) {
+            const auto under = place(band.x[k], band.low[k]), over = place(band.x[k], band.high[k]);
+            if (!under || !over) {
+                end_stretch();
+                continue;
+            }
+            low.push_back(*under);
+            high.push_back(*over);
         }
-        canvas.fill();  // in one piece: neighbours do not darken each other
+        end_stretch();
+        canvas.fill();
     }
 
     void operator()(const Whiskers& whiskers) const {
@@ -123,7 +149,7 @@ struct Between {
 
     void operator()(const Cells& cells) const {
         const std::size_t columns = cells.x_edges.size() - 1;
-        constexpr double overlap = 0.15;  // no white line between neighbours
+        constexpr double overlap = 0.35;  // no white line between neighbours
         for (std::size_t k = 0; k < cells.tones.size(); ++k) {
             if (!cells.tones[k]) continue;
             const auto a = place(cells.x_edges[k % columns], cells.y_edges[k / columns + 1]);
@@ -138,11 +164,15 @@ struct Between {
     void operator()(const Points& points) const {
         const auto count = points.x.size();
         const double radius = points.radius.value_or(count > 1000 ? 0.8 : count > 200 ? 1.1 : 1.5);
-        for (std::size_t k = 0; k < count; ++k) {
-            const auto& tone = points.tones[points.tones.size() == 1 ? 0 : k];
-            if (const auto at = place(points.x[k], points.y[k]))
-                draw_sign(canvas, at->first, at->second, points.shape, radius, tone);
-        }
+        const bool alike = points.tones.size() == 1;
+        std::vector<std::pair<double, double>> places;
+        std::vector<Colour> tones;
+        for (std::size_t k = 0; k < count; ++k)
+            if (const auto at = place(points.x[k], points.y[k])) {
+                places.push_back(*at);
+                if (!alike || tones.empty()) tones.push_back(points.tones[alike ? 0 : k]);
+            }
+        if (!places.empty()) draw_signs(canvas, places, points.shape, radius, tones);
     }
 
     void operator()(const Marker& marker) const {
@@ -203,13 +233,13 @@ void draw_key(Canvas& canvas, const Key& key, double left, double y) {
             canvas.stroke();
             break;
         case dot:
-            draw_sign(canvas, left + to / 2, y, Points::Shape::dot, 1.8, key.tone);
+            draw_signs(canvas, {{left + to / 2, y}}, Points::Shape::dot, 1.8, {key.tone});
             break;
         case diamond:
-            draw_sign(canvas, left + to / 2, y, Points::Shape::diamond, 2.5, key.tone);
+            draw_signs(canvas, {{left + to / 2, y}}, Points::Shape::diamond, 2.5, {key.tone});
             break;
         case cross:
-            draw_sign(canvas, left + to / 2, y, Points::Shape::cross, 1.8, key.tone);
+            draw_signs(canvas, {{left + to / 2, y}}, Points::Shape::cross, 1.8, {key.tone});
             break;
     }
     canvas.use(black);
@@ -249,11 +279,9 @@ void draw_panel(Canvas& canvas, const Panel& panel, const std::string& letter, c
     const PlacedAxis x{panel.x, frame.left, frame.right}, y{panel.y, frame.bottom, frame.top};
     for (const auto& mark : panel.marks) {
         const double beyond = std::holds_alternative<Points>(mark) ? 2.5 : 0;  // a sign at the edge is drawn whole
-        cairo_save(canvas.context());
-        canvas.rectangle(frame.left - beyond, frame.top - beyond, frame.right + beyond, frame.bottom + beyond);
-        cairo_clip(canvas.context());
+        canvas.clip(frame.left - beyond, frame.top - beyond, frame.right + beyond, frame.bottom + beyond);
         std::visit(Between{canvas, x, y}, mark);
-        cairo_restore(canvas.context());
+        canvas.unclip();
     }
     canvas.use(black, frame_width);
     canvas.rectangle(frame.left, frame.top, frame.right, frame.bottom);
@@ -320,8 +348,8 @@ Layout layout_of(const Figure& figure, double width_mm) {
 }
 
 /// The frames of all panels are equally large: margins are the widest of any.
-void draw(cairo_t* context, const Figure& figure, const Layout& layout) {
-    Canvas canvas(context);
+void draw(cairo_t* context, const Figure& figure, const Layout& layout, std::string* svg = nullptr) {
+    Canvas canvas(context, svg);
     std::vector<std::string> letters(figure.panels.size());
     if (letters.size() > 1)
         for (std::size_t k = 0; k < letters.size(); ++k)
@@ -378,14 +406,10 @@ std::string as_png(const Figure& figure, const Layout& layout, double width) {
     return with_resolution(bytes);
 }
 
-std::string as_vectors(const Figure& figure, const Layout& layout, double width, FileType type) {
+std::string as_pdf(const Figure& figure, const Layout& layout, double width) {
     std::string bytes;
-    const double height = layout.total_height();
-    const Surface surface(type == FileType::pdf
-                              ? cairo_pdf_surface_create_for_stream(collect_bytes, &bytes, width, height)
-                              : cairo_svg_surface_create_for_stream(collect_bytes, &bytes, width, height));
-    if (type == FileType::pdf)
-        cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    const Surface surface(cairo_pdf_surface_create_for_stream(collect_bytes, &bytes, width, layout.total_height()));
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
     {
         const Context context(cairo_create(surface.get()));
         draw(context.get(), figure, layout);
@@ -395,12 +419,33 @@ std::string as_vectors(const Figure& figure, const Layout& layout, double width,
     return bytes;
 }
 
+/// Texts stay texts. No element has an id, so that a page can hold many figures.
+std::string as_svg(const Figure& figure, const Layout& layout, double width) {
+    const Surface nowhere(cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1));
+    const Context context(cairo_create(nowhere.get()));
+    std::string elements;
+    draw(context.get(), figure, layout, &elements);
+    return fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.2f}pt\" "
+        "height=\"{1:.2f}pt\" viewBox=\"0 0 {0:.2f} {1:.2f}\" stroke-linejoin=\"round\" "
+        "font-family=\"'Liberation Sans', Arial, Helvetica, sans-serif\">\n{2}</svg>\n",
+        width, layout.total_height(), elements);
+}
+
 }  // namespace
 
 std::string drawn(const Figure& figure, double width_mm, FileType type) {
     const auto layout = layout_of(figure, width_mm);
     const double width = width_mm * points_per_mm;
-    return type == FileType::png ? as_png(figure, layout, width) : as_vectors(figure, layout, width, type);
+    switch (type) {
+        case FileType::pdf:
+            return as_pdf(figure, layout, width);
+        case FileType::svg:
+            return as_svg(figure, layout, width);
+        case FileType::png:
+            break;
+    }
+    return as_png(figure, layout, width);
 }
 
 }  // namespace grainsweep::plot

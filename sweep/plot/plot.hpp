@@ -28,7 +28,7 @@ struct Axis {
 
 /// Points of one colour, or with one colour each.
 struct Points {
-    enum class Shape { dot, diamond, cross };
+    enum class Shape { dot, diamond, cross, ring };
     std::vector<double> x, y;
     std::vector<Colour> tones = {blue};
     Shape shape = Shape::dot;
@@ -82,6 +82,7 @@ struct Panel {
     std::vector<Mark> marks = {};
     std::optional<Axis> scale = {};        ///< colour bar at the right
     std::optional<double> height_mm = {};  ///< empty: from its width
+    std::string name = {};                 ///< among the panels of its figure; not drawn
 };
 
 struct Figure {

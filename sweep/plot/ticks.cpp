@@ -76,7 +76,8 @@ std::vector<Tick> ticks_of(const Axis& axis, int most) {
 }
 
 std::vector<double> minor_ticks(const Axis& axis) {
-    if (!axis.log) return {};
+    constexpr double most_decades = 20;  // of more, minor ticks would be a black bar
+    if (!axis.log || std::log10(axis.high) - std::log10(axis.low) > most_decades) return {};
     std::vector<double> places;
     for (const auto& tick : multiples(axis.low, axis.high, {1, 2, 3, 4, 5, 6, 7, 8, 9})) places.push_back(tick.at);
     return places;

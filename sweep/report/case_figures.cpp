@@ -85,13 +85,13 @@ void add_failed(plot::Figure& figure, plot::Panel& panel, const std::optional<pl
 
 /// Returns a factor with levels that are numbers as a factor of numbers, so that its axis has their distances.
 FactorColumn with_numbers(FactorColumn factor) {
-    const auto numbers = numbers_in(factor.levels);
+    const auto numbers = factor.seen_numbers();
     if (numbers.empty()) return factor;
     for (double& value : factor.values)
         if (std::isfinite(value)) value = numbers[static_cast<std::size_t>(value)];
     const auto range = finite_range(numbers);
-    factor.levels.clear();
-    factor.low = range.low, factor.high = range.high;
+    factor.seen.clear();
+    factor.range = campaign::Between{range.low, range.high};
     return factor;
 }
 
@@ -128,9 +128,11 @@ plot::Figure draw_lines(const FigureSubject& subject) {
         throw campaign::input_error("--up", fmt::format("'{}'", chosen.up.name), "lines are means of an observable");
     auto across = with_numbers(factor_named(subject, chosen.across.name));
     if (subject.across_log) {
-        if (!across.continuous() || (*subject.across_log && !(across.low > 0)))
+        const auto [low, high] = across.ends();
+        if (!across.continuous() || (*subject.across_log && !(low > 0)))
             throw campaign::input_error("--across-axis", "", fmt::format("'{}' has no such axis", across.name));
-        across.log = *subject.across_log;
+        across.range =
+            campaign::Between{low, high, *subject.across_log ? campaign::Scale::log : campaign::Scale::linear};
     }
     const auto& up = chosen.up;
     const auto errors = effect_errors(subject.responses, subject.responses.observable(up.name));
@@ -210,8 +212,7 @@ plot::Figure draw_map(const FigureSubject& subject, const PanelNames&) {
     const auto cells = cell_means(*a, *b, subject.response);
     const auto across = variable_of(*a), up = variable_of(*b);
     const auto range = finite_range(cells.means);
-    const auto shown = quantity_of("mean " + subject.response.name, subject.response.unit,
-                                   std::max(std::abs(range.low), std::abs(range.high)));
+    const auto shown = quantity_of("mean " + subject.response.name, subject.response.unit, range);
     const auto scale = colour_scale(shown, range, has_log_axis(subject, range));
     plot::Cells drawn;
     for (const double x : cells.x_edges) drawn.x_edges.push_back(across.shown(x));
@@ -234,6 +235,7 @@ plot::Figure draw_map(const FigureSubject& subject, const PanelNames&) {
 plot::Panel against_panel(const FigureSubject& subject, plot::Figure& figure, const FactorColumn& factor) {
     const auto across = variable_of(factor), up = response_variable(subject);
     plot::Panel panel{across.axis(), up.axis(0.04)};
+    panel.name = factor.name;
     std::vector<std::size_t> rows(subject.responses.settled);
     std::iota(rows.begin(), rows.end(), std::size_t{0});
     std::erase_if(rows, [&](std::size_t row) { return !std::isfinite(up.values[row]); });
@@ -279,20 +281,20 @@ PanelNames against_panels(const FigureSubject& subject) {
 }  // namespace
 
 FigureKind cases_figure() {
-    return {"cases",      "one variable against another, a point per case, coloured by a third",
-            cases_panels, draw_cases,
-            true,         true,
-            true,         true};
+    return {"cases",        "one variable against another, a point per case, coloured by a third",
+            cases_panels,   draw_cases,
+            OnPage::script, {.choice = true, .colour = true, .axis = true, .lines = true}};
 }
 
 FigureKind map_figure() {
-    return {"map", "mean response over two factors", map_panels, draw_map, true, false, true};
+    return {"map",          "mean response over two factors", map_panels, draw_map,
+            OnPage::script, {.choice = true, .axis = true}};
 }
 
 FigureKind against_figure() {
-    return {
-        "against", "response against each factor: cases and binned mean", against_panels, draw_against, false, false,
-        true};
+    return {"against",      "response against each factor: cases and binned mean",
+            against_panels, draw_against,
+            OnPage::script, {.axis = true}};
 }
 
 }  // namespace grainsweep::report

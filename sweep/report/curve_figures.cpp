@@ -12,10 +12,10 @@ namespace {
 using namespace study;
 
 /// "distance from the wall (m)": the unit stands behind the words.
-Quantity quantity_of_words(const std::string& words, double largest) {
+Quantity quantity_of_words(const std::string& words, const NumberRange& range) {
     const auto open = words.rfind(" (");
-    if (open == std::string::npos || !words.ends_with(')')) return quantity_of(words, "1", 1);
-    return quantity_of(words.substr(0, open), words.substr(open + 2, words.size() - open - 3), largest);
+    if (open == std::string::npos || !words.ends_with(')')) return quantity_of(words, "1", 1.0);
+    return quantity_of(words.substr(0, open), words.substr(open + 2, words.size() - open - 3), range);
 }
 
 /// Bins in a geometric series belong on a logarithmic axis: their last step is as large, relatively, as their first.
@@ -34,10 +34,9 @@ plot::Panel family_panel(const CurveFamily& family, const Variable& by, const st
         xs.insert(xs.end(), curve.x.begin(), curve.x.end());
         ys.insert(ys.end(), curve.y.begin(), curve.y.end());
     }
-    const auto largest = [](const NumberRange& range) { return std::max(std::abs(range.low), std::abs(range.high)); };
     const auto x_range = finite_range(xs), y_range = finite_range(ys);
-    const auto across = quantity_of_words(family.over, largest(x_range));
-    const auto up = quantity_of(family.name, family.unit, largest(y_range));
+    const auto across = quantity_of_words(family.over, x_range);
+    const auto up = quantity_of(family.name, family.unit, y_range);
     plot::Panel panel{number_axis(across, x_range, family.over_bins && geometric(xs), 0), number_axis(up, y_range)};
     for (const auto& curve : family.curves) {
         const double value = by.values[curve.row];
@@ -49,6 +48,7 @@ plot::Panel family_panel(const CurveFamily& family, const Variable& by, const st
             panel.marks.push_back(plot::Line{std::move(x), std::move(y), tone, 0.7});
     }
     if (scale) panel.scale = scale->axis;
+    panel.name = family.name;
     return panel;
 }
 
@@ -76,7 +76,8 @@ PanelNames curves_panels(const FigureSubject& subject) {
 }  // namespace
 
 FigureKind curves_figure() {
-    return {"curves", "series and profiles, a line per case", curves_panels, draw_curves, false, true};
+    return {"curves",        "series and profiles, a line per case", curves_panels, draw_curves, OnPage::script,
+            {.colour = true}};
 }
 
 }  // namespace grainsweep::report

@@ -3,7 +3,6 @@
 
 #include "sweep/report/figures.hpp"
 #include "sweep/report/print_axes.hpp"
-#include "sweep/study/influence.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -16,15 +15,19 @@ namespace grainsweep::report {
 
 using PanelNames = std::vector<std::string>;
 
+/// Options of a figure: across and up, colour, axis, lines.
+struct FigureOptions {
+    bool choice = false, colour = false, axis = false, lines = false;
+};
+
 struct FigureKind {
     std::string_view name, shows;
     /// Returns the names of the panels; {""}: a single one; empty: the campaign has no such figure.
     PanelNames (*panels)(const FigureSubject& subject);
+    /// Returns these panels with their names.
     plot::Figure (*draw)(const FigureSubject& subject, const PanelNames& panels);
-    bool has_choice = false;  ///< has the options across and up
-    bool has_colour = false;  ///< has the option colour
-    bool has_axis = false;    ///< has the option axis
-    bool has_lines = false;   ///< has the option lines
+    OnPage place = OnPage::response;
+    FigureOptions has = {};
 };
 
 // Rows, by file.
@@ -41,6 +44,13 @@ struct FigureKind {
 [[nodiscard]] FigureKind curves_figure();     // curve_figures.cpp
 [[nodiscard]] FigureKind posterior_figure();  // posterior_figures.cpp
 
+/// Width of figures on a page, and by `figure` without --width, in mm.
+inline constexpr double figure_width_mm = 85;
+/// Returns the figure without bytes that are no UTF-8 and without control characters in its texts.
+[[nodiscard]] plot::Figure drawable(plot::Figure figure);
+
+[[nodiscard]] study::History history_of(const FigureSubject& subject);
+[[nodiscard]] study::Influence influence_of(const FigureSubject& subject);
 /// Returns the names of the varied factors.
 [[nodiscard]] PanelNames factor_panels(const FigureSubject& subject);
 [[nodiscard]] const study::FactorColumn& factor_named(const FigureSubject& subject, std::string_view name);
@@ -57,7 +67,9 @@ struct FigureKind {
 /// Returns the response as a variable, with the requested axis.
 [[nodiscard]] Variable response_variable(const FigureSubject& subject);
 
-/// Returns the rows of failed cases.
+/// Most failed cases that a figure shows.
+inline constexpr std::size_t most_crosses = 500;
+/// Returns the rows of failed cases, at most `most_crosses` at random.
 [[nodiscard]] std::vector<std::size_t> failed_rows(const study::Responses& responses);
 /// Return crosses, and their entry of the legend.
 [[nodiscard]] plot::Points crosses(std::vector<double> x, std::vector<double> y);

@@ -1,6 +1,7 @@
 #include "sweep/report/figures.hpp"
 
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/visible_text.hpp"
 #include "sweep/report/figure_kinds.hpp"
 
 #include <fmt/format.h>
@@ -39,13 +40,13 @@ void refuse_useless_choice(const FigureSubject& subject, const FigureKind& kind)
         throw campaign::input_error(option, fmt::format("'{}'", value),
                                     fmt::format("the figure '{}' has no such choice", kind.name));
     };
-    if (!kind.has_choice && !subject.across.empty()) refuse("--across", subject.across);
-    if (!kind.has_choice && !subject.up.empty()) refuse("--up", subject.up);
-    if (!kind.has_colour && !subject.colour.empty()) refuse("--colour", subject.colour);
-    if (!kind.has_lines && subject.across_log) refuse("--across-axis", *subject.across_log ? "log" : "linear");
-    if (!kind.has_lines && subject.lines)
+    if (!kind.has.choice && !subject.across.empty()) refuse("--across", subject.across);
+    if (!kind.has.choice && !subject.up.empty()) refuse("--up", subject.up);
+    if (!kind.has.colour && !subject.colour.empty()) refuse("--colour", subject.colour);
+    if (!kind.has.lines && subject.across_log) refuse("--across-axis", *subject.across_log ? "log" : "linear");
+    if (!kind.has.lines && subject.lines)
         throw campaign::input_error("--lines", "", fmt::format("the figure '{}' has no such choice", kind.name));
-    if (!kind.has_axis && subject.log) refuse("--axis", *subject.log ? "log" : "linear");
+    if (!kind.has.axis && subject.log) refuse("--axis", *subject.log ? "log" : "linear");
 }
 
 }  // namespace
@@ -78,7 +79,42 @@ plot::Figure figure_named(const FigureSubject& subject, std::string_view name) {
                 campaign::nearest_word(wanted, panels));
         panels = {wanted};
     }
-    return kind->draw(subject, panels);
+    return drawable(kind->draw(subject, panels));
+}
+
+NamedFigures panels_on_page(const FigureSubject& subject, OnPage place) {
+    NamedFigures list;
+    for (const auto& kind : figure_kinds()) {
+        if (kind.place != place) continue;
+        const auto panels = kind.panels(subject);
+        if (panels.empty()) continue;
+        auto figure = drawable(kind.draw(subject, panels));
+        for (auto& panel : figure.panels) {
+            const auto name = fmt::format("{}{}{}", kind.name, panel.name.empty() ? "" : ":", panel.name);
+            list.emplace_back(name, plot::Figure{{std::move(panel)}, figure.keys});
+        }
+    }
+    return list;
+}
+
+plot::Figure drawable(plot::Figure figure) {
+    const auto clean = [](std::string& text) { text = campaign::visible(campaign::valid_utf8(text)); };
+    for (auto& panel : figure.panels)
+        for (auto* axis : {&panel.x, &panel.y, panel.scale ? &*panel.scale : nullptr}) {
+            if (axis == nullptr) continue;
+            clean(axis->title);
+            std::ranges::for_each(axis->words, clean);
+        }
+    for (auto& key : figure.keys) clean(key.text);
+    return figure;
+}
+
+study::History history_of(const FigureSubject& subject) {
+    return subject.history != nullptr ? *subject.history : study::history_of(subject.responses, subject.response);
+}
+
+study::Influence influence_of(const FigureSubject& subject) {
+    return subject.influence != nullptr ? *subject.influence : study::influence_of(subject.responses, subject.response);
 }
 
 PanelNames factor_panels(const FigureSubject& subject) {
@@ -96,12 +132,14 @@ bool has_values(const FigureSubject& subject) {
 }
 
 std::vector<const study::FactorColumn*> by_influence(const FigureSubject& subject) {
-    const auto influence = study::influence_of(subject.responses, subject.response);
+    const auto influence = influence_of(subject);
     std::vector<std::pair<double, const study::FactorColumn*>> weighed;
     for (const auto& factor : influence.factors) {
         double weight = factor.effects ? factor.effects->mu_star : factor.total.value;
         if (!std::isfinite(weight)) weight = factor.first.value;
-        weighed.emplace_back(std::isfinite(weight) ? weight : 0, &factor_named(subject, factor.factor));
+        const auto members = factor.members.empty() ? std::vector{factor.factor} : factor.members;
+        for (const auto& name : members)
+            weighed.emplace_back(std::isfinite(weight) ? weight : 0, &factor_named(subject, name));
     }
     std::ranges::stable_sort(weighed, std::ranges::greater{}, &std::pair<double, const study::FactorColumn*>::first);
     std::vector<const study::FactorColumn*> order;
@@ -152,7 +190,7 @@ std::vector<std::size_t> failed_rows(const study::Responses& responses) {
         const auto& outcome = responses.outcomes[row];
         if (outcome && *outcome != completed && *outcome != skipped && *outcome != abandoned) rows.push_back(row);
     }
-    return rows;
+    return study::random_rows(std::move(rows), most_crosses);
 }
 
 plot::Points crosses(std::vector<double> x, std::vector<double> y) {

@@ -84,7 +84,23 @@ void Film::add_particles(const Snapshot& snapshot) {
     for (const auto& [name, values] : snapshot.vectors)
         if (limits_.columns || name == "velocity")
             fill(name, [&values = values](std::size_t i) { return magnitude(values[i]); });
+    if (limits_.forces && snapshot.contacts) add_forces(snapshot, frame);
     frames_.push_back(std::move(frame));
+}
+
+/// Adds the contacts of two shown particles, ordered by their places.
+void Film::add_forces(const Snapshot& snapshot, Frame& frame) const {
+    const auto& columns = snapshot.contacts->scalars;
+    const auto first = columns.find("first"), second = columns.find("second"), force = columns.find("normal_force");
+    if (first == columns.end() || second == columns.end() || force == columns.end()) return;
+    const auto place = [&](double id) { return place_of_.find(static_cast<std::int64_t>(id)); };
+    for (std::size_t k = 0; k < force->second.size(); ++k) {
+        const auto a = place(first->second[k]), b = place(second->second[k]);  // a wall is no particle
+        if (a == place_of_.end() || b == place_of_.end()) continue;
+        const auto [low, high] = std::minmax(a->second, b->second);
+        frame.forces.push_back({low, high, force->second[k]});
+    }
+    std::ranges::sort(frame.forces, {}, [](const Force& one) { return std::pair(one.first, one.second); });
 }
 
 void Film::add_walls(const Snapshot& snapshot) {
@@ -203,16 +219,15 @@ void Film::keep(const std::vector<std::size_t>& frames) {
     for (Wall& wall : walls_) {
         std::optional<Wall> kept;
         for (std::size_t k = 0; k < frames.size(); ++k) {
-            if (frames[k] < wall.first || frames[k] > wall.first + wall.corners.size()) continue;
-            auto& corners = frames[k] == wall.first ? wall.shape.corners : wall.corners[frames[k] - wall.first - 1];
-            if (kept) {
-                kept->moves = kept->moves || corners != kept->shape.corners;
-                kept->corners.push_back(std::move(corners));
-                continue;
+            if (frames[k] < wall.first || frames[k] >= wall.first + wall.corners.size()) continue;
+            const auto& corners = wall.corners[frames[k] - wall.first];
+            if (!kept) {
+                kept = Wall{wall.shape, k};
+                kept->shape.corners = corners;
+                kept->closed = wall.closed;
             }
-            kept = Wall{wall.shape, k};
-            kept->shape.corners = corners;
-            kept->closed = wall.closed;
+            kept->moves = kept->moves || corners != kept->shape.corners;
+            kept->corners.push_back(corners);
         }
         if (kept) walls.push_back(std::move(*kept));
     }

@@ -3,7 +3,8 @@
 // Positions are 16-bit numbers between the ends of the film's box along each axis, with an error of half of 1/65535 of
 // it. Colours and slices are 8-bit numbers (0: undefined), with an error of 1/508 of their range. The range ends at the
 // 99.5 % quantile if a few values lie far beyond. Vectors are shown by their magnitude. A flow is shown on the three
-// planes through the middle of its box, interpolated between adjacent cells.
+// planes through the middle of its box, interpolated between adjacent cells. Forces are the normal forces of touching
+// particles, pairs of spheres with 8-bit numbers.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -25,6 +26,7 @@ struct FilmLimits {
     /// limit are left out; positions are always kept.
     std::size_t bytes = 10'000'000;
     bool columns = true;  ///< every column of the scene; false: only velocity
+    bool forces = false;  ///< normal forces of the contacts of particles
 };
 
 class Film {
@@ -38,6 +40,8 @@ public:
     void keep(const std::vector<std::size_t>& frames);
     [[nodiscard]] std::size_t frames() const { return times_.size(); }
     [[nodiscard]] std::size_t spheres() const { return spheres_.size(); }
+    /// Returns whether the page draws forces: they are wanted, and two bytes number every sphere.
+    [[nodiscard]] bool shows_forces() const { return limits_.forces && spheres_.size() <= 65'536; }
     /// Returns whether the film shows particles or a flow.
     [[nodiscard]] bool shows_anything() const { return !spheres_.empty() || !slices_.empty() || !walls_.empty(); }
 
@@ -50,14 +54,20 @@ private:
         double diameter = 0;
         bool mobile = true;
     };
+    /// Normal force of a contact of two spheres, which are numbered by their places.
+    struct Force {
+        std::size_t first = 0, second = 0;
+        double size = 0;
+    };
     struct Frame {
         std::vector<std::array<float, 3>> positions;  ///< by place; NaN: absent
         std::map<std::string, std::vector<float>, std::less<>> columns;
+        std::vector<Force> forces;
     };
     struct Wall {
         WallSurface shape;                                          ///< in its first frame
         std::size_t first = 0;                                      ///< frame
-        std::vector<std::vector<std::array<double, 3>>> corners{};  ///< of each later frame, if it moves
+        std::vector<std::vector<std::array<double, 3>>> corners{};  ///< of this frame and each later one
         bool moves = false, closed = false;
     };
     struct Slice {
@@ -70,6 +80,7 @@ private:
 
     std::vector<std::size_t> places_of(const Snapshot& snapshot);
     void add_particles(const Snapshot& snapshot);
+    void add_forces(const Snapshot& snapshot, Frame& frame) const;
     void add_walls(const Snapshot& snapshot);
     void add_slices(const FlowField& field);
     [[nodiscard]] Slice& slice_of(const FlowField& field, const std::string& quantity, int component);

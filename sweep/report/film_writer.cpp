@@ -1,6 +1,6 @@
 // Header and blocks of a film.
 #include "sweep/report/film.hpp"
-#include "sweep/report/film_codec.hpp"
+#include "sweep/report/packed_column.hpp"
 
 #include <algorithm>
 #include <array>
@@ -73,6 +73,7 @@ public:
         }
         write_walls();
         write_slices();
+        write_forces();
         write_columns();
         header_.add("blocks", lengths_);
         const std::string& header = header_.text();
@@ -129,6 +130,36 @@ private:
         }
         header_.add("positions", {{"low", low}, {"step", step}, {"block", block(places, 3 * n)}});
         if (!all_present) header_.add("present", block(present, n));
+    }
+
+    /// Writes the contacts of all frames one after the other: place of the first sphere, difference to that of the
+    /// second, force. Forces lie between 0 and the largest, or the quantile where a few are far larger; attraction is
+    /// negative.
+    void write_forces() {
+        if (!film_.shows_forces()) return;
+        Numbers first, between, shades;
+        std::vector<std::size_t> counts;
+        std::vector<float> sizes;
+        for (const auto& frame : film_.frames_)
+            for (const auto& one : frame.forces) sizes.push_back(static_cast<float>(one.size));
+        ValueRange range = range_of(std::move(sizes));
+        range.low = std::min(range.low, 0.0);
+        for (const auto& frame : film_.frames_) {
+            counts.push_back(frame.forces.size());
+            for (const auto& one : frame.forces) {
+                first.push_back(static_cast<std::uint16_t>(one.first));
+                between.push_back(static_cast<std::uint16_t>(one.second - one.first));
+                shades.push_back(colour_of(one.size, range));
+            }
+        }
+        const auto all = std::max<std::size_t>(first.size(), 1);
+        header_.add("forces", {{"counts", counts},
+                               {"low", range.low},
+                               {"high", range.high},
+                               {"clipped", range.clipped},
+                               {"first", block(first, all)},
+                               {"between", block(between, all)},
+                               {"shades", block(shades, all)}});
     }
 
     /// Diameters as 16-bit numbers over their largest (0: the scene names none); which spheres are mobile.

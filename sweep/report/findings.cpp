@@ -81,15 +81,13 @@ Json brackets_json(const Brackets& brackets) {
             {"brackets", found}};
 }
 
-constexpr std::size_t drawn_on_page = 800;
-
 Json calibration_json(const CalibrationReport& report) {
     const auto wave = [](const auto& one) {
         return Json{{"settings", one.settings}, {"cases", one.cases}, {"failed", one.failed},
                     {"excluded", one.excluded}, {"kept", one.kept},   {"model_errors", one.model_error}};
     };
     const auto factor = [](const study::FactorPosterior& one) {
-        return Json{{"factor", one.name},
+        return Json{{"factor", one.factor.name},
                     {"mean", one.mean},
                     {"sd", one.sd},
                     {"q05", one.low},
@@ -161,7 +159,7 @@ store::Table posterior_table(const CalibrationReport& report) {
     store::Table table{{"factor", "unit", "mean", "sd", "5 %", "95 %", "width over range's", "verdict"}, {}};
     const auto number = [](double x, int digits) { return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-"; };
     for (const auto& factor : report.factors)
-        table.rows.push_back({factor.name, factor.unit, number(factor.mean, 4), number(factor.sd, 2),
+        table.rows.push_back({factor.factor.name, factor.factor.unit, number(factor.mean, 4), number(factor.sd, 2),
                               number(factor.low, 4), number(factor.high, 4),
                               fmt::format("{:.2f}", factor.share_of_range), std::string(factor.word())});
     return table;
@@ -172,7 +170,8 @@ store::Table level_probabilities(const CalibrationReport& report) {
     store::Table table{{"factor", "unit", "level", "probability"}, {}};
     for (const auto& factor : report.factors)
         for (const auto& one : factor.levels)
-            table.rows.push_back({factor.name, factor.unit, one.level, fmt::format("{:.3f}", one.probability)});
+            table.rows.push_back(
+                {factor.factor.name, factor.factor.unit, one.level, fmt::format("{:.3f}", one.probability)});
     return table;
 }
 
@@ -233,53 +232,19 @@ void say_calibration(Document& shown, const CalibrationReport& report) {
 
 Json page_of(const CalibrationReport& report) {
     const auto& found = report.found;
-    Json factors = Json::array(), marginals = Json::array(), draws = Json::array(), settings = Json::array();
-    for (std::size_t j = 0; found.posterior && j < found.factors.size(); ++j) {
-        const auto one = study::marginal_of(found, j);
-        marginals.push_back({{"from", one.from}, {"to", one.to}, {"prior", one.prior}, {"posterior", one.posterior}});
-    }
+    Json factors = Json::array();
     for (std::size_t j = 0; j < found.factors.size(); ++j) {
-        const auto& range = found.ranges[j];
-        const auto [low, high, logarithmic] = range.shown();
-        const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
-        factors.push_back({{"name", found.factors[j]},
-                           {"unit", unit},
-                           {"levels", range.levels},
-                           {"low", low},
-                           {"high", high},
-                           {"log", logarithmic},
-                           {"values", std::array{low, high}}});
+        const auto& factor = found.factors[j];
+        const auto [low, high, logarithmic] = factor.shown();
+        factors.push_back({{"name", factor.name}, {"low", low}, {"high", high}});
     }
-    std::size_t added = 0;
-    const auto add = [&](Json& rows, std::span<const double> coordinates) {
-        Json row = Json::array();
-        ++added;
-        for (std::size_t j = 0; j < found.factors.size(); ++j) {
-            const auto& range = found.ranges[j];
-            if (range.levels.empty())
-                row.push_back(range.value_at(coordinates[j]));
-            else
-                row.push_back(spread_around(static_cast<double>(range.part(coordinates[j])), added));
-        }
-        rows.push_back(row);
-    };
-    if (found.posterior) {
-        const auto all = found.posterior->rows();
-        const std::size_t step = std::max<std::size_t>(1, all.size() / drawn_on_page);
-        for (std::size_t i = 0; i < all.size(); i += step) add(draws, all.row(i));
-    }
-    for (std::size_t i = 0; i + found.factors.size() <= found.settings.size(); i += found.factors.size())
-        add(settings, std::span(found.settings).subspan(i));
     return {{"says", calibration_line(report)},
             {"notes", report.notes},
             {"posterior", found.posterior ? columns_and_rows(posterior_table(report)) : Json()},
             {"levels", columns_and_rows(level_probabilities(report))},
             {"targets", columns_and_rows(targets_table(report))},
             {"waves", columns_and_rows(waves_table(report))},
-            {"factors", factors},
-            {"marginals", marginals},
-            {"draws", draws},
-            {"settings", settings}};
+            {"factors", factors}};
 }
 
 namespace {

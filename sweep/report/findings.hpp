@@ -22,8 +22,7 @@ namespace grainsweep::report {
 
 /// Appends state, waves, posterior and targets of a calibration for people.
 void say_calibration(Document& shown, const study::CalibrationReport& report);
-/// Returns the data for the page: factors with their ranges, draws of the posterior and the settings run, in the
-/// factors' units.
+/// Returns the data for the page: tables, and factors with their ranges.
 [[nodiscard]] Json page_of(const study::CalibrationReport& report);
 
 }  // namespace grainsweep::report

@@ -45,7 +45,7 @@ std::vector<Measure> measures_of(Influence::Method method) {
 constexpr double mm_of_axis = 15, mm_per_bar = 5;
 
 plot::Figure draw_sensitivity(const FigureSubject& subject, const PanelNames&) {
-    const auto influence = influence_of(subject.responses, subject.response);
+    const auto influence = influence_of(subject);
     const auto measures = measures_of(influence.method);
     auto factors = influence.factors;
     std::ranges::stable_sort(factors, [&](const auto& a, const auto& b) {
@@ -106,12 +106,12 @@ std::vector<std::pair<std::string, double>> parts_of(const stats::VarianceSplit&
 
 PanelNames variance_panels(const FigureSubject& subject) {
     if (!has_values(subject)) return {};
-    const auto parts = parts_of(influence_of(subject.responses, subject.response).split);
+    const auto parts = parts_of(influence_of(subject).split);
     return parts.size() < 2 ? PanelNames{} : PanelNames{""};
 }
 
 plot::Figure draw_variance(const FigureSubject& subject, const PanelNames&) {
-    const auto parts = parts_of(influence_of(subject.responses, subject.response).split);
+    const auto parts = parts_of(influence_of(subject).split);
     std::vector<std::string> names;
     plot::Bars bars{{}, {}, {}, plot::blue, true};
     for (const auto& [name, share] : parts) {
@@ -128,7 +128,12 @@ plot::Figure draw_variance(const FigureSubject& subject, const PanelNames&) {
 }
 
 PanelNames sensitivity_panels(const FigureSubject& subject) {
-    return has_values(subject) && !subject.responses.factors.empty() ? PanelNames{""} : PanelNames{};
+    if (!has_values(subject)) return {};
+    const auto influence = influence_of(subject);
+    const auto main = measures_of(influence.method).back();
+    const bool known = std::ranges::any_of(influence.factors,
+                                           [&](const auto& factor) { return std::isfinite(main.of(factor).value); });
+    return known ? PanelNames{""} : PanelNames{};
 }
 
 }  // namespace

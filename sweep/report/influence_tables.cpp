@@ -84,36 +84,26 @@ store::Table influence_rows(const Responses& responses, const ResponseColumn& re
     return table;
 }
 
-/// A figure that a page shows of every factor: in the table by its text, as a bar by its key.
-Json shown_figure(const char* key, const char* text, const char* column, const char* label) {
-    return {{"key", key}, {"text", text}, {"column", column}, {"label", label}};
-}
-
 }  // namespace
 
 Json shown_of(Influence::Method method) {
-    const auto first = shown_figure("first", "first_text", "first order", "first order");
+    const auto column = [](const char* title, const char* text) { return Json{{"column", title}, {"text", text}}; };
     switch (method) {
         case Influence::Method::morris:
             return {{"says", "Change of the response over the range of each factor."},
                     {"shares", false},
-                    {"by", "mu_star"},
-                    {"shows",
-                     std::array{shown_figure("mu_star", "mu_star_text", "mu*", "mu* (mean absolute elementary effect)"),
-                                shown_figure("sigma", "sigma", "sigma", "sigma (curvature and interactions)")}}};
+                    {"shows", std::array{column("mu*", "mu_star_text"), column("sigma", "sigma")}}};
         case Influence::Method::saltelli:
             return {
                 {"says", "Share of the variance of the response due to each factor alone, and with its interactions."},
                 {"shares", true},
-                {"by", "total"},
-                {"shows", std::array{first, shown_figure("total", "total_text", "total", "total, with interactions")}}};
+                {"shows", std::array{column("first order", "first_text"), column("total", "total_text")}}};
         case Influence::Method::given_data:
             break;
     }
     return {{"says", "Share of the variance of the response due to each factor alone."},
             {"shares", true},
-            {"by", "first"},
-            {"shows", std::array{first}}};
+            {"shows", std::array{column("first order", "first_text")}}};
 }
 
 store::Table influence_table(const Influence& influence) {

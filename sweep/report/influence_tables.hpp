@@ -13,7 +13,7 @@ namespace grainsweep::report {
 
 /// Returns "given_data", "saltelli" or "morris".
 [[nodiscard]] std::string_view method_name(study::Influence::Method method);
-/// Returns the columns of a page for this method, and the order of its bars.
+/// Returns the columns of a page's table for this method: title, and the member of a factor with its text.
 [[nodiscard]] Json shown_of(study::Influence::Method method);
 /// Returns one row per factor for people, the most influential first.
 [[nodiscard]] store::Table influence_table(const study::Influence& influence);

@@ -1,6 +1,5 @@
 #include "sweep/report/model_page.hpp"
 
-#include "sweep/report/model_tables.hpp"
 #include "sweep/study/answers.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/factor_axis.hpp"
@@ -87,24 +86,11 @@ ModelMap map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
     const auto slice = settings_of_map(pictured.cases.factors, pictured.middle, a, b, cells_of_map);
     std::vector<Setting> held;
     for (const auto& setting : slice) held.push_back({setting[a], setting[b]});
-    ModelMap map{a, b, cells_of_map, pictured.averaged(std::array{a, b}, held), {}};
+    ModelMap map{{a, b, cells_of_map}, pictured.averaged(std::array{a, b}, held), {}};
     map.slice = pictured.model.means(pictured.model.rows(slice));
     for (std::size_t i = 0; i < slice.size(); ++i)
         if (!pictured.has(slice[i])) map.slice[i] = std::numeric_limits<double>::quiet_NaN();
     return map;
-}
-
-Json model_page_json(const ModelCurve& curve) {
-    return {{"at", curve.at},
-            {"averaged", curve.averaged},
-            {"mean", curve.mean},
-            {"mean_half_width", curve.mean_half_width},
-            {"run_half_width", curve.run_half_width}};
-}
-
-Json model_page_json(const ModelMap& map, const ModelCases& cases) {
-    return map_json(cases.factors, map.across, map.up, map.count)
-        .add({{"averaged", map.averaged}, {"slice", map.slice}});
 }
 
 }  // namespace
@@ -126,22 +112,6 @@ ModelPictures model_pictures(const ModelCases& cases, const ObservableModel& mod
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return pictures.curves[j].range(); });
     if (order.size() > 1) pictures.map = map_over(pictured, order[0], order[1]);
     return pictures;
-}
-
-Json model_page_data(const ModelCases& cases, const ObservableModel& model,
-                     const std::function<bool(const Setting&)>& admits) {
-    const auto pictures = model_pictures(cases, model, admits);
-    Json texts = Json::array();
-    for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(pictures.middle[j]));
-    return {{"observable", model.observable},
-            {"unit", model.unit},
-            {"says", model_lines(model)},
-            {"factors", axes_json(cases.factors)},
-            {"order", pictures.order},
-            {"middle", {{"setting", pictures.middle}, {"texts", texts}}},
-            {"failed", failed_json(cases)},
-            {"curves", Json::list(pictures.curves, [](const ModelCurve& curve) { return model_page_json(curve); })},
-            {"map", pictures.map ? model_page_json(*pictures.map, cases) : Json()}};
 }
 
 }  // namespace grainsweep::report

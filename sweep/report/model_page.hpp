@@ -11,7 +11,6 @@
 // influence of a factor is the range of its averaged curve.
 #pragma once
 
-#include "sweep/report/table.hpp"
 #include "sweep/study/response_models.hpp"
 
 #include <cstddef>
@@ -28,10 +27,12 @@ struct ModelCurve {
     /// Returns the largest minus the smallest value of `averaged`.
     [[nodiscard]] double range() const;
 };
-/// Map of two factors, row by row along `up`.
-struct ModelMap {
+/// Two factors of a map. Its numbers are row by row along `up`.
+struct MapPlace {
     std::size_t across = 0, up = 0;
     std::size_t count = 0;  ///< cells along a range
+};
+struct ModelMap : MapPlace {
     std::vector<double> averaged, slice;
 };
 struct ModelPictures {
@@ -44,16 +45,10 @@ struct ModelPictures {
 [[nodiscard]] ModelPictures model_pictures(const study::ModelCases& cases, const study::ObservableModel& model,
                                            const std::function<bool(const study::Setting&)>& admits);
 
-/// Returns the data of the figures; settings that `admits` excludes are empty:
-///
-///   {"observable", "unit", "says": lines, "factors",
-///    "order": factors by their influence,
-///    "middle": {"setting", "texts"},
-///    "failed": settings and outcomes of failed cases,
-///    "curves": one per factor {"at", "averaged", "mean", "mean_half_width", "run_half_width"},
-///    "map": of the first two of `order` or null {"across", "up", "across_edges", "up_edges", "columns", "rows",
-///           "averaged", "slice"}}
-[[nodiscard]] Json model_page_data(const study::ModelCases& cases, const study::ObservableModel& model,
-                                   const std::function<bool(const study::Setting&)>& admits);
+/// Cases of a response model, and its figures.
+struct Modelled {
+    study::ModelCases cases;
+    ModelPictures pictures;
+};
 
 }  // namespace grainsweep::report

@@ -5,7 +5,6 @@
 #include "sweep/study/factor_axis.hpp"
 
 #include <fmt/format.h>
-#include <numeric>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +13,6 @@
 namespace grainsweep::report {
 
 using namespace study;
-
-constexpr std::size_t most_drawn = 2000;
 
 namespace {
 
@@ -77,7 +74,7 @@ Json model_json(const ObservableModel& model) {
 std::vector<store::Table::Cell> input_cells(std::span<const ModelFactor> factors, const Setting& setting) {
     std::vector<store::Table::Cell> cells;
     for (std::size_t j = 0; j < factors.size(); ++j)
-        cells.push_back(std::isnan(setting[j]) ? store::Table::Cell{} : to_cell(factors[j].value(setting[j])));
+        cells.push_back(std::isnan(setting[j]) ? store::Table::Cell{} : to_cell(factors[j].value_of(setting[j])));
     return cells;
 }
 
@@ -165,25 +162,8 @@ Json axes_json(std::span<const ModelFactor> factors) {
     return Json::list(factors, [](const ModelFactor& factor) {
         Json levels = factor.words;
         for (const double x : factor.numbers) levels.push_back(factor.text(x));
-        return Json{{"name", factor.name}, {"unit", factor.unit}, {"levels", levels}, {"numbers", factor.numbers},
-                    {"low", factor.low},   {"high", factor.high}, {"log", factor.log}};
-    });
-}
-
-Json map_json(std::span<const ModelFactor> factors, std::size_t a, std::size_t b, std::size_t count) {
-    return {{"across", a},
-            {"up", b},
-            {"across_edges", cell_edges(factors[a], count)},
-            {"up_edges", cell_edges(factors[b], count)},
-            {"columns", cells_along(factors[a], count).size()},
-            {"rows", cells_along(factors[b], count).size()}};
-}
-
-Json failed_json(const ModelCases& cases) {
-    std::vector<std::size_t> all(cases.failed.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    return Json::list(study::random_rows(std::move(all), most_drawn), [&](std::size_t i) {
-        return Json{{"setting", cases.failed[i].setting}, {"outcome", campaign::to_string(cases.failed[i].outcome)}};
+        return Json{{"name", factor.name}, {"unit", factor.unit},   {"levels", levels},   {"numbers", factor.numbers},
+                    {"low", factor.low()}, {"high", factor.high()}, {"log", factor.log()}};
     });
 }
 

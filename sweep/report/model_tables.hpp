@@ -38,11 +38,5 @@ namespace grainsweep::report {
 /// Returns the axes for the script of a page: [{"name", "unit", "levels": texts, "numbers", "low", "high", "log"},
 /// ...].
 [[nodiscard]] Json axes_json(std::span<const study::ModelFactor> factors);
-/// Returns a map of factors a and b: {"across", "up", "across_edges", "up_edges", "columns", "rows"}.
-[[nodiscard]] Json map_json(std::span<const study::ModelFactor> factors, std::size_t a, std::size_t b,
-                            std::size_t count);
-/// Returns failed cases for drawing, [{"setting": [...], "outcome": "crashed"}, ...]: at most 2,000, a fixed random
-/// choice.
-[[nodiscard]] Json failed_json(const study::ModelCases& cases);
 
 }  // namespace grainsweep::report

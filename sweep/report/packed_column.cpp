@@ -1,5 +1,7 @@
 #include "sweep/report/packed_column.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -52,6 +54,31 @@ std::string base64(std::string_view bytes) {
         for (std::size_t k = 0; k < 4; ++k) text += k <= there ? digits[word >> (18 - 6 * k) & 63U] : '=';
     }
     return text;
+}
+
+std::string deflated(std::string_view bytes) {
+    uLongf length = compressBound(bytes.size());
+    std::string packed(length, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+                  bytes.size(), Z_BEST_COMPRESSION) != Z_OK)
+        throw std::runtime_error("zlib cannot pack a part of a page");
+    packed.resize(length);
+    return packed;
+}
+
+std::string pack_film_column(std::span<const std::uint16_t> values, std::size_t items) {
+    const std::size_t n = values.size();
+    if (n > 0 && (items == 0 || n % items != 0))
+        throw std::invalid_argument("a column of a film is no whole number of frames");
+    std::string bytes(2 * n, '\0');
+    for (std::size_t i = 0; i < n; ++i) {
+        const int expected = i >= items ? values[i - items] : i > 0 ? values[i - 1] : 0;
+        const auto rest = static_cast<std::int16_t>(values[i] - expected);
+        const unsigned folded = rest >= 0 ? 2U * static_cast<unsigned>(rest) : static_cast<unsigned>(-2 * rest - 1);
+        bytes[i] = static_cast<char>(folded & 0xFFU);
+        bytes[n + i] = static_cast<char>(folded >> 8U);
+    }
+    return deflated(bytes);
 }
 
 Json packed(std::span<const double> values) {

@@ -3,6 +3,7 @@
 
 #include "sweep/report/table.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -12,6 +13,15 @@ namespace grainsweep::report {
 
 /// Returns base64 (RFC 4648, section 4).
 [[nodiscard]] std::string base64(std::string_view bytes);
+/// Returns the bytes packed by zlib (RFC 1950), as small as it can.
+[[nodiscard]] std::string deflated(std::string_view bytes);
+
+/// Returns a column of a film, packed; `values`: complete frames of `items` each.
+///
+/// Each number is written as its difference r to the same item of the frame before; in the first frame to the item
+/// before it, for the first item to 0. Differences are modulo 2^16 and folded: z = 2 r, or -2 r - 1 for r < 0. zlib
+/// packs the low bytes of all z, then the high bytes.
+[[nodiscard]] std::string pack_film_column(std::span<const std::uint16_t> values, std::size_t items);
 
 /// Returns one of these forms, with bytes in base64, little-endian:
 ///   {"of": [values], "u8": indices}   at most 256 different values, exact; NaN among them is null

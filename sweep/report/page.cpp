@@ -7,9 +7,11 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
+#include "sweep/report/figure_kinds.hpp"
 #include "sweep/report/findings.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/report/model_page.hpp"
+#include "sweep/report/model_tables.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
@@ -26,6 +28,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <ostream>
 #include <utility>
 
@@ -36,7 +40,6 @@ using namespace study;
 namespace {
 
 constexpr std::size_t extremes_on_page = 8;
-constexpr std::size_t most_drawn_checks = 150;
 
 /// Six digits are more than a picture shows, and half the bytes.
 Json drawn(double x) {
@@ -47,17 +50,20 @@ Json drawn(const std::vector<double>& values) {
     return Json::list(values, [](double x) { return drawn(x); });
 }
 
+/// Figures of a campaign as SVG, by response and name; those of the campaign itself without a response.
+using Drawings = std::map<std::string, Json>;
+
+void add_figures(Drawings& drawings, const std::string& response, const NamedFigures& figures) {
+    auto& all = drawings[response];
+    for (const auto& [name, figure] : figures) all.add(name, plot::drawn(figure, figure_width_mm, plot::FileType::svg));
+}
+
 Json page_json(const History& history) {
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
-    const auto checks = checks_to_show(history, most_drawn_checks);
     Json statistics = Json::object(), known_statistics = Json::object(), known;
     for (const auto statistic : stats::statistics) {
         const auto& all = history.all.of(statistic);
-        const auto value = [&](const auto* check) { return drawn(check->of(statistic).value); };
-        const auto error = [&](const auto* check) { return drawn(check->of(statistic).error); };
-        statistics.add(stats::to_string(statistic), {{"text", with_error(all.value, all.error)},
-                                                     {"values", Json::list(checks, value)},
-                                                     {"errors", Json::list(checks, error)}});
+        statistics.add(stats::to_string(statistic), with_error(all.value, all.error));
     }
     auto notes = history.warnings;
     if (history.provisional) {
@@ -83,10 +89,8 @@ Json page_json(const History& history) {
             {"judged", history.has_rule},
             {"notes", notes},
             {"converged_at", history.has_rule && converged != history.checks.end() ? Json(converged->points) : Json()},
-            {"points", Json::list(checks, [](const auto* check) { return check->points; })},
             {"statistics", statistics},
             {"provisional", known},
-            {"converged", history.converged},
             {"count", history.all.count},
             {"excluded", history.all.excluded},
             {"zero_share", drawn(history.all.zero_share)}};
@@ -97,80 +101,69 @@ Json page_json(const Influence& influence) {
         Json one = {{"name", factor.factor},
                     {"first_text", index_text(factor.first)},
                     {"total_text", index_text(factor.total)},
-                    {"first", drawn(factor.first.value)},
-                    {"first_error", drawn(factor.first.half_width)},
-                    {"total", drawn(factor.total.value)},
-                    {"total_error", drawn(factor.total.half_width)},
                     {"trend", to_string(factor.trend)},
                     {"rank_text", with_error(factor.rank_correlation.value, factor.rank_correlation.half_width)}};
         if (factor.effects)
             one.add({{"mu_star_text", with_error(factor.effects->mu_star, factor.effects->mu_star_half_width)},
-                     {"mu_star", drawn(factor.effects->mu_star)},
-                     {"mu_star_error", drawn(factor.effects->mu_star_half_width)},
                      {"sigma", drawn(factor.effects->sigma)}});
         return one;
     };
-    const auto& split = influence.split;
     return shown_of(influence.method)
-        .add({{"method", method_name(influence.method)},
-              {"notes", influence.notes},
+        .add({{"notes", influence.notes},
               {"factors", Json::list(influence.factors, json_of_factor)},
-              {"variance",
-               {{"main_effects", drawn(split.main_effects.value)},
-                {"unexplained", drawn(split.unexplained.value)},
-                {"interactions", drawn(split.interactions.value)},
-                {"scatter", drawn(split.scatter.value)}}},
               {"unexplained", unexplained_text(influence)}});
-}
-
-Json page_json(const std::vector<EffectBin>& effect) {
-    return Json::list(effect, [](const EffectBin& bin) {
-        return Json(
-            std::array<Json, 5>{drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count, drawn(bin.pure_error)});
-    });
 }
 
 Json case_of(const Responses& responses, std::size_t row) {
     return {{"point", responses.points[row]},
-            {"replicate", responses.replicates[row]},
             {"case", responses.case_ids[row]},
             {"factors", Json::list(responses.factors, [&](const auto& factor) { return factor_text(factor, row); })}};
 }
 
 Json extremes_of(const Responses& responses, const ResponseColumn& response, bool largest) {
     return Json::list(extreme_rows(responses.judged(response), extremes_on_page, largest), [&](std::size_t row) {
-        return case_of(responses, row).add("value", drawn(response.values[row]));
+        return case_of(responses, row)
+            .add({{"replicate", responses.replicates[row]}, {"value", drawn(response.values[row])}});
     });
 }
 
-Json page_json(const Responses& responses, const ResponseColumn& response) {
-    const auto judged = responses.judged(response);
-    const auto histogram = histogram_of(judged);
+Json page_json(const store::Store& store, const Responses& responses, const ResponseColumn& response,
+               Drawings& drawings) {
     const auto errors = effect_errors(responses, response);
-    const auto effect = [&](const FactorColumn& factor) { return page_json(main_effect(factor, judged, errors)); };
-    return {
-        {"name", response.name},
-        {"unit", response.unit},
-        {"log", spans_decades(finite_range(response.values))},
-        {"meaning", response.meaning},
-        {"history", page_json(history_of(responses, response, study::shown_levels))},
-        {"histogram", {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}}},
-        {"effects", Json::list(responses.factors, effect)},
-        {"whiskers", errors.says},
-        {"pure_error", drawn(errors.pure.variance)},
-        {"pure_error_freedom", errors.pure.freedom},
-        {"influence", page_json(influence_of(responses, response))},
-        {"values", packed(response.values)},
-        {"largest", extremes_of(responses, response, true)},
-        {"smallest", extremes_of(responses, response, false)}};
+    const auto history = history_of(responses, response, study::shown_levels);
+    const auto influence = influence_of(responses, response);
+    const auto means = [&, judged = responses.judged(response)](const FactorColumn& factor) {
+        return Json::list(main_effect(factor, judged, errors), [](const EffectBin& bin) {
+            return drawn(std::vector{bin.at, bin.mean});
+        });
+    };
+    FigureSubject subject{store, responses, response};
+    subject.history = &history;
+    subject.influence = &influence;
+    add_figures(drawings, response.name, panels_on_page(subject, OnPage::response));
+    return {{"name", response.name},
+            {"unit", response.unit},
+            {"log", spans_decades(finite_range(response.values))},
+            {"meaning", response.meaning},
+            {"history", page_json(history)},
+            {"order", Json::list(by_influence(subject), [](const auto* factor) { return factor->name; })},
+            {"means", Json::list(responses.factors, means)},
+            {"whiskers", errors.says},
+            {"pure_error", drawn(errors.pure.variance)},
+            {"pure_error_freedom", errors.pure.freedom},
+            {"influence", page_json(influence)},
+            {"values", packed(response.values)},
+            {"largest", extremes_of(responses, response, true)},
+            {"smallest", extremes_of(responses, response, false)}};
 }
 
 Json factors_of(const Responses& responses) {
     return Json::list(responses.factors, [](const FactorColumn& factor) {
+        const auto [low, high] = factor.continuous() ? factor.ends() : std::pair(0.0, 0.0);
         return Json{{"name", factor.name},       {"unit", factor.unit},
-                    {"meaning", factor.meaning}, {"levels", factor.levels},
-                    {"low", drawn(factor.low)},  {"high", drawn(factor.high)},
-                    {"log", factor.log},         {"values", packed(factor.values)}};
+                    {"meaning", factor.meaning}, {"levels", factor.seen_texts()},
+                    {"low", drawn(low)},         {"high", drawn(high)},
+                    {"log", factor.log()},       {"values", packed(factor.values)}};
     });
 }
 
@@ -230,8 +223,28 @@ Json runs_of(const store::Store& store, const std::string& campaign) {
                     campaign)));
 }
 
+/// Texts beside the figures of a response model.
+Json page_json(const ModelCases& cases, const ObservableModel& model, const ModelPictures& pictures) {
+    Json over = Json::array();
+    std::string others;
+    for (std::size_t j = 0; pictures.map && j < cases.factors.size(); ++j) {
+        const auto& factor = cases.factors[j];
+        if (j == pictures.map->across || j == pictures.map->up) continue;
+        others += fmt::format("{}{} {}", others.empty() ? "" : ", ", factor.name,
+                              factor.is_word() || std::isnan(pictures.middle[j])
+                                  ? factor.text(pictures.middle[j])
+                                  : quantity_text(pictures.middle[j], factor.unit));
+    }
+    if (pictures.map) over = std::array{cases.factors[pictures.map->across].name, cases.factors[pictures.map->up].name};
+    return {{"observable", model.observable},
+            {"says", model_lines(model)},
+            {"failed", !cases.failed.empty()},
+            {"over", over},
+            {"others", others}};
+}
+
 /// One response model after the other, or why there is none.
-Json models_of(const store::Store& store, const Responses& responses, const PageModels& asked) {
+Json models_of(const store::Store& store, const Responses& responses, const PageModels& asked, Drawings& drawings) {
     Json list = Json::array();
     std::vector<std::string> names = asked.of;
     const auto* main = responses.main_observable();
@@ -243,12 +256,17 @@ Json models_of(const store::Store& store, const Responses& responses, const Page
         const auto found = std::ranges::find(cases.observables, name, &ResponseColumn::name);
         if (found == cases.observables.end()) continue;
         const auto learned = learn(cases, *found);
-        if (const auto* model = std::get_if<ObservableModel>(&learned))
-            list.push_back(model_page_data(cases, *model, admission(store, cases))
-                               .add("influence", model_influence_page(model_influence_of(
-                                                     responses, responses.observable(name), *model))));
-        else
+        if (const auto* model = std::get_if<ObservableModel>(&learned)) {
+            FigureSubject subject{store, responses, responses.observable(name)};
+            subject.modelled =
+                std::make_shared<const Modelled>(cases, model_pictures(cases, *model, admission(store, cases)));
+            add_figures(drawings, name, panels_on_page(subject, OnPage::model));
+            list.push_back(
+                page_json(cases, *model, subject.modelled->pictures)
+                    .add("influence", model_influence_page(model_influence_of(responses, subject.response, *model))));
+        } else {
             list.push_back({{"observable", name}, {"refused", std::get<stats::Refusal>(learned).sentence}});
+        }
     }
     return list;
 }
@@ -292,6 +310,14 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
     const auto main = std::ranges::find(observables, responses.main_observable());
     const auto brackets = brackets_of(store, record);
     const auto calibration = campaign::shows_findings(record) ? calibration_report(store, record) : std::nullopt;
+    Drawings drawings;
+    Json shown = Json::array();
+    for (const auto* one : observables) shown.push_back(page_json(store, responses, *one, drawings));
+    const auto fitted = models_of(store, responses, models, drawings);
+    if (calibration && !observables.empty())
+        add_figures(drawings, "", panels_on_page({store, responses, *observables.front()}, OnPage::campaign));
+    Json figures = Json::object();
+    for (const auto& [response, svg] : drawings) figures.add(response, svg);
     const auto named_count = [](const auto& counted) { return std::array<Json, 2>{counted.first, counted.second}; };
     return Json{{"name", record.name},
                 {"database", database},
@@ -307,7 +333,6 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
                 {"replicates", record.replicates},
                 {"rows", responses.rows()},
                 {"settled", responses.settled},
-                {"settled_points", responses.counted_points()},
                 {"extends_from", responses.design().extends ? campaign::points_of(record) : std::nullopt},
                 {"sample", responses.ordered_sample()},
                 {"text", record.text},
@@ -315,12 +340,13 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
                 {"outcomes", Json::list(count_outcomes(responses), named_count)}}
         .add(cases_of(responses))
         .add({{"factors", factors_of(responses)},
-              {"observables", Json::list(observables, [&](const auto* one) { return page_json(responses, *one); })},
+              {"observables", shown},
               {"main", main == observables.end() ? 0 : main - observables.begin()},
               {"brackets",
                brackets ? Json{{"says", brackets_line(*brackets)}}.add(columns_and_rows(brackets_table(*brackets)))
                         : Json()},
-              {"models", models_of(store, responses, models)},
+              {"models", fitted},
+              {"figures", base64(deflated(figures.text()))},
               {"calibration", calibration ? page_of(*calibration) : Json()},
               {"curves", page_json(read_curves(store, responses))},
               {"failures", failures_of(store, responses)},
@@ -399,15 +425,15 @@ void write_page(std::ostream& out, std::span<const PageSource> sources, std::spa
                 const PageModels& models) {
     const auto data = safe_in_script(page_data(sources, models));
     if (films.empty()) {
-        write_figures(out, page_files().report, data);
+        write_figures(out, page_files().library, page_files().report, data);
         return;
     }
     const auto player = enclosed(page_files().films);
-    write_figures(out, page_files().report, data, film_elements(films, player), player);
+    write_figures(out, page_files().library, page_files().report, data, film_elements(films, player), player);
 }
 
 std::string write_live_page(std::ostream& out, std::string_view data) {
-    return write_figures(out, page_files().live, data, "", "", "'self'");
+    return write_figures(out, page_files().library, page_files().live, data, "", "", "'self'");
 }
 
 }  // namespace grainsweep::report

@@ -89,18 +89,18 @@ void fill(std::ostream& out, std::string_view skeleton,
     out << skeleton;
 }
 
-std::string write_figures(std::ostream& out, std::string_view script, std::string_view data, std::string_view films,
-                          std::string_view film_script, std::string_view asks) {
+std::string write_figures(std::ostream& out, std::string_view library, std::string_view script, std::string_view data,
+                          std::string_view films, std::string_view film_script, std::string_view asks) {
     const auto files = page_files();
     const auto program = enclosed(script);
-    std::vector<std::string_view> scripts = {files.library, program};
+    std::vector<std::string_view> scripts = {library, program};
     if (!film_script.empty()) scripts.push_back(film_script);
     const std::string policy = "default-src 'none'; style-src 'unsafe-inline'; script-src " + script_sources(scripts) +
                                "; img-src data:" + (asks.empty() ? "" : "; connect-src " + std::string(asks));
     fill(out, files.skeleton,
          {{"policy", policy},
           {"style", files.style},
-          {"library", files.library},
+          {"library", library},
           {"films", films},
           {"data", data},
           {"program", program}});

@@ -22,10 +22,10 @@ struct Calibrated {
 
 Calibrated calibrated_factor(const CalibrationReport& report, std::size_t j) {
     const auto& found = report.found;
-    const auto& range = found.ranges[j];
-    const auto [low, high, log] = range.shown();
-    const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
-    Variable variable{found.factors[j], unit, range.levels, low, high, log, {}};
+    const auto& factor = found.factors[j];
+    const auto [low, high, log] = factor.shown();
+    const std::string unit = j < report.factors.size() ? report.factors[j].factor.unit : "1";
+    Variable variable{factor.name, unit, factor.level_texts(), low, high, log, {}};
     const auto shown = [&](std::vector<double> values) {
         variable.values = std::move(values);
         std::vector<double> places;
@@ -33,7 +33,7 @@ Calibrated calibrated_factor(const CalibrationReport& report, std::size_t j) {
         return places;
     };
     const auto number = [&](double u) {
-        return range.levels.empty() ? range.value_at(u) : static_cast<double>(range.part(u));
+        return factor.continuous() ? factor.number(u) : static_cast<double>(factor.part(u));
     };
     std::vector<double> draws, settings;
     const auto all = found.posterior->rows();
@@ -91,8 +91,9 @@ PanelNames posterior_panels(const FigureSubject& subject) {
     if (!report) return {};
     const auto& factors = report->found.factors;
     if (factors.size() == 1) return {""};
-    PanelNames names = factors;
-    for (const auto& [i, j] : factor_pairs(factors.size())) names.push_back(factors[i] + "," + factors[j]);
+    PanelNames names;
+    for (const auto& factor : factors) names.push_back(factor.name);
+    for (const auto& [i, j] : factor_pairs(factors.size())) names.push_back(names[i] + "," + names[j]);
     return names;
 }
 
@@ -101,12 +102,16 @@ plot::Figure draw_posterior(const FigureSubject& subject, const PanelNames& pane
     const auto& factors = report.found.factors;
     plot::Figure figure;
     figure.keys = {{"settings run, prior", plot::blue}, {"posterior", plot::vermilion}};
+    const auto add = [&](const std::string& name, const auto& panel) {
+        if (std::ranges::count(panels, name) == 0) return;
+        figure.panels.push_back(panel());
+        figure.panels.back().name = name;
+    };
     for (std::size_t j = 0; j < factors.size(); ++j)
-        if (factors.size() == 1 || std::ranges::count(panels, factors[j]) > 0)
-            figure.panels.push_back(marginal_panel(report, j));
+        add(factors.size() == 1 ? "" : factors[j].name, [&] { return marginal_panel(report, j); });
     for (const auto& [i, j] : factor_pairs(factors.size()))
-        if (std::ranges::count(panels, factors[i] + "," + factors[j]) > 0)
-            figure.panels.push_back(pair_panel(calibrated_factor(report, i), calibrated_factor(report, j)));
+        add(factors[i].name + "," + factors[j].name,
+            [&] { return pair_panel(calibrated_factor(report, i), calibrated_factor(report, j)); });
     return figure;
 }
 
@@ -114,7 +119,7 @@ plot::Figure draw_posterior(const FigureSubject& subject, const PanelNames& pane
 
 FigureKind posterior_figure() {
     return {"posterior", "calibrated factors: prior and posterior, and the settings that were run", posterior_panels,
-            draw_posterior};
+            draw_posterior, OnPage::campaign};
 }
 
 }  // namespace grainsweep::report

@@ -89,6 +89,10 @@ Quantity quantity_of(std::string_view name, std::string_view unit, double larges
     return {shown.empty() ? words : fmt::format("{} ({})", words, shown), factor};
 }
 
+Quantity quantity_of(std::string_view name, std::string_view unit, const NumberRange& range) {
+    return quantity_of(name, unit, std::max(std::abs(range.low), std::abs(range.high)));
+}
+
 std::string quantity_text(double value, std::string_view unit) {
     double factor = 1;
     std::string shown = printed_unit(unit);
@@ -106,8 +110,7 @@ Quantity Variable::quantity() const {
         for (const double x : numbers_in(levels)) largest = std::max(largest, std::abs(x));
         return largest > 0 ? quantity_of(name, unit, largest) : quantity_of(name, "1", 1);
     }
-    return quantity_of(name, name == "point" ? "" : unit,
-                       name == "point" ? 1 : std::max(std::abs(low), std::abs(high)));
+    return name == "point" ? quantity_of(name, "", 1) : quantity_of(name, unit, NumberRange{low, high});
 }
 
 std::vector<std::string> Variable::shown_levels() const {
@@ -133,17 +136,14 @@ std::vector<plot::Key> Variable::keys(plot::Key::Kind kind) const {
 
 double Variable::place(std::size_t row) const {
     if (levels.empty()) return shown(values[row]);
-    return spread_around(values[row], row);
-}
-
-double spread_around(double level, std::size_t row) {
     constexpr double golden = 0.618034;
-    return level + 0.5 * (std::fmod(static_cast<double>(row) * golden, 1.0) - 0.5);
+    return values[row] + 0.5 * (std::fmod(static_cast<double>(row) * golden, 1.0) - 0.5);
 }
 
 Variable variable_of(const study::FactorColumn& factor) {
-    const auto range = factor.high > factor.low ? NumberRange{factor.low, factor.high} : finite_range(factor.values);
-    return {factor.name, factor.unit, factor.levels, range.low, range.high, factor.log, factor.values};
+    const auto [low, high] = factor.continuous() ? factor.ends() : std::pair(0.0, 0.0);
+    const auto range = high > low ? NumberRange{low, high} : finite_range(factor.values);
+    return {factor.name, factor.unit, factor.seen_texts(), range.low, range.high, factor.log(), factor.values};
 }
 
 Variable variable_of(const study::ResponseColumn& response) {
@@ -154,7 +154,7 @@ Variable variable_of(const study::ResponseColumn& response) {
 Variable variable_of(const study::ModelFactor& factor) {
     std::vector<std::string> levels = factor.words;
     for (const double number : factor.numbers) levels.push_back(factor.text(number));
-    return {factor.name, factor.unit, std::move(levels), factor.low, factor.high, factor.log, {}};
+    return {factor.name, factor.unit, std::move(levels), factor.low(), factor.high(), factor.log(), {}};
 }
 
 NumberRange finite_range(std::span<const double> numbers) {
@@ -175,6 +175,8 @@ plot::Axis number_axis(const Quantity& quantity, const NumberRange& range, bool 
     const double low = quantity.of(range.low), high = quantity.of(range.high);
     if (!log) return {quantity.title, low - margin * (high - low), high + margin * (high - low), false, {}};
     const double room = std::pow(high / low, margin);
+    // No room beyond the range of a double, where an end would be 0 or infinite.
+    if (!(low / room > 0) || !std::isfinite(high * room)) return {quantity.title, low, high, true, {}};
     return {quantity.title, low / room, high * room, true, {}};
 }
 

@@ -51,8 +51,6 @@ struct Variable {
     /// Returns the value of a row as on the axis; cases of one level are spread sideways by a fixed sequence.
     [[nodiscard]] double place(std::size_t row) const;
 };
-/// Returns the place of a case beside its level: a fixed sequence of rows.
-[[nodiscard]] double spread_around(double level, std::size_t row);
 [[nodiscard]] Variable variable_of(const study::FactorColumn& factor);
 /// A response has a logarithmic axis if it spans decades.
 [[nodiscard]] Variable variable_of(const study::ResponseColumn& response);
@@ -64,6 +62,8 @@ struct NumberRange {
     double low = 0, high = 1;
 };
 [[nodiscard]] NumberRange finite_range(std::span<const double> numbers);
+/// Returns the quantity with the prefix for the number of the range that is farthest from 0.
+[[nodiscard]] Quantity quantity_of(std::string_view name, std::string_view unit, const NumberRange& range);
 /// Returns whether all numbers are positive and the largest is more than a hundred times the smallest.
 [[nodiscard]] bool spans_decades(const NumberRange& range);
 /// Returns an axis of the range, widened by a share of its length.

@@ -1,7 +1,6 @@
 // distribution, convergence, effects.
 #include "sweep/report/figure_kinds.hpp"
 #include "sweep/study/effects.hpp"
-#include "sweep/study/history.hpp"
 
 #include <fmt/format.h>
 
@@ -60,8 +59,7 @@ plot::Panel moment_panel(const FigureSubject& subject, const History& history, s
     const std::string name(stats::to_string(statistic));
     const bool of_unit = statistic == stats::Statistic::mean || statistic == stats::Statistic::sd;
     const auto shown =
-        quantity_of(fmt::format("{} of {}", name, subject.response.name), of_unit ? subject.response.unit : "1",
-                    std::max(std::abs(range.low), std::abs(range.high)));
+        quantity_of(fmt::format("{} of {}", name, subject.response.name), of_unit ? subject.response.unit : "1", range);
     plot::Line line;
     plot::Band band;
     for (const auto* check : checks) {
@@ -73,6 +71,7 @@ plot::Panel moment_panel(const FigureSubject& subject, const History& history, s
     }
     band.x = line.x;
     plot::Panel panel{{"design points", 0, 1.02 * line.x.back()}, number_axis(shown, range), {band, line}};
+    panel.name = name;
     if (line.x.size() <= most_dots) panel.marks.push_back(plot::Points{line.x, line.y});
     return panel;
 }
@@ -86,7 +85,7 @@ std::optional<std::int64_t> end_of(const FigureSubject& subject, const History& 
 }
 
 plot::Figure draw_convergence(const FigureSubject& subject, const PanelNames& panels) {
-    const auto history = history_of(subject.responses, subject.response);
+    const auto history = history_of(subject);
     plot::Figure figure;
     for (const auto statistic : stats::statistics)
         if (std::ranges::count(panels, stats::to_string(statistic)) > 0)
@@ -103,7 +102,7 @@ plot::Figure draw_convergence(const FigureSubject& subject, const PanelNames& pa
 
 PanelNames convergence_panels(const FigureSubject& subject) {
     if (!subject.responses.ordered_sample() || !has_values(subject)) return {};
-    if (checks_to_show(history_of(subject.responses, subject.response), 2).empty()) return {};
+    if (checks_to_show(history_of(subject), 2).empty()) return {};
     PanelNames names;
     for (const auto statistic : stats::statistics) names.emplace_back(stats::to_string(statistic));
     return names;
@@ -122,6 +121,7 @@ plot::Panel effect_panel(const FactorColumn& factor, const std::vector<EffectBin
     errors.at = means.x;
     errors.value = means.y;
     plot::Panel panel{variable.axis(), up};
+    panel.name = factor.name;
     if (factor.continuous()) panel.marks.push_back(plot::Line{means.x, means.y});
     panel.marks.push_back(errors);
     panel.marks.push_back(means);
@@ -143,8 +143,7 @@ plot::Figure draw_effects(const FigureSubject& subject, const PanelNames& panels
         }
     }
     const auto range = finite_range(ends);
-    const auto shown = quantity_of(fmt::format("mean {}", subject.response.name), subject.response.unit,
-                                   std::max(std::abs(range.low), std::abs(range.high)));
+    const auto shown = quantity_of(fmt::format("mean {}", subject.response.name), subject.response.unit, range);
     const auto axis = number_axis(shown, range, has_log_axis(subject, range));
     plot::Figure figure;
     for (std::size_t j = 0; j < bins.size(); ++j) {
@@ -166,7 +165,8 @@ PanelNames factors_of_values(const FigureSubject& subject) {
 }  // namespace
 
 FigureKind distribution_figure() {
-    return {"distribution", "distribution of the response", single_of_values, draw_distribution, false, false, true};
+    return {"distribution", "distribution of the response", single_of_values, draw_distribution, OnPage::response,
+            {.axis = true}};
 }
 
 FigureKind convergence_figure() {
@@ -175,9 +175,9 @@ FigureKind convergence_figure() {
 }
 
 FigureKind effects_figure() {
-    return {
-        "effects", "mean response against each factor, with 95 % errors", factors_of_values, draw_effects, false, false,
-        true};
+    return {"effects",         "mean response against each factor, with 95 % errors",
+            factors_of_values, draw_effects,
+            OnPage::response,  {.axis = true}};
 }
 
 }  // namespace grainsweep::report

@@ -1,15 +1,21 @@
 #include "sweep/report/window_page.hpp"
 
+#include "sweep/report/figure_kinds.hpp"
+#include "sweep/report/model_panels.hpp"
 #include "sweep/report/model_tables.hpp"
+#include "sweep/report/packed_column.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/window_tables.hpp"
 #include "sweep/study/factor_axis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <ostream>
@@ -22,17 +28,21 @@ namespace {
 
 constexpr std::size_t points_of_curve = 41;
 
-struct FactorCurve {
-    std::vector<double> at;
-    std::vector<Judgement> judged;
-};
-
-FactorCurve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window,
+WindowCurve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window,
                           const Admits& admits, const Setting& centre, std::size_t factor) {
-    FactorCurve curve{points_along(cases.factors[factor], points_of_curve), {}};
+    WindowCurve curve{points_along(cases.factors[factor], points_of_curve), {}, {}};
     std::vector<Setting> settings(curve.at.size(), centre);
     for (std::size_t i = 0; i < settings.size(); ++i) place(cases.factors, settings[i], factor, curve.at[i]);
     curve.judged = judge_settings(cases, request, window, admits, settings);
+    for (std::size_t k = 0; k < window.models.size(); ++k) {
+        auto& response = curve.responses.emplace_back(ModelCurve{curve.at, {}, {}, {}, {}});
+        for (const auto& one : curve.judged) {
+            const auto shown = [&](double x) { return one.believed ? x : std::numeric_limits<double>::quiet_NaN(); };
+            response.mean.push_back(shown(one.predictions[k].mean));
+            response.mean_half_width.push_back(shown(one.predictions[k].mean_half_width()));
+            response.run_half_width.push_back(shown(one.predictions[k].run_half_width()));
+        }
+    }
     return curve;
 }
 
@@ -107,7 +117,7 @@ void put_decisive_first(std::vector<std::size_t>& order, const ModelCases& cases
 }
 
 /// Factors by how much they matter, see the header.
-std::vector<std::size_t> order_of(std::span<const FactorCurve> curves, bool objective, double whole_range) {
+std::vector<std::size_t> order_of(std::span<const WindowCurve> curves, bool objective, double whole_range) {
     std::vector<double> weights;
     for (const auto& curve : curves) {
         double weight = width_of(curve.judged, probability_of);
@@ -141,36 +151,117 @@ Json window_page_json(const ModelCases& cases, const Window& window, const Judge
             {"responses", responses_of(window, one)}};
 }
 
-Json window_page_json(const Window& window, const FactorCurve& curve) {
-    return {{"at", curve.at},
-            {"probability", Json::list(curve.judged, probability_of)},
-            {"responses", Json::list(curve.judged, [&](const auto& one) { return responses_of(window, one); })}};
-}
-
-Json map_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Admits& admits,
-            const Setting& centre, std::size_t a, std::size_t b) {
+WindowMap window_map(const ModelCases& cases, const WindowRequest& request, const Window& window, const Admits& admits,
+                     const Setting& centre, std::size_t a, std::size_t b) {
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
     const auto settings = settings_of_map(cases.factors, centre, a, b, points_of_curve);
     const auto judged = judge_settings(cases, request, window, admits, settings);
-    const bool modelled = modelled_objective(window);
-    Json probability = Json::array(), objective = modelled ? Json::array() : Json();
+    WindowMap map{{a, b, points_of_curve}, {}, {}};
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
-        probability.push_back(there ? Json(judged[i].probability) : Json());
-        const bool answers = there && judged[i].believed;
-        if (modelled) objective.push_back(answers ? Json(judged[i].objectives.front().mean) : Json());
+        map.probability.push_back(there ? judged[i].probability : nothing);
+        if (modelled_objective(window))
+            map.objective.push_back(there && judged[i].believed ? judged[i].objectives.front().mean : nothing);
     }
-    return map_json(cases.factors, a, b, points_of_curve).add({{"probability", probability}, {"objective", objective}});
+    return map;
+}
+
+NumberRange range_of_response(const WindowPictures& pictures, std::size_t k, double bands) {
+    std::vector<double> ends;
+    for (const auto& curve : pictures.curves)
+        for (std::size_t i = 0; i < curve.at.size(); ++i)
+            for (const double sign : {-bands, bands})
+                ends.push_back(curve.responses[k].mean[i] + sign * curve.responses[k].run_half_width[i]);
+    return finite_range(ends);
+}
+
+/// Draws the figures of a page.
+struct WindowPainter {
+    const ModelCases& cases;
+    const WindowRequest& request;
+    const Window& window;
+    const WindowPictures& pictures;
+    const Setting& centre;
+
+    [[nodiscard]] static Json drawn(const std::string& title, const std::string& says, plot::Figure figure) {
+        return {{"title", title},
+                {"says", says},
+                {"svg", plot::drawn(drawable(std::move(figure)), figure_width_mm, plot::FileType::svg)}};
+    }
+    [[nodiscard]] double place_of(std::size_t j) const { return place_on_axis(cases.factors[j], centre[j]); }
+
+    [[nodiscard]] Json map(const std::vector<double>& values, const Quantity& shown, const NumberRange& range,
+                           const std::string& title, const std::string& says) const {
+        const auto& map = *pictures.map;
+        plot::Figure figure{{cells_panel(cases, map, values, shown, colour_scale(shown, range))}};
+        if (!cases.failed.empty()) figure.keys = {failed_key()};
+        std::vector<bool> inside;
+        for (const double p : map.probability) inside.push_back(p >= 1 - window.risk);
+        enclose(figure.panels.front(), inside);
+        figure.panels.front().marks.push_back(
+            plot::Points{{place_of(map.across)}, {place_of(map.up)}, {plot::black}, plot::Points::Shape::ring, 3});
+        return drawn(title, says, std::move(figure));
+    }
+
+    [[nodiscard]] Json maps() const {
+        Json list = Json::array();
+        if (!pictures.map) return list;
+        const auto& objective = pictures.map->objective;
+        const auto pair =
+            fmt::format("{} and {}", cases.factors[pictures.map->across].name, cases.factors[pictures.map->up].name);
+        list.push_back(map(pictures.map->probability, quantity_of("probability", "1", 1), {},
+                           "Process window: " + (request.where.empty() ? std::string("no condition") : request.where),
+                           fmt::format("Probability of the condition against {}.", pair)));
+        if (std::ranges::none_of(objective, [](double x) { return std::isfinite(x); })) return list;
+        const auto& model = window.models.front();
+        const auto range = finite_range(objective);
+        list.push_back(map(objective, quantity_of(model.observable, model.unit, range), range,
+                           fmt::format("{} against {}", model.observable, pair), "Predicted mean."));
+        return list;
+    }
+
+    /// A curve, and the setting that it passes through.
+    [[nodiscard]] Json curve(std::size_t j, const ModelCurve& curve, const Quantity& up, const plot::Axis& axis,
+                             const std::string& name) const {
+        plot::Figure figure{{curve_panel(cases, j, curve, up, axis)}, curve_keys(cases, curve)};
+        figure.panels.front().marks.push_back(plot::Marker{place_of(j)});
+        figure.keys.push_back({"setting", plot::black, plot::Key::Kind::dashes});
+        return drawn(fmt::format("{} against {}", name, cases.factors[j].name), "", std::move(figure));
+    }
+
+    [[nodiscard]] Json curves() const {
+        Json list = Json::array();
+        for (std::size_t k = 0; k < window.models.size(); ++k) {
+            const auto& model = window.models[k];
+            const auto range = range_of_response(pictures, k, 1);
+            const auto up = quantity_of(model.observable, model.unit, range);
+            for (const auto j : pictures.order)
+                list.push_back(curve(j, pictures.curves[j].responses[k], up, number_axis(up, range), model.observable));
+        }
+        for (const auto j : pictures.order) {
+            if (request.where.empty()) break;
+            ModelCurve probability{pictures.curves[j].at, {}, {}, {}, {}};
+            for (const auto& one : pictures.curves[j].judged) probability.mean.push_back(one.probability);
+            list.push_back(curve(j, probability, quantity_of("probability", "1", 1), {"probability", -0.04, 1.04},
+                                 "probability of the condition"));
+        }
+        return list;
+    }
+};
+
+const Judgement& centre_of(const Window& window) {
+    return window.best ? *window.best : window.surest.value();
 }
 
 }  // namespace
 
-Json window_page_data(const ModelCases& cases, const WindowRequest& request, const Window& window,
-                      const Admits& admits) {
-    const auto& centre = window.best ? *window.best : window.surest.value();
-    std::vector<FactorCurve> curves;
+WindowPictures window_pictures(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                               const Admits& admits) {
+    const auto& centre = centre_of(window).setting;
+    WindowPictures pictures;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
-        curves.push_back(curve_through(cases, request, window, admits, centre.setting, j));
-    const bool objective = !request.objectives.empty(), modelled = modelled_objective(window);
+        pictures.curves.push_back(curve_through(cases, request, window, admits, centre, j));
+    const bool modelled = modelled_objective(window);
     double whole_range = 0;
     if (modelled) {
         const auto& model = window.models.front();
@@ -178,47 +269,63 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
         const auto [low, high] = std::ranges::minmax(means);
         whole_range = high - low;
     }
-    auto order = order_of(curves, modelled, whole_range);
+    auto& order = pictures.order;
+    order = order_of(pictures.curves, modelled, whole_range);
     put_decisive_first(order, cases, request, window, admits);
-    Json responses = Json::array();
-    for (const auto& model : window.models) responses.push_back({{"name", model.observable}, {"unit", model.unit}});
+    if (order.size() > 1) pictures.map = window_map(cases, request, window, admits, centre, order[0], order[1]);
+    return pictures;
+}
+
+Json window_page_data(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                      const Admits& admits) {
+    const auto pictures = window_pictures(cases, request, window, admits);
+    const auto& centre = centre_of(window);
+    const bool objective = !request.objectives.empty();
+    Json responses = Json::array(), others = Json::array();
+    for (std::size_t k = 0; k < window.models.size(); ++k) {
+        const auto range = range_of_response(pictures, k, 0);
+        responses.push_back({{"name", window.models[k].observable},
+                             {"unit", window.models[k].unit},
+                             {"low", range.low},
+                             {"high", range.high}});
+    }
+    for (std::size_t k = 2; k < pictures.order.size(); ++k) others.push_back(pictures.order[k]);
     const auto settings = [&](const std::vector<Judgement>& judged) {
         return Json::list(judged, [&](const Judgement& one) { return window_page_json(cases, window, one); });
     };
-    const Json map =
-        order.size() < 2 ? Json() : map_of(cases, request, window, admits, centre.setting, order[0], order[1]);
-    return {{"campaigns", std::array{Json{{"name", cases.campaign.name}}}},
-            {"campaign", cases.campaign.name},
-            {"scene", shown_scene(cases.campaign.scene)},
-            {"where", request.where},
-            {"objective", objective ? Json(request.objectives.front().name) : Json()},
-            {"goal", goal_text(request)},
-            {"volume", window.volume ? Json(volume_text(*window.volume)) : Json()},
-            {"single_run", request.judged == stats::Judged::single_run},
-            {"risk", request.risk},
-            {"share", window.share_of_box},
-            {"share_error", window.share_error},
-            {"share_of", share_of(cases.factors)},
-            {"factors", axes_json(cases.factors)},
-            {"meets", window.best.has_value()},
-            {"best", window_page_json(cases, window, centre)},
-            {"failed", failed_json(cases)},
-            {"failed_near", cases.failed.empty() ? "" : near_text(cases, window.answers->near(centre.setting))},
-            {"order", order},
-            {"responses", responses},
-            {"models", Json::list(window.models, model_lines)},
-            {"curves", Json::list(curves, [&](const FactorCurve& curve) { return window_page_json(window, curve); })},
-            {"map", map},
-            {"front", settings(window.front)},
-            {"next", settings(window.next)},
-            {"against", window.against ? Json(name_of(*window.against, cases, window)) : Json()},
-            {"notes", window.notes}};
+    const WindowPainter painter{cases, request, window, pictures, centre.setting};
+    const Json figures = {{"maps", painter.maps()}, {"curves", painter.curves()}};
+    return {
+        {"campaigns", std::array{Json{{"name", cases.campaign.name}, {"figures", base64(deflated(figures.text()))}}}},
+        {"campaign", cases.campaign.name},
+        {"scene", shown_scene(cases.campaign.scene)},
+        {"where", request.where},
+        {"objective", objective ? Json(request.objectives.front().name) : Json()},
+        {"goal", goal_text(request)},
+        {"volume", window.volume ? Json(volume_text(*window.volume)) : Json()},
+        {"single_run", request.judged == stats::Judged::single_run},
+        {"risk", request.risk},
+        {"share", window.share_of_box},
+        {"share_error", window.share_error},
+        {"share_of", share_of(cases.factors)},
+        {"factors", axes_json(cases.factors)},
+        {"meets", window.best.has_value()},
+        {"best", window_page_json(cases, window, centre)},
+        {"failed", !cases.failed.empty()},
+        {"failed_near", cases.failed.empty() ? "" : near_text(cases, window.answers->near(centre.setting))},
+        {"others", others},
+        {"responses", responses},
+        {"models", Json::list(window.models, model_lines)},
+        {"front", settings(window.front)},
+        {"next", settings(window.next)},
+        {"against", window.against ? Json(name_of(*window.against, cases, window)) : Json()},
+        {"notes", window.notes}};
 }
 
 void write_window_page(std::ostream& out, const Json& data, std::string_view database) {
     Json all = data;
     all.add("databases", std::array{database});
-    write_figures(out, page_files().window, safe_in_script(all));
+    write_figures(out, "", page_files().window, safe_in_script(all));
 }
 
 }  // namespace grainsweep::report

@@ -7,22 +7,39 @@
 // one per level. Bands are 95 % bands of the mean and of a single run.
 #pragma once
 
+#include "sweep/report/model_page.hpp"
 #include "sweep/report/table.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/process_window.hpp"
 
+#include <cstddef>
 #include <iosfwd>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::report {
 
-/// Returns the data for the script of the page; settings that the campaign's `where` excludes (`admits`) are empty:
-///
-///   {"campaign", "where", "objective", "risk", "share", "factors", "best", "meets",
-///    "failed": settings and outcomes of failed cases, "failed_near",
-///    "order": factors by their influence,
-///    "curves": one per factor,
-///    "map": of the first two of `order` or null, "front", "next", "models", "notes"}
+/// Predictions along a factor, through the setting.
+struct WindowCurve {
+    std::vector<double> at;
+    std::vector<study::Judgement> judged;
+    std::vector<ModelCurve> responses;  ///< one per model; NaN: not drawn
+};
+/// Map of the first two factors. NaN: an empty cell.
+struct WindowMap : MapPlace {
+    std::vector<double> probability, objective;  ///< no objective: no model of one
+};
+struct WindowPictures {
+    std::vector<std::size_t> order;   ///< factors by their influence
+    std::vector<WindowCurve> curves;  ///< one per factor
+    std::optional<WindowMap> map;     ///< empty: there is only one factor
+};
+/// Computes the figures. Settings that the campaign's `where` excludes (`admits`) are empty.
+[[nodiscard]] WindowPictures window_pictures(const study::ModelCases& cases, const study::WindowRequest& request,
+                                             const study::Window& window, const study::Admits& admits);
+
+/// Returns the texts, tables and drawn figures for the script of the page.
 [[nodiscard]] Json window_page_data(const study::ModelCases& cases, const study::WindowRequest& request,
                                     const study::Window& window, const study::Admits& admits);
 

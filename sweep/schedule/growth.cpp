@@ -15,6 +15,18 @@
 
 namespace grainsweep::schedule {
 
+namespace {
+
+/// Returns the answer of a settled case; NaN: none. Whether a value is missing is the answer of completed cases only.
+double answer_of(const store::PlacedValue& value, const designs::CurvePlace& place) {
+    if (!place.missing) return value.value;
+    using enum campaign::Outcome;
+    if (value.outcome != completed && value.outcome != skipped) return std::numeric_limits<double>::quiet_NaN();
+    return std::isnan(value.value) ? 1 : 0;
+}
+
+}  // namespace
+
 Answers known_answers(const store::Store& store, const store::CampaignRecord& record,
                       std::span<const std::string> observables) {
     Answers answers;
@@ -31,11 +43,12 @@ Answers known_answers(const store::Store& store, const store::CampaignRecord& re
         }
         auto& known = answers[key];
         known.assign(static_cast<std::size_t>(asked->stored.candidates), std::numeric_limits<double>::quiet_NaN());
-        const auto [name, at] = designs::place_on_curve(slash == std::string::npos ? key : key.substr(slash + 1));
-        const auto values = at ? store.values_along(asked->name, name, *at) : store.values(asked->name, name);
+        const auto place = designs::place_on_curve(slash == std::string::npos ? key : key.substr(slash + 1));
+        const auto values = place.at ? store.values_along(asked->name, place.observable, *place.at)
+                                     : store.values(asked->name, place.observable);
         for (const auto& it : values) {
             const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
-            known[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;
+            known[static_cast<std::size_t>(it.point)] = settled ? std::optional(answer_of(it, place)) : std::nullopt;
         }
     }
     return answers;
@@ -60,51 +73,47 @@ std::function<bool(std::span<const double>)> admission(const store::CampaignReco
 }
 
 /// Returns the coordinate of a factor's value, or of its level, in the unit cube.
-double coordinate_of(const campaign::StatedFactor& factor, const store::Table::Cell& cell) {
+double coordinate_of(const campaign::Factor& factor, const store::Table::Cell& cell) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const auto* real = std::get_if<double>(&cell);
     const auto* whole = std::get_if<std::int64_t>(&cell);
     const double value = real != nullptr ? *real : whole != nullptr ? static_cast<double>(*whole) : none;
-    if (factor.distribution) return factor.distribution->cumulative(value);
-    if (factor.between) {
-        const auto& [low, high, scale] = *factor.between;
-        return scale == campaign::Scale::log ? std::log(value / low) / std::log(high / low)
-                                             : (value - low) / (high - low);
-    }
-    for (std::size_t k = 0; k < factor.levels.size(); ++k) {
-        const auto* word = std::get_if<std::string>(&cell);
-        const bool same = word != nullptr ? *word == factor.levels[k] : campaign::shortest(value) == factor.levels[k];
-        if (same) return (static_cast<double>(k) + 0.5) / static_cast<double>(factor.levels.size());
-    }
-    return none;
+    if (factor.continuous()) return factor.place(value);
+    const auto* word = std::get_if<std::string>(&cell);
+    const auto levels = factor.level_texts();
+    const auto level = std::ranges::find(levels, word != nullptr ? *word : campaign::shortest(value));
+    return level == levels.end() ? none : factor.middle_of(static_cast<std::size_t>(level - levels.begin()));
 }
 
-/// Returns the answers that were imported into a campaign and belong to no point of its design.
-designs::FurtherAnswers imported_answers(const store::Store& store, const store::CampaignRecord& record,
-                                         std::span<const std::string> observables) {
-    designs::FurtherAnswers further;
-    const auto factors = campaign::factors_of(record);
+/// Adds the answers that were imported into a campaign and belong to no point of its design. `experiment`: of this
+/// campaign; its keys begin with it.
+void add_imported(std::vector<designs::FurtherAnswers>& all, const store::Store& store,
+                  const store::CampaignRecord& record, const std::string& experiment,
+                  std::span<const std::string> keys) {
     for (const auto& other : store.campaigns()) {
-        if (other.imported_into != record.name || other.factors != record.factors || other.fixed != record.fixed)
-            continue;
+        if (other.imported_into != record.name || !campaign::asks_the_same(other, record)) continue;
+        auto& further = all.emplace_back();
+        further.factors = record.factors;
         const auto rows = store.query(store.rows_of(other.name) + " ORDER BY point, replicate");
         std::vector<std::size_t> columns;
-        for (const auto& factor : factors)
+        for (const auto& factor : record.factors)
             columns.push_back(
                 static_cast<std::size_t>(std::ranges::find(rows.columns, factor.name) - rows.columns.begin()));
         for (const auto& row : rows.rows)
-            for (std::size_t j = 0; j < factors.size(); ++j)
-                further.coordinates.push_back(coordinate_of(factors[j], row.at(columns[j])));
-        for (const auto& key : observables) {
-            const auto [name, at] = designs::place_on_curve(key);
+            for (std::size_t j = 0; j < columns.size(); ++j)
+                further.coordinates.push_back(coordinate_of(record.factors[j], row.at(columns[j])));
+        const std::string prefix = experiment.empty() ? "" : experiment + '/';
+        for (const auto& key : keys) {
+            if (!key.starts_with(prefix)) continue;
+            const auto place = designs::place_on_curve(key.substr(prefix.size()));
             auto& answers = further.answers[key];
-            if (at)
-                answers.resize(answers.size() + rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
+            if (place.at)
+                answers.assign(rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
             else
-                for (const auto& one : store.values(other.name, name)) answers.push_back(one.value);
+                for (const auto& one : store.values(other.name, place.observable))
+                    answers.push_back(answer_of(one, place));
         }
     }
-    return further;
 }
 
 }  // namespace
@@ -114,7 +123,14 @@ void learn_answers(designs::DesignRequest& request, const store::Store& store, c
     request.answers = known_answers(store, record, design.rests_on(request));
     if (!design.calibrates) return;
     request.admits = admission(record);
-    if (request.shared.empty()) request.further = imported_answers(store, record, design.rests_on(request));
+    request.further.clear();
+    const auto keys = design.rests_on(request);
+    const auto experiments = campaign::experiments_of(record);
+    if (experiments.empty()) add_imported(request.further, store, record, "", keys);
+    for (const auto& experiment : experiments)
+        for (const auto& other : store.campaigns())
+            if (other.name == campaign::name_beside(record, experiment))
+                add_imported(request.further, store, other, experiment, keys);
 }
 
 bool grow(campaign::Campaign& campaign, const store::Store& store) {

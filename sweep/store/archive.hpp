@@ -98,10 +98,13 @@ inline constexpr std::array<std::string_view, 8> described_tables = {
     "attempt_computer", "convergence", "table_checksum", "file_checksum"};
 
 /// Columns of `campaign` with the identity, and the identity read from them, beginning at column `first`.
-inline constexpr std::string_view identity_columns =
-    "name, scene, revision, seed, factors, fixed, condition, design, design_options, design_extent";
-inline constexpr int identity_column_count = 10;
+[[nodiscard]] std::string identity_columns(const Connection& db);
+inline constexpr int identity_column_count = 11;
 [[nodiscard]] campaign::Identity identity_at(const Rows& rows, int first);
+/// Stores the identity of a campaign that may have grown.
+void store_identity(Connection& db, std::int64_t campaign_key, const campaign::Identity& identity);
+/// Adds the JSON of every campaign of an older database, and its checksum.
+void resolve_campaigns(Connection& db);
 
 /// Returns the columns candidates, asked_candidates, asked_replicates of campaign g. An older database has none; the
 /// placed numbers replace them.
@@ -113,10 +116,9 @@ struct KnownCampaign {
     campaign::Identity identity;
 };
 [[nodiscard]] std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name);
-/// Returns the key of the stored campaign; empty if it is new. Throws InputError if the stored campaign of this name
-/// differs.
-[[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
-                                                         const campaign::Campaign& campaign);
+/// Returns the stored campaign; empty if it is new. Throws InputError if the stored campaign of this name differs.
+[[nodiscard]] std::optional<KnownCampaign> match_campaign(const Store::Impl& archive,
+                                                          const campaign::Campaign& campaign);
 
 /// Returns the key of a scalar, or of a series or profile, of a campaign. Throws InputError with the nearest name if
 /// there is none.

@@ -95,15 +95,11 @@ void make_view(Connection& db, const Shown& shown) {
 /// Every campaign, as the archive describes it.
 std::vector<Shown> stored_campaigns(const Connection& db) {
     std::vector<Shown> all;
-    auto rows = db.ask(fmt::format("SELECT campaign_id, {} FROM campaign NOT INDEXED", identity_columns));
+    auto rows = db.ask(fmt::format("SELECT campaign_id, {} FROM campaign NOT INDEXED", identity_columns(db)));
     while (rows.next()) {
         const auto identity = identity_at(rows, 1);
-        Shown shown{identity.name,
-                    identity.scene,
-                    rows.get<std::int64_t>(0),
-                    identity.revision,
-                    campaign::factor_names(identity),
-                    {}};
+        Shown shown{identity.name, identity.scene, rows.get<std::int64_t>(0), identity.revision, {}, {}};
+        for (const auto& factor : identity.factors) shown.factors.push_back(factor.name);
         auto scalars = db.ask(
             "SELECT name FROM observable NOT INDEXED WHERE scene = ? AND revision = ? AND shape = 'scalar' ORDER BY "
             "observable_id",

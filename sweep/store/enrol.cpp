@@ -1,5 +1,6 @@
 // Enrolling: enters a campaign and its cases in the archive, or joins them with stored ones.
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/moment.hpp"
@@ -130,36 +131,37 @@ std::int64_t candidates_in(const Campaign& campaign, const campaign::Cases& case
 
 /// What is asked now; what is stored grows to it where the design extends, and changes with it elsewhere.
 void store_extent(Store::Impl& archive, const Campaign& campaign, std::int64_t key, std::int64_t candidates) {
-    const auto stored =
-        archive.db.value<std::string>("SELECT design_extent FROM campaign WHERE campaign_id = ?", key).value_or("");
-    const auto identity = campaign::identity_of(campaign);
     archive.db.run(
-        "UPDATE campaign SET factors = ?1, design_options = ?2, design_extent = ?3, replicates = max(replicates, ?4), "
-        "candidates = iif(?5, max(coalesce(candidates, (SELECT max(point) + 1 FROM campaign_case AS p WHERE "
-        "p.campaign_id = campaign.campaign_id), 0), ?6), ?6), asked_candidates = ?6, asked_replicates = ?4 "
-        "WHERE campaign_id = ?7",
-        identity.factors, identity.options, campaign::larger_extent(campaign.design, stored, identity.extent),
+        "UPDATE campaign SET replicates = max(replicates, ?1), candidates = iif(?2, max(coalesce(candidates, (SELECT "
+        "max(point) + 1 FROM campaign_case AS p WHERE p.campaign_id = campaign.campaign_id), 0), ?3), ?3), "
+        "asked_candidates = ?3, asked_replicates = ?1 WHERE campaign_id = ?4",
         campaign.replicates, designs::design_named(campaign.design).extends, candidates, key);
 }
 
 std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, const campaign::Cases& cases) {
     auto& db = archive.db;
-    auto key = match_campaign(archive, campaign);
-    const auto identity = campaign::identity_of(campaign);
-    if (!key) {
+    const auto known = match_campaign(archive, campaign);
+    auto identity = campaign::identity_of(campaign);
+    std::int64_t key = 0;
+    if (known) {
+        key = known->key;
+        campaign::keep_extent(identity, known->identity);
+    } else {
+        const auto texts = campaign::texts_of(identity);
         check_campaign_name(campaign.name);
         refuse_taken_name(db, campaign);
         db.run(
             "INSERT INTO campaign (name, scene, revision, seed, factors, fixed, condition, design, design_options, "
             "design_extent, sequences, replicates) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
             campaign.name, campaign.scene().name, campaign.scene().revision, static_cast<std::int64_t>(campaign.seed),
-            identity.factors, identity.fixed, campaign.where, campaign.design, identity.options, identity.extent,
+            texts.factors, texts.fixed, campaign.where, campaign.design, texts.options, texts.extent,
             campaign::sequences_of(campaign), campaign.replicates);
         key = db.last_row();
     }
-    store_extent(archive, campaign, *key, candidates_in(campaign, cases));
-    store_rule(db, *key, campaign.convergence);
-    return *key;
+    store_identity(db, key, identity);
+    store_extent(archive, campaign, key, candidates_in(campaign, cases));
+    store_rule(db, key, campaign.convergence);
+    return key;
 }
 
 void store_provenance(Store::Impl& archive, const Campaign& campaign, std::int64_t key, const Provenance& by) {

@@ -243,9 +243,48 @@ void refuse_chains(const Written& written) {
     throw refusal(written, fmt::format("'{}' compares the outcome of a comparison; write {}", chain->text, instead));
 }
 
+/// Refuses what other languages write: && and ||, decimal commas, and numbers in quotes, which are texts: SQL puts
+/// every number before every text, so that a comparison with one holds always or never.
+void refuse_foreign_words(const Written& written) {
+    const auto tokens = tokens_of(written.text);
+    const auto orders = [&](std::size_t k) {
+        if (k >= tokens.size()) return false;
+        const Token& token = tokens[k];
+        const bool equal = token.is("=") || token.is("==") || token.is("!=") || token.is("<>");
+        return (compares(token) && !equal) || token.is_word("between");
+    };
+    for (std::size_t k = 0; k < tokens.size(); ++k) {
+        const Token& token = tokens[k];
+        const auto is_digits = [&](std::size_t at) {
+            return at < tokens.size() && tokens[at].kind == Token::Kind::word &&
+                   std::isdigit(static_cast<unsigned char>(tokens[at].text[0])) != 0;
+        };
+        if (token.is("&") && k + 1 < tokens.size() && tokens[k + 1].is("&") && tokens[k + 1].at == token.end())
+            throw refusal(written, "'&&' is no word of SQL: write AND");
+        if (token.is("||") && k > 0 && (is_digits(k - 1) || tokens[k - 1].is(")")))
+            throw refusal(written, "'||' joins texts in SQL: write OR");
+        if (token.is(",") && k > 0 && is_digits(k - 1) && is_digits(k + 1) && tokens[k - 1].end() == token.at &&
+            tokens[k + 1].at == token.end() && k > 1 && compares(tokens[k - 2]))
+            throw refusal(written,
+                          fmt::format("'{},{}': numbers have a decimal point", tokens[k - 1].text, tokens[k + 1].text));
+        const bool text = token.kind == Token::Kind::quoted && token.text.size() > 2 && token.text[0] == '\'';
+        const bool upper_end =
+            k > 2 && tokens[k - 1].is_word("and") && orders(k - 3) && tokens[k - 3].is_word("between");
+        if (!text || (k > 0 && tokens[k - 1].is("||")) || !((k > 0 && orders(k - 1)) || orders(k + 1) || upper_end))
+            continue;
+        const std::string_view inside = token.text.substr(1, token.text.size() - 2);
+        if (std::string_view("0123456789.+-").find(inside[0]) == std::string_view::npos) continue;
+        throw refusal(written,
+                      fmt::format("{} is a text, and no number lies above it: write numbers without quotes, in "
+                                  "the unit of the parameter",
+                                  token.text));
+    }
+}
+
 /// Prepares the expression as the only output of one SELECT over one row of inputs, and reports which columns it
 /// reads. The authorizer sees everything the expression would do.
 std::set<std::string> check_names(Connection& db, const Written& written, std::span<const std::string> names) {
+    refuse_foreign_words(written);
     refuse_chains(written);
     const std::string_view expression = written.text;
     db.execute("DROP TABLE IF EXISTS inputs");

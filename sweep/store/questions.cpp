@@ -93,7 +93,7 @@ std::vector<CampaignRecord> Store::campaigns() const {
         "convergence_rule, convergence_gates, convergence_tolerance, convergence_block, convergence_stop, {}, "
         "campaign_id "
         "FROM campaign AS g ORDER BY campaign_id",
-        identity_columns, extent_columns(impl_->keeps_extents())));
+        identity_columns(impl_->db), extent_columns(impl_->keeps_extents())));
     while (rows.next()) {
         CampaignRecord record;
         static_cast<campaign::Identity&>(record) = identity_at(rows, 0);
@@ -115,7 +115,10 @@ std::vector<CampaignRecord> Store::campaigns() const {
 
 std::vector<std::string> Store::factor_order(std::string_view name) const {
     const auto known = known_campaign(impl_->db, name);
-    return known ? campaign::factor_names(known->identity) : std::vector<std::string>{};
+    std::vector<std::string> names;
+    if (known)
+        for (const auto& factor : known->identity.factors) names.push_back(factor.name);
+    return names;
 }
 
 std::optional<CampaignRecord> Store::stored(const campaign::Campaign& campaign) const {

@@ -20,7 +20,7 @@ struct Summed {
     bool by_campaign = false;
 };
 
-constexpr std::string_view views = "sqlite_schema";
+constexpr std::string_view views = "sqlite_schema", resolved_campaigns = "campaign.resolved";
 
 constexpr std::array summed_tables = {
     Summed{"campaign",
@@ -28,6 +28,8 @@ constexpr std::array summed_tables = {
            "design_extent, sequences, replicates, convergence_observable, convergence_rule, convergence_gates, "
            "convergence_tolerance, convergence_block, convergence_stop, stopped_at, candidates, asked_candidates, "
            "asked_replicates FROM campaign NOT INDEXED"},
+    // Of schema 12: none in an older database.
+    Summed{resolved_campaigns, "SELECT campaign_id, resolved FROM campaign NOT INDEXED"},
     Summed{"parameter",
            "SELECT parameter_id, scene, revision, name, unit, meaning, default_value FROM parameter NOT INDEXED"},
     Summed{"observable",
@@ -51,6 +53,10 @@ constexpr std::array summed_tables = {
            "WHERE campaign_id = ?1",
            true},
 };
+
+bool is_there(const Connection& db, const Summed& table) {
+    return table.name != resolved_campaigns || has_column(db, "campaign", "resolved");
+}
 
 const Summed& summed(std::string_view name) {
     return *std::ranges::find(summed_tables, name, &Summed::name);
@@ -164,7 +170,7 @@ std::vector<DamagedTable> damaged_descriptions(const Connection& db) {
     std::vector<DamagedTable> damaged;
     if (!has_checksums(db)) return damaged;
     for (const auto& table : summed_tables) {
-        if (!table.by_campaign && table.name != views) compare(db, table.name, 0, damaged);
+        if (!table.by_campaign && table.name != views && is_there(db, table)) compare(db, table.name, 0, damaged);
     }
     return damaged;
 }
@@ -268,7 +274,7 @@ std::vector<DamagedTable> damaged_parts(const Connection& db) {
 
 void renew_descriptions(Connection& db) {
     for (const auto& table : summed_tables) {
-        if (!table.by_campaign) renew_sum(db, table.name);
+        if (!table.by_campaign && is_there(db, table)) renew_sum(db, table.name);
     }
 }
 

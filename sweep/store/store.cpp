@@ -130,12 +130,14 @@ void refuse_impossible(const Connection& db, const std::filesystem::path& file) 
 
 /// Brings the file to the newest schema. Inside a transaction.
 void migrate(Connection& db, const std::filesystem::path& file) {
+    constexpr std::size_t first_with_resolved = 12;  // results_schema/012_resolved.sql
     const auto migrations = schema_migrations();
     const auto seen = static_cast<std::size_t>(schema_version(db, file));
     const bool unprotected = !has_checksums(db);
     const bool views_as_written = damaged_views(db).empty();
     for (const auto migration : migrations.subspan(seen)) db.execute(migration);
     db.execute(schema_views());
+    if (seen < first_with_resolved) resolve_campaigns(db);
     // A migration that changes data with a checksum renews the checksum itself. Renewing it here would hide damage.
     if (unprotected)
         renew_everything(db);

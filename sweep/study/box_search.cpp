@@ -43,25 +43,21 @@ double exact_number(const ModelFactor&, double exact) {
 }
 
 double rounded_number(const ModelFactor& factor, double exact) {
-    if (!(factor.high > factor.low)) return factor.low;
+    const double low = factor.low(), high = factor.high();
+    if (!(high > low)) return low;
     if (factor.step) return exact;
-    const double size = factor.log ? exact : factor.high - factor.low;
+    const double size = factor.log() ? exact : high - low;
     const int exponent = static_cast<int>(std::floor(std::log10(size))) - digits_of_range;
-    return std::clamp(rounded(exact, exponent), factor.low, factor.high);
-}
-
-const stats::Distribution* distribution_of(const ModelFactor& factor) {
-    return factor.distribution ? &*factor.distribution : nullptr;
+    return std::clamp(rounded(exact, exponent), low, high);
 }
 
 /// The number of factor j at a point of all factors, as a design takes it.
 double number_at(std::span<const ModelFactor> factors, std::size_t j, std::span<const double> u) {
     const auto& factor = factors[j];
-    if (!factor.distribution) return number_along(factor, u[j]);
+    if (factor.distribution() == nullptr) return number_along(factor, u[j]);
     const auto joint = campaign::joint_value(
-        factors.size(), j, u, [&](std::size_t k) { return campaign::column_of(distribution_of(factors[k])); });
-    return joint ? *joint
-                 : std::get<double>(campaign::value_at({factor.name, *factor.distribution, factor.step}, u[j]));
+        factors.size(), j, u, [&](std::size_t k) { return campaign::column_of(factors[k].distribution()); });
+    return joint ? *joint : factor.number(u[j]);
 }
 
 /// Puts shares in the place of the coordinates of shares; rounded, they still add to one.
@@ -71,7 +67,7 @@ void share_out(std::span<const ModelFactor> factors, std::span<const double> u, 
     for (std::size_t j = 0; j < factors.size(); ++j) {
         if (!factors[j].share) continue;
         places.push_back(j);
-        low.push_back(factors[j].low);
+        low.push_back(factors[j].low());
         coordinates.push_back(u[j]);
     }
     if (places.size() < 2) return;  // one by itself, along its axis
@@ -102,17 +98,22 @@ Setting setting_at(std::span<const ModelFactor> factors, std::span<const double>
 
 }  // namespace
 
+campaign::Factor along_axis(const ModelFactor& factor) {
+    using enum campaign::Scale;
+    if (factor.between() != nullptr) return factor;
+    return {factor.name, campaign::Between{factor.low(), factor.high(), factor.log() ? log : linear}, factor.step};
+}
+
 std::string_view share_of(std::span<const ModelFactor> factors) {
-    const bool drawn = std::ranges::any_of(factors, [](const auto& factor) { return factor.distribution.has_value(); });
+    const bool drawn =
+        std::ranges::any_of(factors, [](const auto& factor) { return factor.distribution() != nullptr; });
     return drawn ? "the distribution of the factors" : "the box";
 }
 
 double number_along(const ModelFactor& factor, double u) {
-    using enum campaign::Scale;
     if (factor.is_word()) return static_cast<double>(level_at(u, factor.choices()));
     if (!factor.numbers.empty()) return factor.numbers[level_at(u, factor.numbers.size())];
-    const campaign::Between range{factor.low, factor.high, factor.log ? log : linear};
-    return std::get<double>(campaign::value_at({factor.name, range, factor.step}, u));
+    return factor.between() != nullptr ? factor.number(u) : along_axis(factor).number(u);
 }
 
 designs::PointSet sobol_points(designs::DesignRequest request) {

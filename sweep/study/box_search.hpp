@@ -37,6 +37,8 @@ using Admits = std::function<bool(const Setting&)>;
 
 /// Returns the words for the whole that a share of settings refers to: "the box", or the distribution of the factors.
 [[nodiscard]] std::string_view share_of(std::span<const ModelFactor> factors);
+/// Returns the factor over its range alone, for a factor with a distribution: evenly, or in the logarithm.
+[[nodiscard]] campaign::Factor along_axis(const ModelFactor& factor);
 /// Returns the number of a factor at the fraction u of its range; for levels, the level at this fraction of their list.
 [[nodiscard]] double number_along(const ModelFactor& factor, double u);
 /// Returns the setting at a point of the unit cube, by the distributions of the factors where they have some. Values

@@ -23,14 +23,13 @@ std::optional<Brackets> brackets_of(const store::Store& store, const store::Camp
     }
     request.answers = schedule::known_answers(store, record, std::span(&brackets.observable, 1));
     brackets.found = designs::brackets(request);
-    const auto factors = campaign::factors_of(record);
-    for (const auto& factor : factors)
+    for (const auto& factor : record.factors)
         if (!factor.continuous()) brackets.others.push_back(factor.name);
     for (const auto& bracket : brackets.found) {
         auto& levels = brackets.levels.emplace_back();
         std::size_t other = 0;
-        for (const auto& factor : factors)
-            if (!factor.continuous()) levels.push_back(factor.levels[bracket.levels[other++]]);
+        for (const auto& factor : record.factors)
+            if (!factor.continuous()) levels.push_back(factor.level_texts()[bracket.levels[other++]]);
     }
     return brackets;
 }

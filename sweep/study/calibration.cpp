@@ -49,38 +49,36 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// Returns the posterior probability of each part of a factor, with its value as text.
-std::vector<LevelProbability> probabilities_of(const designs::FactorRange& range, std::span<const double> coordinates) {
+std::vector<LevelProbability> probabilities_of(const designs::Factor& range, std::span<const double> coordinates) {
     std::vector<LevelProbability> found;
-    if (range.parts == 0) return found;
-    for (std::size_t k = 0; k < range.parts; ++k) found.push_back({range.text_at(range.middle_of(k))});
+    for (std::size_t k = 0; k < range.parts(); ++k) found.push_back({range.text(range.middle_of(k))});
+    if (found.empty()) return found;
     for (const double u : coordinates) found[range.part(u)].probability += 1 / static_cast<double>(coordinates.size());
     return found;
 }
 
 /// Returns the width of the posterior divided by the prior's: 0 for a value that is certain, 1 for values that are as
 /// likely as before. For words it is the probability of all but the likeliest word, divided by the prior's.
-double share_of_prior(const designs::FactorRange& range, const FactorPosterior& one,
-                      const std::vector<double>& coordinates, double width) {
-    if (range.parts == 0) return width / uniform_sd;
-    const auto parts = static_cast<double>(range.parts);
-    if (!range.has_words()) return sd_of(coordinates) / (uniform_sd * std::sqrt(1 - 1 / (parts * parts)));
+double share_of_prior(const FactorPosterior& one, const std::vector<double>& coordinates, double width) {
+    if (one.levels.empty()) return width / uniform_sd;
+    const auto parts = static_cast<double>(one.levels.size());
+    if (!one.factor.has_words()) return sd_of(coordinates) / (uniform_sd * std::sqrt(1 - 1 / (parts * parts)));
     const double likeliest = std::ranges::max(one.levels, {}, &LevelProbability::probability).probability;
     return (1 - likeliest) / (1 - 1 / parts);
 }
 
 FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
     const auto rows = found.posterior->rows();
-    const auto& range = found.ranges[j];
+    const auto& factor = found.factors[j];
     std::vector<double> coordinates, values;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         coordinates.push_back(rows.row(i)[j]);
-        values.push_back(range.number_at(coordinates.back()));
+        values.push_back(factor.number_or_index(coordinates.back()));
     }
-    FactorPosterior one{found.factors[j],      "", mean_of(values), sd_of(values), quantile(values, 0.05),
-                        quantile(values, 0.95)};
-    if (range.has_words()) one.mean = one.sd = one.low = one.high = none;
-    one.levels = probabilities_of(range, coordinates);
-    one.share_of_range = share_of_prior(range, one, coordinates, found.shape->sd[j]);
+    FactorPosterior one{factor, mean_of(values), sd_of(values), quantile(values, 0.05), quantile(values, 0.95)};
+    if (factor.has_words()) one.mean = one.sd = one.low = one.high = none;
+    one.levels = probabilities_of(factor, coordinates);
+    one.share_of_range = share_of_prior(one, coordinates, found.shape->sd[j]);
     using enum Determination;
     one.determination = one.share_of_range <= determined_below ? determined
                         : one.share_of_range <= partly_below   ? partly
@@ -88,28 +86,35 @@ FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
     const std::size_t d = found.factors.size();
     double strongest = strongly_coupled;
     for (std::size_t k = 0; k < d; ++k) {
-        const bool none_of_words = k != j && !range.has_words() && !found.ranges[k].has_words();
+        const bool none_of_words = k != j && !factor.has_words() && !found.factors[k].has_words();
         const double coupling = none_of_words ? std::abs(found.shape->correlation[j * d + k]) : 0;
         if (coupling < strongest) continue;
         strongest = coupling;
-        one.ridge_with = found.factors[k];
+        one.ridge_with = found.factors[k].name;
     }
     return one;
 }
 
-std::string condition_text(const designs::MeasuredTarget& target, const std::vector<campaign::StatedFactor>& factors) {
+std::string condition_text(const designs::MeasuredTarget& target, const std::vector<designs::Factor>& factors) {
     std::string text;
     for (const auto& [name, level] : target.level) {
-        const auto stated = std::ranges::find(factors, name, &campaign::StatedFactor::name);
-        const std::string value = stated == factors.end() ? "?" : stated->levels.at(level);
+        const auto stated = std::ranges::find(factors, name, &designs::Factor::name);
+        const std::string value = stated == factors.end() ? "?" : stated->level_texts().at(level);
         text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name, value);
     }
     return text;
 }
 
+std::vector<double> posterior_means(const stats::ResponseModel& model, stats::Rows points) {
+    return model.means(points);
+}
+std::vector<double> posterior_means(const stats::ProbabilityModel& model, stats::Rows points) {
+    return model.probabilities(points);
+}
+
 TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
     const auto& target = found.targets[t];
-    TargetCheck check{target.observable,
+    TargetCheck check{target.shown_observable(),
                       "",
                       "",
                       target.experiment,
@@ -130,7 +135,8 @@ TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
     }
     if (found.posterior && found.models[t]) {
         const auto inputs = found.inputs(found.posterior->rows());
-        const auto means = found.models[t]->means(inputs.rows());
+        const auto means =
+            std::visit([&](const auto& model) { return posterior_means(model, inputs.rows()); }, *found.models[t]);
         check.predicted = mean_of(means);
         check.predicted_error = sd_of(means);
     }
@@ -169,12 +175,12 @@ std::size_t followed_points(const designs::Calibration& found, const Responses& 
         const auto point = static_cast<std::size_t>(run.points[row]);
         if (point >= followed) continue;
         for (std::size_t j = 0; j < d; ++j) {
-            const auto known = std::ranges::find(found.ranges, run.factors[j].name, &designs::FactorRange::name);
-            if (known == found.ranges.end()) continue;
+            const auto known = std::ranges::find(found.factors, run.factors[j].name, &designs::Factor::name);
+            if (known == found.factors.end()) continue;
             const double u = found.points.point(point)[j];
-            const bool by_index = !known->levels.empty();
-            const double value = by_index ? static_cast<double>(known->part(u)) : known->value_at(u);
-            const double width = by_index ? 1 : std::abs(known->value_at(1) - known->value_at(0));
+            const bool by_index = !known->continuous();
+            const double value = by_index ? static_cast<double>(known->part(u)) : known->number(u);
+            const double width = by_index ? 1 : std::abs(known->number(1) - known->number(0));
             if (std::abs(run.factors[j].values[row] - value) > rounding * width) followed = point;
         }
     }
@@ -193,7 +199,8 @@ std::string failures_text(const designs::Calibration& found) {
         return fmt::format("{}; there is no evidence that this depends on the factors ({}): it carries no information",
                            count, p);
     std::string names;
-    for (const auto j : answering.factors()) names += fmt::format("{}{}", names.empty() ? "" : ", ", found.factors[j]);
+    for (const auto j : answering.factors())
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", found.factors[j].name);
     return fmt::format(
         "{}; this depends on {} ({}): settings count with their probability of an answer, and not where "
         "its 95 % interval lies below 1/2",
@@ -238,27 +245,28 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
     for (std::size_t j = 0; j < report.factors.size(); ++j) {
         const auto& factor = report.factors[j];
         if (factor.determination != Determination::not_determined) continue;
-        if (found.ranges[j].has_words()) {
+        if (factor.factor.has_words()) {
             const auto& likeliest = std::ranges::max(factor.levels, {}, &LevelProbability::probability);
             notes.push_back(
                 fmt::format("{} is not determined by these targets: its likeliest level, {}, has the "
                             "probability {:.2f}",
-                            factor.name, likeliest.level, likeliest.probability));
+                            factor.factor.name, likeliest.level, likeliest.probability));
         } else {
             notes.push_back(
                 fmt::format("{} is not determined by these targets: its posterior is {:.0f} % as wide as its range",
-                            factor.name, 100 * factor.share_of_range));
+                            factor.factor.name, 100 * factor.share_of_range));
         }
     }
     const std::size_t d = report.factors.size();
     for (std::size_t i = 0; i < d; ++i)
         for (std::size_t j = i + 1; j < d; ++j) {
             const double r = found.shape->correlation[i * d + j];
-            if (std::abs(r) < strongly_coupled || found.ranges[i].has_words() || found.ranges[j].has_words()) continue;
+            if (std::abs(r) < strongly_coupled || found.factors[i].has_words() || found.factors[j].has_words())
+                continue;
             notes.push_back(
                 fmt::format("{} and {} are determined together, not each: along a ridge of equal fit one {} as the "
                             "other rises (correlation {:.2f})",
-                            report.factors[i].name, report.factors[j].name, r < 0 ? "falls" : "rises", r));
+                            found.factors[i].name, found.factors[j].name, r < 0 ? "falls" : "rises", r));
         }
     if (!(found.posterior->scale_reduction < settled_chains))
         notes.push_back(
@@ -278,7 +286,7 @@ std::string listed(const CalibrationReport& report, Determination which) {
     std::string text;
     for (const auto& factor : report.factors) {
         if (factor.determination != which) continue;
-        text += fmt::format("{}{}", text.empty() ? "" : ", ", factor.name);
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", factor.factor.name);
         if (which == Determination::partly)
             text += fmt::format(" ({:.2f} of its range's width)", factor.share_of_range);
         if (!factor.ridge_with.empty()) text += " along a ridge with " + factor.ridge_with;
@@ -333,28 +341,29 @@ std::map<std::string, store::CampaignRecord> records_of(const store::Store& stor
 
 Marginal marginal_of(const designs::Calibration& found, std::size_t j) {
     constexpr std::size_t bins = 24, prior_points = 2400;
-    const auto& range = found.ranges[j];
+    const auto& factor = found.factors[j];
+    const std::size_t parts = factor.parts();
     Marginal marginal;
-    const auto [low, high, log] = range.shown();
+    const auto [low, high, log] = factor.shown();
     const auto edge = [&](std::size_t k) {
         const double share = static_cast<double>(k) / static_cast<double>(bins);
         return log ? low * std::pow(high / low, share) : std::lerp(low, high, share);
     };
-    const double half_step = range.parts > 1 ? (high - low) / static_cast<double>(2 * (range.parts - 1)) : 0;
-    for (std::size_t k = 0; k < (range.parts > 0 ? range.parts : bins); ++k) {
+    const double half_step = parts > 1 ? (high - low) / static_cast<double>(2 * (parts - 1)) : 0;
+    for (std::size_t k = 0; k < (parts > 0 ? parts : bins); ++k) {
         const double here =
-            range.levels.empty() && range.parts > 0 ? range.value_at(range.middle_of(k)) : static_cast<double>(k);
-        const double half = range.levels.empty() ? half_step : 0.5;
-        marginal.from.push_back(range.parts > 0 ? here - half : edge(k));
-        marginal.to.push_back(range.parts > 0 ? here + half : edge(k + 1));
+            factor.continuous() && parts > 0 ? factor.number(factor.middle_of(k)) : static_cast<double>(k);
+        const double half = factor.continuous() ? half_step : 0.5;
+        marginal.from.push_back(parts > 0 ? here - half : edge(k));
+        marginal.to.push_back(parts > 0 ? here + half : edge(k + 1));
     }
     const auto shares = [&](std::size_t count, auto coordinate) {
         std::vector<double> share(marginal.from.size(), 0);
         for (std::size_t i = 0; i < count; ++i) {
             const double u = coordinate(i);
-            const auto bin = range.parts > 0
-                                 ? range.part(u)
-                                 : static_cast<std::size_t>(std::ranges::upper_bound(marginal.to, range.value_at(u)) -
+            const auto bin = parts > 0
+                                 ? factor.part(u)
+                                 : static_cast<std::size_t>(std::ranges::upper_bound(marginal.to, factor.number(u)) -
                                                             marginal.to.begin());
             share[std::min(bin, share.size() - 1)] += 1 / static_cast<double>(count);
         }
@@ -391,22 +400,23 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
     const auto records = records_of(store, record);
     if (report.found.posterior)
         for (std::size_t j = 0; j < report.found.factors.size(); ++j) {
-            auto& factor = report.factors.emplace_back(posterior_of(report.found, j));
+            auto& factor = report.factors.emplace_back(posterior_of(report.found, j)).factor;
             for (const auto& [name, one] : records)
                 if (const auto scene = find_scene(one.scene))
                     if (const auto* parameter = scene->find_parameter(factor.name)) factor.unit = parameter->unit;
         }
     const auto layout = designs::calibration_layout(request, report.found.targets);
     for (std::size_t t = 0; t < report.found.targets.size(); ++t) {
+        const auto& target = report.found.targets[t];
         auto& check = report.targets.emplace_back(check_of(report.found, t));
         const auto one = records.find(check.experiment);
         if (one == records.end()) continue;  // not run yet
-        check.condition = condition_text(report.found.targets[t], campaign::factors_of(one->second));
-        const auto place = designs::place_on_curve(check.observable);
+        check.condition = condition_text(target, one->second.factors);
+        const auto place = designs::place_on_curve(target.observable);
         if (std::isinf(check.beyond)) check.covered = covered_by(store, one->second.name, layout, t, place);
         const auto scene = find_scene(one->second.scene);
         const auto* measured = scene == nullptr ? nullptr : scene->find_observable(place.observable);
-        if (measured != nullptr) check.unit = measured->unit;
+        if (measured != nullptr) check.unit = target.of ? "1" : measured->unit;
     }
     report.verdict = calibration_verdict(report);
     report.notes = notes_of(report);

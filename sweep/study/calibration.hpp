@@ -25,7 +25,7 @@ struct LevelProbability {
 
 /// Posterior of one factor.
 struct FactorPosterior {
-    std::string name, unit;
+    designs::Factor factor;
     double mean = 0, sd = 0;   ///< in its unit; NaN for levels that are words
     double low = 0, high = 0;  ///< 5 and 95 % quantiles
     double share_of_range =
@@ -51,7 +51,7 @@ struct Marginal {
 
 /// Prediction and fresh runs of one target.
 struct TargetCheck {
-    std::string observable, unit, condition;  ///< "rpm = 15"
+    std::string observable, unit, condition;  ///< "flow_time" or "share without flow_time", "s", "rpm = 15"
     std::string experiment = {};              ///< empty: the calibration has only one experiment
     double value = 0, error = 0, discrepancy = 0;
     double predicted = 0, predicted_error = 0;  ///< mean and sd of the response model over the posterior

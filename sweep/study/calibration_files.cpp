@@ -1,5 +1,7 @@
 #include "sweep/study/calibration_files.hpp"
 
+#include "sweep/campaign/input_error.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,12 +20,12 @@ constexpr auto property_names = std::to_array<std::string_view>(
 
 std::string posterior_csv(const designs::Calibration& found) {
     if (!found.posterior) return {};
-    std::string text = fmt::format("{}\n", fmt::join(found.factors, ","));
+    std::string text = fmt::format("{}\n", fmt::join(campaign::names_of(found.factors), ","));
     const auto rows = found.posterior->rows();
     for (std::size_t i = 0; i < rows.size(); ++i)
-        for (std::size_t j = 0; j < found.ranges.size(); ++j)
+        for (std::size_t j = 0; j < found.factors.size(); ++j)
             text +=
-                fmt::format("{}{}", found.ranges[j].text_at(rows.row(i)[j]), j + 1 == found.ranges.size() ? '\n' : ',');
+                fmt::format("{}{}", found.factors[j].text(rows.row(i)[j]), j + 1 == found.factors.size() ? '\n' : ',');
     return text;
 }
 
@@ -35,8 +37,8 @@ std::optional<campaign::PowderResult> powder_result(const CalibrationReport& rep
         found.posterior->rows().row(static_cast<std::size_t>(std::ranges::max_element(density) - density.begin()));
     campaign::PowderResult result;
     for (std::size_t j = 0; j < found.factors.size(); ++j)
-        if (std::ranges::find(property_names, found.factors[j]) != property_names.end())
-            result.properties.emplace_back(found.factors[j], found.ranges[j].number_at(best[j]));
+        if (std::ranges::find(property_names, found.factors[j].name) != property_names.end())
+            result.properties.emplace_back(found.factors[j].name, found.factors[j].number_or_index(best[j]));
     if (result.properties.empty()) return std::nullopt;
     for (const auto& target : report.targets)
         result.measured.push_back({target.name(), target.unit, target.value, target.error});

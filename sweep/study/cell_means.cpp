@@ -23,7 +23,7 @@ std::vector<double> edges_between(const std::vector<double>& distinct) {
 std::vector<double> edges_of(const FactorColumn& factor, const std::vector<std::size_t>& rows) {
     std::vector<double> edges;
     if (!factor.continuous()) {
-        for (std::size_t k = 0; k <= factor.levels.size(); ++k) edges.push_back(static_cast<double>(k) - 0.5);
+        for (std::size_t k = 0; k <= factor.seen.size(); ++k) edges.push_back(static_cast<double>(k) - 0.5);
         return edges;
     }
     std::set<double> distinct;
@@ -31,9 +31,9 @@ std::vector<double> edges_of(const FactorColumn& factor, const std::vector<std::
     if (distinct.size() <= most_distinct) return edges_between({distinct.begin(), distinct.end()});
     const auto wanted = std::floor(std::sqrt(static_cast<double>(rows.size()) / cases_per_cell));
     const double count = std::clamp(wanted, fewest_cells, most_cells);
-    const bool ranged = factor.high > factor.low;
-    const double low = ranged ? factor.low : *distinct.begin(), high = ranged ? factor.high : *distinct.rbegin();
-    const bool log = factor.log && low > 0;
+    auto [low, high] = factor.ends();
+    if (!(high > low)) low = *distinct.begin(), high = *distinct.rbegin();
+    const bool log = factor.log() && low > 0;
     for (double k = 0; k <= count; ++k)
         edges.push_back(log ? low * std::pow(high / low, k / count) : low + (high - low) * k / count);
     return edges;

@@ -129,6 +129,8 @@ private:
             const auto lower = bound(Kind::at_least);
             if (!take("and")) refuse("and is expected");
             const auto upper = bound(Kind::at_most);
+            const auto value_of = [this](std::size_t node) { return condition_.nodes_[node].number; };
+            if (value_of(lower) > value_of(upper)) refuse("no value is between them: the lower one comes first");
             return add({.kind = Kind::all, .first = lower, .second = upper});
         }
         return bound(sign());

@@ -1,6 +1,5 @@
 #include "sweep/study/factor_axis.hpp"
 
-#include "sweep/campaign/step.hpp"
 #include "sweep/study/box_search.hpp"
 
 #include <algorithm>
@@ -15,11 +14,8 @@ std::size_t levels_of(const ModelFactor& factor) {
 std::size_t places_of(const ModelFactor& factor, std::size_t count) {
     const auto levels = levels_of(factor);
     if (levels > 0) return levels;
-    if (factor.step && !factor.log) {
-        const auto multiples = campaign::multiples_in(*factor.step, factor.low, factor.high).count();
-        count = std::min(count, static_cast<std::size_t>(multiples));
-    }
-    return factor.high > factor.low ? count : 1;
+    if (const auto multiples = along_axis(factor).multiples()) count = std::min(count, *multiples);
+    return factor.high() > factor.low() ? count : 1;
 }
 
 }  // namespace

@@ -23,31 +23,12 @@ namespace {
 constexpr std::string_view features_path = "$.model.features";
 constexpr double logarithm_from = 2.5;  // high/low
 
-/// The levels as numbers, exact where the identity of the campaign has them; none where one is a word.
-std::optional<std::vector<double>> ordered_numbers(const FactorColumn& column, const campaign::StatedFactor& stated) {
-    std::map<std::string, double> exact;  // by the text a column shows
-    for (const auto& level : stated.levels)
-        if (const auto number = number_in(level)) exact.try_emplace(fmt::format("{:.6g}", *number), *number);
-    std::vector<double> numbers;
-    for (const auto& level : column.levels) {
-        const auto shown = number_in(level);
-        if (!shown) return std::nullopt;
-        const auto found = exact.find(level);
-        numbers.push_back(found == exact.end() ? *shown : found->second);
-    }
-    return numbers;
-}
-
-bool is_listed(const campaign::StatedFactor& stated, double x) {
-    return std::ranges::any_of(stated.levels, [&](const auto& level) { return number_in(level) == x; });
-}
-
 /// Words of a column that the campaign lists; the default of a factor that does not count may come behind them.
-std::size_t listed_words(const FactorColumn& column, const campaign::StatedFactor& stated) {
-    if (stated.when.empty()) return column.levels.size();
-    return static_cast<std::size_t>(std::ranges::count_if(column.levels, [&](const auto& word) {
-        return std::ranges::find(stated.levels, word) != stated.levels.end();
-    }));
+std::size_t listed_words(const FactorColumn& column) {
+    const auto seen = column.seen_texts(), listed = column.level_texts();
+    if (column.when.empty()) return seen.size();
+    return static_cast<std::size_t>(
+        std::ranges::count_if(seen, [&](const auto& word) { return std::ranges::count(listed, word) > 0; }));
 }
 
 /// The place of the default among the numbers or words of a factor.
@@ -65,7 +46,7 @@ double number_of_default(ModelFactor& factor, const Value& value) {
 /// Compiles the `when` of stored factors.
 void add_conditions(std::vector<ModelFactor>& factors, const campaign::Identity& identity) {
     const auto scene = find_scene(identity.scene);
-    campaign::ParameterSpace space{scene, campaign::factors_asked(identity), {}};
+    campaign::ParameterSpace space{scene, identity.factors, {}};
     const auto conditional = [](const auto& factor) { return !factor.when.empty(); };
     if (scene == nullptr || std::ranges::none_of(space.factors, conditional)) return;
     space.expressions = campaign::expressions_of(identity, *scene);
@@ -82,7 +63,7 @@ void add_conditions(std::vector<ModelFactor>& factors, const campaign::Identity&
         factor->counts = [known, inputs, holds = std::move(clause.holds)](std::span<const double> setting) mutable {
             for (std::size_t j = 0; j < known.size(); ++j) {
                 Value& slot = inputs.find(known[j].name)->second;
-                slot = campaign::coerced(known[j].value(setting[j]), slot);
+                slot = campaign::coerced(known[j].value_of(setting[j]), slot);
             }
             return holds(inputs);
         };
@@ -108,7 +89,7 @@ Features of_seen_settings(Features features, std::span<const ModelFactor> factor
 }
 
 bool as_logarithm(const ModelFactor& factor) {
-    return !factor.is_word() && factor.smallest() > 0 && factor.high >= logarithm_from * factor.low;
+    return !factor.is_word() && factor.smallest() > 0 && factor.high() >= logarithm_from * factor.low();
 }
 
 }  // namespace
@@ -145,12 +126,12 @@ void place(std::span<const ModelFactor> factors, Setting& setting, std::size_t j
             continue;
         }
         others.push_back(k);
-        rest -= factors[k].low;
-        room += setting[k] - factors[k].low;
+        rest -= factors[k].low();
+        room += setting[k] - factors[k].low();
     }
     for (const auto k : others) {
-        const double part = room > 0 ? (setting[k] - factors[k].low) / room : 1 / static_cast<double>(others.size());
-        setting[k] = factors[k].low + part * std::max(0.0, rest);
+        const double part = room > 0 ? (setting[k] - factors[k].low()) / room : 1 / static_cast<double>(others.size());
+        setting[k] = factors[k].low() + part * std::max(0.0, rest);
     }
 }
 
@@ -161,11 +142,17 @@ std::optional<double> sum_of_shares(std::span<const ModelFactor> factors, const 
     return sum;
 }
 
-double ModelFactor::smallest() const {
-    return distribution ? std::get<double>(campaign::value_at({name, *distribution, step}, 0)) : low;
+double ModelFactor::low() const {
+    if (!numbers.empty()) return numbers.front();
+    return continuous() ? ends().first : 0;
 }
 
-Value ModelFactor::value(double number) const {
+double ModelFactor::high() const {
+    if (!numbers.empty()) return numbers.back();
+    return continuous() ? ends().second : 0;
+}
+
+Value ModelFactor::value_of(double number) const {
     if (is_word()) return words.at(static_cast<std::size_t>(number));
     return number;
 }
@@ -176,30 +163,20 @@ std::string ModelFactor::text(double number) const {
 }
 
 std::vector<ModelFactor> model_factors(const Responses& responses) {
-    const auto stated = campaign::factors_of(responses.campaign);
     const auto noise = campaign::remarks_in(responses.campaign.text).noise;
     std::vector<ModelFactor> factors;
-    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
-        const auto& column = responses.factors[j];
-        ModelFactor factor;
-        factor.name = column.name;
-        factor.unit = column.unit;
+    for (const auto& column : responses.factors) {
+        ModelFactor factor{column};
         factor.noise = std::ranges::find(noise, column.name) != noise.end();
-        factor.step = stated[j].step;
-        factor.share = stated[j].share;
-        if (column.continuous()) {
-            factor.low = column.low;
-            factor.high = column.high;
-            factor.log = column.log;
-            factor.distribution = column.distribution;
-        } else if (auto numbers = ordered_numbers(column, stated[j])) {
-            if (!stated[j].when.empty()) std::erase_if(*numbers, [&](double x) { return !is_listed(stated[j], x); });
-            std::ranges::sort(*numbers);
-            factor.numbers = std::move(*numbers);
-            if (!factor.numbers.empty()) factor.low = factor.numbers.front(), factor.high = factor.numbers.back();
-        } else {
-            factor.words = column.levels;
-            factor.unlisted = column.levels.size() - listed_words(column, stated[j]);
+        factor.numbers = column.seen_numbers();
+        if (!factor.numbers.empty()) {
+            const auto listed = column.level_numbers();
+            if (!column.when.empty())
+                std::erase_if(factor.numbers, [&](double x) { return std::ranges::count(listed, x) == 0; });
+            std::ranges::sort(factor.numbers);
+        } else if (!column.continuous()) {
+            factor.words = column.seen_texts();
+            factor.unlisted = factor.words.size() - listed_words(column);
         }
         factors.push_back(std::move(factor));
     }
@@ -209,11 +186,9 @@ std::vector<ModelFactor> model_factors(const Responses& responses) {
 
 std::vector<Setting> settings_of(const Responses& responses, std::span<const ModelFactor> factors) {
     std::vector<Setting> settings(responses.rows(), Setting(factors.size()));
-    const auto stated = campaign::factors_of(responses.campaign);
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& column = responses.factors[j];
-        std::vector<double> of_level;  // columns keep the order of the campaign file
-        if (!factors[j].numbers.empty()) of_level = *ordered_numbers(column, stated[j]);
+        const auto of_level = factors[j].numbers.empty() ? std::vector<double>() : column.seen_numbers();
         for (std::size_t row = 0; row < settings.size(); ++row) {
             const double value = column.values[row];
             settings[row][j] = of_level.empty() ? value : of_level[static_cast<std::size_t>(value)];
@@ -267,7 +242,7 @@ Features written_features(std::span<const ModelFactor> factors, std::span<const 
                    known = std::vector(factors.begin(), factors.end())](std::span<const double> setting) {
         std::vector<Value> values;
         values.reserve(known.size());
-        for (std::size_t j = 0; j < known.size(); ++j) values.push_back(known[j].value(setting[j]));
+        for (std::size_t j = 0; j < known.size(); ++j) values.push_back(known[j].value_of(setting[j]));
         return numbers(values);
     };
     return of_seen_settings(std::move(features), factors);

@@ -19,32 +19,28 @@
 namespace grainsweep::study {
 
 /// Factor of a model. In a setting it has one number: its value in its unit or, for words, the index of the word.
-struct ModelFactor {
-    std::string name, unit;
-    double low = 0, high = 0;  ///< for numbers: the range of FactorColumn, or the smallest and largest level
-    bool log = false;          ///< the range is divided logarithmically
-    std::optional<stats::Distribution> distribution = {};  ///< distribution of the settings; empty: uniform
-    bool noise = false;                                    ///< noise factor ("role" of the campaign file): it varies
-                                                           ///< and cannot be set
-    std::vector<double> numbers;                           ///< numeric levels, ascending; empty: a range, or words
-    std::vector<std::string> words;                        ///< levels that are words; empty: numbers
-    std::size_t unlisted = 0;    ///< number of words at the end of `words` that the campaign does not list
-    std::optional<double> step;  ///< the values are multiples of this
-    bool share = false;          ///< the factor is a share; all shares add to one
+struct ModelFactor : campaign::Factor {
+    bool noise = false;                   ///< noise factor ("role" of the campaign file): it varies and cannot be set
+    std::vector<double> numbers = {};     ///< numeric levels, ascending; empty: a range, or words
+    std::vector<std::string> words = {};  ///< levels that are words; empty: numbers
+    std::size_t unlisted = 0;             ///< number of words at the end of `words` that the campaign does not list
     /// Whether the factor counts at a setting, by its `when`; empty: it always counts.
-    std::function<bool(std::span<const double> setting)> counts;
+    std::function<bool(std::span<const double> setting)> counts = {};
     std::size_t order = 0;  ///< order in which the factors with a `when` are evaluated
     double standard = 0;    ///< its value where it does not count
 
+    // Return the ends of the range, or the smallest and largest of `numbers`.
+    [[nodiscard]] double low() const;
+    [[nodiscard]] double high() const;
     /// Returns the number of words that may be chosen.
     [[nodiscard]] std::size_t choices() const { return words.size() - unlisted; }
     [[nodiscard]] bool is_word() const { return !words.empty(); }
     /// Returns the smallest number that a design can use.
-    [[nodiscard]] double smallest() const;
-    [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high > low; }
-    /// Returns the value as in the campaign file.
-    [[nodiscard]] Value value(double number) const;
-    /// Returns the value as text: the shortest that reads back as the same number. For NaN (averaged over) "varies".
+    [[nodiscard]] double smallest() const { return distribution() == nullptr ? low() : number(0); }
+    [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high() > low(); }
+    /// Returns the value in the campaign file of a number in a setting.
+    [[nodiscard]] Value value_of(double number) const;
+    /// Returns this value as text: the shortest that reads back as the same number. For NaN (averaged over) "varies".
     [[nodiscard]] std::string text(double number) const;
 };
 

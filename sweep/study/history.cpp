@@ -257,7 +257,11 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
                                                 : "counts once"));
     }
     if (history.all.excluded > 0) {
-        const std::string why = campaign::why_absent(record.scene, response.name);
+        const auto failed = std::ranges::count_if(responses.outcomes, [](const auto& outcome) {
+            return outcome && *outcome != campaign::Outcome::completed;
+        });
+        const std::string why =
+            failed < history.all.excluded ? campaign::why_absent(record.scene, response.name) : std::string();
         history.warnings.push_back(fmt::format("{} of {} cases have no value and are excluded{}{}",
                                                history.all.excluded, history.all.excluded + history.all.count,
                                                why.empty() ? "" : ": a completed case has none where ", why));

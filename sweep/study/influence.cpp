@@ -181,7 +181,7 @@ std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settl
     };
     if (lattice || !factor.continuous()) return different();
     constexpr std::size_t most_bins = 16;
-    if (factor.stepped && !factor.distribution && different() <= most_bins) return different();
+    if (factor.step && factor.distribution() == nullptr && different() <= most_bins) return different();
     return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, most_bins);
 }
 
@@ -262,7 +262,7 @@ void add_trends(Influence& influence, const Responses& responses, std::span<cons
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& factor = responses.factors[j];
         auto& found = influence.factors[j];
-        const auto levels = numbers_in(factor.levels);
+        const auto levels = factor.seen_numbers();
         if (!factor.continuous() && levels.empty()) continue;
         std::vector<double> x(factor.values.begin(),
                               factor.values.begin() + static_cast<std::ptrdiff_t>(responses.settled));
@@ -335,7 +335,7 @@ void note_dependent_values(Influence& influence, const Responses& responses) {
     note(
         "the binned index of {} includes the effect of its condition, because the default stands where that is false; "
         "indices by a response model do not include it",
-        [&](std::size_t j) { return responses.factors[j].conditional; });
+        [&](std::size_t j) { return !responses.factors[j].when.empty(); });
     const auto together = [&](std::size_t j) { return !responses.factors[j].shares.empty(); };
     if (responses.design().purpose == designs::Purpose::saltelli) {  // shares that add to one have one index there
         note(

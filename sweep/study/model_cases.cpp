@@ -77,13 +77,14 @@ std::vector<store::CampaignRecord> chosen_campaigns(const store::Store& store, s
     const auto first = name.empty() ? records.front() : find_campaigns(store, name).front();
     std::vector<std::string> others;
     for (const auto& record : records)
-        if (!asks_the_same(record, first)) others.push_back(record.name);
+        if (!campaign::asks_the_same(record, first)) others.push_back(record.name);
     if (name.empty() && !others.empty()) {
         others.insert(others.begin(), first.name);
         throw campaign::input_error("--campaign", "", fmt::format("which of {}?", campaign::listed(others)));
     }
-    std::erase_if(records,
-                  [&](const auto& record) { return record.name == first.name || !asks_the_same(record, first); });
+    std::erase_if(records, [&](const auto& record) {
+        return record.name == first.name || !campaign::asks_the_same(record, first);
+    });
     records.insert(records.begin(), first);
     return records;
 }
@@ -100,7 +101,7 @@ std::function<Inputs(const Setting&)> completion(const store::Store& store, cons
         Setting setting = asked;
         fold(factors, setting);
         for (std::size_t j = 0; j < factors.size(); ++j)
-            inputs[factors[j].name] = campaign::coerced(factors[j].value(setting[j]), inputs.at(factors[j].name));
+            inputs[factors[j].name] = campaign::coerced(factors[j].value_of(setting[j]), inputs.at(factors[j].name));
         campaign::evaluate_expressions(expressions, inputs);
         return inputs;
     };
@@ -225,10 +226,10 @@ std::string outside_text(std::span<const ModelFactor> factors, const Setting& se
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& factor = factors[j];
         if (factor.is_word() || (factor.counts && !factor.counts(setting)) ||
-            (setting[j] >= factor.low && setting[j] <= factor.high))
+            (setting[j] >= factor.low() && setting[j] <= factor.high()))
             continue;
         text += fmt::format("{}{} = {} is outside of {} to {}", text.empty() ? "" : ", ", factor.name, setting[j],
-                            factor.low, factor.high);
+                            factor.low(), factor.high());
     }
     const auto sum = sum_of_shares(factors, setting);
     if (sum && std::abs(*sum - 1) > rounding_of_shares)

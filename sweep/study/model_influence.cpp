@@ -42,7 +42,7 @@ stats::FactorRoles roles_of(const std::vector<ModelFactor>& factors, const std::
     for (const auto j : varied) {
         roles.noise.push_back(factors[j].noise);
         roles.levels.push_back(factors[j].is_word() ? factors[j].words.size() : factors[j].numbers.size());
-        const auto* column = campaign::column_of(factors[j].distribution ? &*factors[j].distribution : nullptr);
+        const auto* column = campaign::column_of(factors[j].distribution());
         roles.together.push_back(column == nullptr ? std::nullopt : std::optional(*column));
     }
     return roles;
@@ -52,7 +52,7 @@ stats::FactorRoles roles_of(const std::vector<ModelFactor>& factors, const std::
 std::string part_of_range(const ModelFactor& factor, double from, double to) {
     const auto at = [&](double u) {
         const double x = exact_setting(std::span(&factor, 1), {&u, 1}).front();
-        return fmt::format("{:.4g}", std::clamp(x, factor.low, factor.high));
+        return fmt::format("{:.4g}", std::clamp(x, factor.low(), factor.high()));
     };
     const double middle = (from + to) / 2;
     if (factor.is_word()) return "at " + factor.text(exact_setting(std::span(&factor, 1), {&middle, 1}).front());

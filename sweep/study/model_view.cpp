@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <tuple>
 #include <utility>
 
 namespace grainsweep::study {
@@ -23,18 +22,6 @@ constexpr std::uint64_t first_seed = 1000;  // of the points to integrate over: 
 double as_number(const Value& value) {
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
     return std::get<double>(value);
-}
-
-ModelFactor of_levels(ModelFactor factor, const std::vector<Value>& levels) {
-    for (const auto& level : levels) {
-        if (const auto* word = std::get_if<std::string>(&level))
-            factor.words.push_back(*word);
-        else
-            factor.numbers.push_back(as_number(level));
-    }
-    std::ranges::sort(factor.numbers);
-    if (!factor.numbers.empty()) factor.low = factor.numbers.front(), factor.high = factor.numbers.back();
-    return factor;
 }
 
 /// Points in the unit cube -> features.
@@ -107,21 +94,12 @@ std::vector<double> view_points(const campaign::Campaign& campaign, const Mapped
 std::vector<ModelFactor> model_factors(const campaign::Campaign& campaign) {
     std::vector<ModelFactor> factors;
     for (const auto& given : campaign.space.factors) {
-        ModelFactor factor;
-        factor.name = given.name;
-        factor.step = given.step;
-        if (const auto* range = std::get_if<campaign::Between>(&given.range)) {
-            factor.low = range->low;
-            factor.high = range->high;
-            factor.log = range->scale == campaign::Scale::log;
-        } else if (const auto* distribution = std::get_if<stats::Distribution>(&given.range)) {
-            std::tie(factor.low, factor.high) = distribution->range();
-            factor.log = std::holds_alternative<stats::Lognormal>(distribution->form());
-            factor.distribution = *distribution;
-        } else {
-            factor = of_levels(std::move(factor), std::get<campaign::Levels>(given.range).values);
-        }
-        factors.push_back(std::move(factor));
+        auto& factor = factors.emplace_back(ModelFactor{given});
+        if (factor.has_words())
+            factor.words = factor.level_texts();
+        else
+            factor.numbers = factor.level_numbers();
+        std::ranges::sort(factor.numbers);
     }
     return factors;
 }

@@ -190,8 +190,8 @@ double apart(std::span<const ModelFactor> factors, const Setting& a, const Setti
     for (std::size_t j = 0; j < factors.size(); ++j) {
         if (a[j] == b[j] || (std::isnan(a[j]) && std::isnan(b[j]))) continue;
         if (std::isnan(a[j]) || std::isnan(b[j]) || factors[j].is_word()) return 1;
-        const auto at = [&](double x) { return factors[j].log ? std::log(x) : x; };
-        largest = std::max(largest, std::abs(at(a[j]) - at(b[j])) / (at(factors[j].high) - at(factors[j].low)));
+        const auto at = [&](double x) { return factors[j].log() ? std::log(x) : x; };
+        largest = std::max(largest, std::abs(at(a[j]) - at(b[j])) / (at(factors[j].high()) - at(factors[j].low())));
     }
     return largest;
 }
@@ -414,7 +414,7 @@ std::string next_campaign(const ModelCases& cases, const Window& window, std::st
     for (const auto& one : window.next) {
         auto& row = rows.emplace_back();
         const auto listed = as_seen(cases.factors, one.setting);  // a list has values of the ranges
-        for (std::size_t j = 0; j < cases.factors.size(); ++j) row.push_back(cases.factors[j].value(listed[j]));
+        for (std::size_t j = 0; j < cases.factors.size(); ++j) row.push_back(cases.factors[j].value_of(listed[j]));
     }
     return campaign::further_points(
         campaign::text_of_experiment(cases.campaign.text, cases.campaign), name,

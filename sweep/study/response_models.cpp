@@ -167,9 +167,14 @@ void note_quality(ObservableModel& learned) {
     if (quality.leave_one_out_error >= stats::ResponseModelOptions{}.refused_error)
         learned.notes.push_back(fmt::format(
             "the factors explain {} of '{}' ({} cases, left-out ones predicted with an error of {:.2f} standard "
-            "deviations): the model counts the rest as scatter of single runs",
+            "deviations): the model counts the rest as {}",
             quality.leave_one_out_error < barely_explained ? "little" : "nothing", learned.observable, quality.cases,
-            quality.leave_one_out_error));
+            quality.leave_one_out_error,
+            quality.noise == stats::Noise::misfit ? "its error" : "scatter of single runs"));
+    if (quality.noise == stats::Noise::misfit)
+        learned.notes.push_back(fmt::format(
+            "runs of one setting do not differ in '{}': what the model does not follow counts as error of the mean",
+            learned.observable));
     if (quality.logarithm)
         learned.notes.push_back(fmt::format(
             "the model is one of log({}): leave-one-out error {:.3f} with it, {:.3f} without it, on {} cases",

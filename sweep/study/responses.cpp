@@ -28,13 +28,9 @@ namespace {
 
 using Cell = store::Table::Cell;
 
-/// Returns a level's text; of a file, its name.
-std::string column_level(const Cell& cell) {
-    if (const auto* word = std::get_if<std::string>(&cell)) {
-        const auto file = file_word(*word);
-        return file ? std::filesystem::path(file->path).filename().string() : *word;
-    }
-    return fmt::format("{:.6g}", number_of(cell));
+Value value_of(const Cell& cell) {
+    const auto* word = std::get_if<std::string>(&cell);
+    return word != nullptr ? Value{*word} : Value{number_of(cell)};
 }
 
 /// Equal for equal levels of any type in a view or an identity: numbers by value, files by contents.
@@ -48,30 +44,30 @@ std::string key_of_cell(const Cell& cell) {
     return word == nullptr ? campaign::shortest(number_of(cell)) : key_of_level(campaign::identity_text(*word));
 }
 
-/// Levels that occur, in the order of the campaign file, and their places among all.
-void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std::vector<std::string>& listed) {
-    std::map<std::string, std::string> texts;
+/// Reads the levels that occur, in the order of the campaign file, and their places among all.
+void read_levels(FactorColumn& factor, const std::vector<Cell>& cells) {
+    std::map<std::string, Value> values;
     std::vector<std::string> keys;
     keys.reserve(cells.size());
     for (const auto& cell : cells) {
         keys.push_back(key_of_cell(cell));
-        texts.try_emplace(keys.back(), column_level(cell));
+        values.try_emplace(keys.back(), value_of(cell));
     }
     std::map<std::string, std::size_t> index, place_of;
-    for (const auto& level : listed) {
+    for (const auto& level : factor.level_texts()) {
         const auto key = key_of_level(level);
         place_of.try_emplace(key, place_of.size());
-        if (texts.contains(key)) index.try_emplace(key, index.size());
+        if (values.contains(key)) index.try_emplace(key, index.size());
     }
     for (const auto& key : keys) {
         index.try_emplace(key, index.size());
         place_of.try_emplace(key, place_of.size());
     }
-    factor.levels.resize(index.size());
+    factor.seen.resize(index.size());
     factor.places.resize(index.size());
     const auto last = static_cast<double>(std::max<std::size_t>(place_of.size(), 2) - 1);
     for (const auto& [key, place] : index) {
-        factor.levels[place] = texts.at(key);
+        factor.seen[place] = values.at(key);
         factor.places[place] = static_cast<double>(place_of.at(key)) / last;
     }
     for (const auto& key : keys) factor.values.push_back(static_cast<double>(index.at(key)));
@@ -81,45 +77,25 @@ void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std
 class FactorReader {
 public:
     /// `scene`: null if this program does not have the scene.
-    FactorReader(campaign::StatedFactor stated, const SceneInfo* scene) : stated_(std::move(stated)) {
-        factor_.name = stated_.name;
-        factor_.conditional = !stated_.when.empty();
-        factor_.stepped = stated_.step.has_value();
-        if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor_.name)) {
-            factor_.unit = parameter->unit;
+    FactorReader(const campaign::Factor& stated, const SceneInfo* scene) : factor_{stated} {
+        if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(stated.name))
             factor_.meaning = parameter->meaning;
-        }
-        if (stated_.between) {
-            factor_.log = stated_.between->scale == campaign::Scale::log;
-            factor_.low = stated_.between->low;
-            factor_.high = stated_.between->high;
-        }
-        if (stated_.distribution) {
-            factor_.distribution = stated_.distribution;
-            factor_.log = std::holds_alternative<stats::Lognormal>(stated_.distribution->form());
-            std::tie(factor_.low, factor_.high) = stated_.distribution->range();
-        }
     }
     void add(const Cell& cell) {
-        if (stated_.continuous())
+        if (factor_.continuous())
             factor_.values.push_back(number_of(cell));
         else
             cells_.push_back(cell);
     }
     [[nodiscard]] FactorColumn take() {
-        if (!stated_.continuous()) read_levels(factor_, cells_, stated_.levels);
+        if (!factor_.continuous()) read_levels(factor_, cells_);
         return std::move(factor_);
     }
 
 private:
-    campaign::StatedFactor stated_;
     FactorColumn factor_;
     std::vector<Cell> cells_;
 };
-
-const stats::SampleColumn* joint_column(const FactorColumn& factor) {
-    return campaign::column_of(factor.distribution ? &*factor.distribution : nullptr);
-}
 
 /// The points of a campaign's design; none where its rows were listed, or followed from answers.
 designs::PointSet points_of_design(const Responses& responses) {
@@ -135,7 +111,8 @@ designs::PointSet points_of_design(const Responses& responses) {
 double share_of_row(const Responses& responses, const stats::SampleColumn& own, std::size_t row, double value) {
     std::vector<double> values(own.sample->columns());
     for (const auto& factor : responses.factors)
-        if (const auto* other = joint_column(factor); other != nullptr && other->sample == own.sample)
+        if (const auto* other = campaign::column_of(factor.distribution());
+            other != nullptr && other->sample == own.sample)
             values[other->column] = factor.values[row];
     const auto place = own.sample->place_of(values);
     return place ? (*place)[own.column] : own.sample->cumulative(own.column, value);
@@ -147,7 +124,7 @@ void add_joint_shares(Responses& responses) {
     designs::PointSet points;
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         auto& factor = responses.factors[j];
-        const auto* column = joint_column(factor);
+        const auto* column = campaign::column_of(factor.distribution());
         if (column == nullptr) continue;
         if (points.size() == 0) points = points_of_design(responses);
         for (std::size_t row = 0; row < responses.rows(); ++row) {
@@ -244,18 +221,39 @@ void find_settled(Responses& responses) {
 }  // namespace
 
 double FactorColumn::coordinate(std::size_t row) const {
-    const double value = values[row];
     if (!shares.empty()) return shares[row];
-    if (!continuous()) return places[static_cast<std::size_t>(value)];
-    if (distribution) return distribution->cumulative(value);
-    const double place = log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-    return conditional ? std::clamp(place, 0.0, 1.0) : place;
+    if (!continuous()) return places[static_cast<std::size_t>(values[row])];
+    const double at = place(values[row]);
+    return when.empty() || distribution() != nullptr ? at : std::clamp(at, 0.0, 1.0);
+}
+
+std::vector<std::string> FactorColumn::seen_texts() const {
+    std::vector<std::string> texts;
+    for (const auto& value : seen) {
+        const auto* word = std::get_if<std::string>(&value);
+        const auto file = word == nullptr ? std::nullopt : file_word(*word);
+        texts.push_back(word == nullptr ? fmt::format("{:.6g}", std::get<double>(value))
+                        : file          ? std::filesystem::path(file->path).filename().string()
+                                        : *word);
+    }
+    return texts;
+}
+
+std::vector<double> FactorColumn::seen_numbers() const {
+    std::vector<double> numbers;
+    for (const auto& value : seen) {
+        const auto* word = std::get_if<std::string>(&value);
+        const auto number = word == nullptr ? std::optional(std::get<double>(value)) : number_in(*word);
+        if (!number) return {};
+        numbers.push_back(*number);
+    }
+    return numbers;
 }
 
 std::string factor_text(const FactorColumn& factor, std::size_t row) {
     const double value = factor.values[row];
     if (factor.continuous()) return std::isnan(value) ? "" : fmt::format("{:.6g}", value);
-    return factor.levels[static_cast<std::size_t>(value)];
+    return factor.seen_texts()[static_cast<std::size_t>(value)];
 }
 
 double number_of(const Cell& cell) {
@@ -369,18 +367,14 @@ std::vector<store::ConvergenceRow> judged_checks(const store::Store& store, cons
 
 }  // namespace
 
-bool asks_the_same(const campaign::Identity& a, const campaign::Identity& b) {
-    return a.scene == b.scene && a.revision == b.revision && a.factors == b.factors && a.fixed == b.fixed;
-}
-
 Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {
     Responses responses;
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
-    responses.repeats_weigh = campaign::repeats_weigh(campaign::factors_asked(record));
+    responses.repeats_weigh = campaign::repeats_weigh(record.factors);
     const auto scene = find_scene(record.scene);
     std::vector<FactorReader> factors;
-    for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene.get());
+    for (const auto& stated : record.factors) factors.emplace_back(stated, scene.get());
     const auto first_observable = first_factor + factors.size();
     const auto declare = [&](const std::vector<std::string>& columns) {
         for (std::size_t column = first_observable; column < columns.size(); ++column) {
@@ -406,18 +400,17 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     };
     store.query(store.rows_of(record.name) + " ORDER BY point, replicate", {}, declare, add);
     for (auto& factor : factors) responses.factors.push_back(factor.take());
-    const auto asked = campaign::factors_asked(record);
-    responses.groups = campaign::groups_of(asked);
-    responses.group_names = campaign::group_names(asked);
+    responses.groups = campaign::groups_of(record.factors);
+    responses.group_names = campaign::group_names(record.factors);
     responses.folds = std::ranges::any_of(
-        asked, [](const auto& factor) { return factor.step || factor.share || !factor.when.empty(); });
+        record.factors, [](const auto& factor) { return factor.step || factor.share || !factor.when.empty(); });
 
     responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
     find_settled(responses);
     add_joint_shares(responses);
     if (!record.imported_into)
         for (const auto& other : store.campaigns())
-            if (other.imported_into == record.name && asks_the_same(other, record))
+            if (other.imported_into == record.name && campaign::asks_the_same(other, record))
                 responses.imported.push_back(read_responses(store, other));
     return responses;
 }
@@ -426,7 +419,7 @@ Responses read_response(const store::Store& store, const store::CampaignRecord& 
     Responses responses;
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
-    responses.repeats_weigh = campaign::repeats_weigh(campaign::factors_asked(record));
+    responses.repeats_weigh = campaign::repeats_weigh(record.factors);
     responses.candidates = record.stored.candidates;
     ResponseColumn response;
     response.name = observable;

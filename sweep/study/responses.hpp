@@ -14,25 +14,23 @@
 
 namespace grainsweep::study {
 
-/// Values of a factor. Continuous: `values` in its unit. With levels: `values` are indices into `levels`.
-struct FactorColumn {
-    std::string name, unit, meaning;
-    std::vector<std::string> levels;  ///< as text, in the order of the campaign file; empty: continuous
-    double low = 0, high = 0;         ///< continuous: the range (stats::Distribution::range)
-    bool log = false;                 ///< the range is divided logarithmically
-    std::optional<stats::Distribution> distribution = {};  ///< empty: levels, or a range
-    bool stepped = false;                                  ///< values are multiples of a step
-    bool conditional = false;         ///< where the factor does not count, its value is its default, which may lie
-                                      ///< outside the range
-    std::vector<double> values;       ///< one per row
+/// Factor and its values. Continuous: `values` in its unit. With levels: `values` are indices into `seen`.
+struct FactorColumn : campaign::Factor {
+    std::string meaning = {};
+    std::vector<Value> seen = {};  ///< levels that occur, in the order of the campaign file, then others
+    /// One per row. Where the factor does not count, its default, which may lie outside the range.
+    std::vector<double> values = {};
     std::vector<double> shares = {};  ///< its coordinate per row, if the value alone does not determine it
-    std::vector<double> places;       ///< coordinate of each level in the campaign's list: 0 the first, 1 the last
+    std::vector<double> places = {};  ///< coordinate of each level in the campaign's list: 0 the first, 1 the last
 
-    [[nodiscard]] bool continuous() const { return levels.empty(); }
     /// Returns the position of the row's value in the range, 0 to 1; for a distribution, the cumulative probability. A
     /// default outside the range is at the nearer end. A level has its position in the campaign's list, whether its
     /// cases have run or not.
     [[nodiscard]] double coordinate(std::size_t row) const;
+    /// Returns the levels that occur as text: numbers with 6 digits, files by their names.
+    [[nodiscard]] std::vector<std::string> seen_texts() const;
+    /// Returns the levels that occur as numbers; empty if one is a word.
+    [[nodiscard]] std::vector<double> seen_numbers() const;
 };
 
 /// Values of one scalar observable; NaN where a case has none.
@@ -124,9 +122,6 @@ struct Responses {
 [[nodiscard]] bool repeats(const Responses& responses);
 
 [[nodiscard]] Responses read_responses(const store::Store& store, const store::CampaignRecord& campaign);
-
-/// Returns whether two campaigns differ in their points alone: the same scene, factors and fixed values.
-[[nodiscard]] bool asks_the_same(const campaign::Identity& a, const campaign::Identity& b);
 
 /// Reads one observable without factors and case ids, which is enough for a verdict and much faster.
 [[nodiscard]] Responses read_response(const store::Store& store, const store::CampaignRecord& campaign,

@@ -47,7 +47,7 @@ public:
     }
     /// Returns the time of the next picture, or of the focus.
     [[nodiscard]] double next() const {
-        if (camera_.frames == 0 || !foreseen_) return std::numeric_limits<double>::infinity();
+        if (camera_.frames == 0 || !foreseen_ || !(spacing_ > 0)) return std::numeric_limits<double>::infinity();
         const double moment = begin_ + spacing_ * static_cast<double>(taken_);
         if (preparing_) return std::min(moment, focus_);
         if (!(period_ > 0 && period_ <= spacing_)) return moment;

@@ -30,6 +30,7 @@ namespace {
 constexpr std::size_t longest_reply = std::size_t{16} << 20U;
 constexpr off_t longest_log = off_t{1} << 20U;
 constexpr int look_milliseconds = 100;
+constexpr int silence_milliseconds = 200;  // after the first reply of a program, where a second line may come
 
 struct Pipe {
     Pipe() {
@@ -104,6 +105,24 @@ public:
     }
     [[nodiscard]] const std::string& line() const { return line_; }
 
+    /// Counts a reply that names no case. Returns whether one line came for one question: a second line would be taken
+    /// for the next reply. Waits for it after the first reply of the program; ask() looks for it later.
+    [[nodiscard]] bool came_alone() {
+        if (nameless_++ > 0) return true;
+        std::string reply = std::exchange(line_, {});
+        std::string_view nothing;
+        if (received_.empty()) (void)exchange(nothing, silence_milliseconds);
+        if (line_.empty() && received_.empty()) {
+            line_ = std::move(reply);
+            return true;
+        }
+        line_ = shortened(line_.empty() ? received_ : line_, 200);
+        --nameless_;  // it is no result
+        return false;
+    }
+    /// Returns the number of replies that named no case.
+    [[nodiscard]] std::int64_t nameless() const { return nameless_; }
+
     /// Ends the program. Then result() is valid.
     void end() {
         (void)in_.close();
@@ -171,6 +190,7 @@ private:
     std::unique_ptr<ProgramProcess> process_;  // ended before its pipes are closed
     std::string received_, line_;
     std::size_t searched_ = 0;  ///< of received_, without a line end
+    std::int64_t nameless_ = 0;
 };
 
 namespace {
@@ -222,7 +242,7 @@ public:
         close_result(result, Outcome::rejected,
                      size.too_deep              ? std::string("it made folders within folders, more than 100 deep")
                      : size.files >= most_files ? fmt::format("it wrote {} files, more than a case may", size.files)
-                                                : fmt::format("it wrote {:.3g} MB, and \"disk\" allows a case {:.3g}",
+                                                : fmt::format("it wrote {:.6g} MB, and \"disk\" allows a case {:.6g}",
                                                               1e-6 * static_cast<double>(size.bytes),
                                                               1e-6 * static_cast<double>(program_.disk)));
         return true;
@@ -253,6 +273,14 @@ std::string crash_sentence(int status, const ProgramFolder& folder) {
     auto log = folder.end_of("stderr.txt", log_bytes);
     if (log.empty()) log = folder.end_of("stdout.txt", log_bytes);
     return fmt::format("{}{}{}", describe_end("the program", status), log.empty() ? "" : "; it wrote: ", log);
+}
+
+std::string unasked_sentence(const ProgramLines& lines) {
+    const auto earlier = lines.nameless();
+    return fmt::format("the program wrote a line that was not asked for: {}{}", lines.line(),
+                       earlier == 0 ? std::string()
+                                    : fmt::format("; its {} before named no \"case\" and may be of other cases",
+                                                  earlier == 1 ? "reply" : fmt::format("{} replies", earlier)));
 }
 
 std::unique_ptr<ProgramProcess> start_case(const Program& program, const campaign::Case& question,
@@ -381,8 +409,12 @@ std::optional<CaseResult> ProgramAnswerer::by_lines(const campaign::Case& questi
     result.program = {program_->version, lines_->peak_memory(), std::nullopt};
     if (heard == Heard::reply) {
         try {
-            take(results_in(lines_->line(), question.id, *program_), result);
-            return result;
+            auto reply = results_in(lines_->line(), question.id, *program_);
+            if (reply.names_case || lines_->came_alone()) {
+                take(std::move(reply), result);
+                return result;
+            }
+            heard = Heard::unasked;
         } catch (const std::invalid_argument& why) {  // its next message could not be distinguished from this one
             close_result(result, Outcome::rejected, why.what());
         }
@@ -395,7 +427,7 @@ std::optional<CaseResult> ProgramAnswerer::by_lines(const campaign::Case& questi
     if (heard == Heard::end || heard == Heard::ended_before)
         close_result(result, Outcome::crashed, crash_sentence(end.status, lines_->folder()));
     else if (heard == Heard::unasked)
-        close_result(result, Outcome::crashed, "the program wrote a line that was not asked for: " + lines_->line());
+        close_result(result, Outcome::crashed, unasked_sentence(*lines_));
     lines_.reset();
     if (heard == Heard::given_up) return std::nullopt;
     return result;

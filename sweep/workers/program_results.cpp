@@ -1,5 +1,6 @@
 #include "sweep/workers/program_results.hpp"
 
+#include "sweep/campaign/case.hpp"
 #include "sweep/campaign/json_builder.hpp"
 #include "sweep/workers/program_tables.hpp"
 #include "sweep/workers/worker_state.hpp"
@@ -89,6 +90,7 @@ constexpr std::size_t largest_json = std::size_t{16} << 20U;
 using Unusable = std::invalid_argument;
 
 double number_in(const Json& value, const std::string& place) {
+    if (value.is_null()) throw NoValue(fmt::format("{} is null, which is no number", place));
     if (!value.is_number()) throw Unusable(fmt::format("{} is {}, which is no number", place, shown_json(value)));
     const auto number = value.get<double>();
     if (!std::isfinite(number)) throw Unusable(fmt::format("{} is beyond double precision", place));
@@ -98,27 +100,35 @@ double number_in(const Json& value, const std::string& place) {
 /// Files read once for all that is found in them.
 class Documents {
 public:
-    explicit Documents(const ProgramFolder& folder) : folder_(folder) {}
+    Documents(const ProgramFolder& folder, const Program& program) : folder_(folder), program_(program) {}
     const Json& json(const std::string& name) {
         if (const auto known = json_.find(name); known != json_.end()) return known->second;
-        std::string why;
-        const auto text = folder_.read(name, largest_json, why);
-        if (!text) throw Unusable(fmt::format("{} {}", name, why));
-        return json_.emplace(name, program_json(*text, name)).first->second;
+        return json_.emplace(name, program_json(written(name, largest_json), name)).first->second;
     }
     ProgramTable& table(const std::string& name, const std::string& separator) {
         auto& known = tables_[{name, separator}];
         if (known) return *known;
-        std::string why;
-        auto text = folder_.read(name, largest_table, why);
-        if (!text) throw Unusable(fmt::format("{} {}", name, why));
-        known = std::make_unique<ProgramTable>(name, std::move(*text), separator);
+        known = std::make_unique<ProgramTable>(name, written(name, largest_table), separator);
         return *known;
     }
     [[nodiscard]] const ProgramFolder& folder() const { return folder_; }
 
 private:
+    /// Returns the contents of a file of results. A file that was copied into the folder has results only once the
+    /// program has changed it.
+    [[nodiscard]] std::string written(const std::string& name, std::size_t most_bytes) const {
+        std::string why;
+        auto text = folder_.read(name, most_bytes, why);
+        if (!text && !folder_.has(name)) throw NoValue(fmt::format("{} {}", name, why));
+        if (!text) throw Unusable(fmt::format("{} {}", name, why));
+        const auto copied = std::ranges::find(program_.files, name, &campaign::ProgramFile::name);
+        if (copied != program_.files.end() && copied->hash == campaign::content_hash(*text))
+            throw Unusable(fmt::format("{} was not written: it is the file that was copied into the folder", name));
+        return std::move(*text);
+    }
+
     const ProgramFolder& folder_;
+    const Program& program_;
     std::map<std::string, Json> json_;
     std::map<std::pair<std::string, std::string>, std::unique_ptr<ProgramTable>> tables_;
 };
@@ -127,7 +137,7 @@ const Json& value_at(const Json& document, const std::string& file, const std::s
     try {
         return document.at(Json::json_pointer(path));
     } catch (const Json::exception&) {  // of an index too large for any list, too
-        throw Unusable(fmt::format("{} has no {}", file, path));
+        throw NoValue(fmt::format("{} has no {}", file, path));
     }
 }
 
@@ -231,6 +241,7 @@ ProgramReply measured_in(const Json& object, const Program& program) {
     ProgramReply reply;
     for (const auto& declared : program.observables) {
         const auto value = observables->find(declared.name);
+        if (declared.optional && (value == observables->end() || value->is_null())) continue;
         if (value == observables->end()) throw Unusable(fmt::format("it replied without {}", declared.name));
         if (declared.shape == Shape::scalar)
             add_found(declared, {number_in(*value, "its " + declared.name), {}, {}}, reply.observations);
@@ -255,15 +266,19 @@ std::optional<ProgramReply> said_in_files(const Program& program, Documents& doc
 }  // namespace
 
 ProgramReply results_in(const ProgramFolder& folder, const Program& program) {
-    Documents documents(folder);
+    Documents documents(folder, program);
     try {
         if (auto said = said_in_files(program, documents)) return std::move(*said);
         ProgramReply reply;
         for (const auto& declared : program.observables) {
-            auto found =
-                std::visit([&](const auto& from) { return find(from, declared.shape == Shape::scalar, documents); },
-                           declared.from);
-            add_found(declared, std::move(found), reply.observations);
+            const auto find_it = [&](const auto& from) {
+                return find(from, declared.shape == Shape::scalar, documents);
+            };
+            try {
+                add_found(declared, std::visit(find_it, declared.from), reply.observations);
+            } catch (const NoValue&) {
+                if (!declared.optional) throw;
+            }
         }
         return reply;
     } catch (const Unusable& why) {
@@ -283,14 +298,18 @@ ProgramReply results_in(std::string_view line, std::string_view case_id, const P
     if (!object.is_object())
         throw Unusable(
             fmt::format("it replied what is no JSON object: {}", shown_json(std::string(line.substr(0, 200)))));
-    if (const auto of = object.find("case"); of != object.end() && *of != case_id)
+    const auto of = object.find("case");
+    if (of != object.end() && *of != case_id)
         throw Unusable(fmt::format("it replied to case {}, which was not asked", shown_json(*of)));
+    ProgramReply reply;
     try {
-        if (auto said = said_in(object, "its reply")) return std::move(*said);
-        return measured_in(object, program);
+        auto said = said_in(object, "its reply");
+        reply = said ? std::move(*said) : measured_in(object, program);
     } catch (const Unusable& why) {
-        return {Kind::rejected, why.what(), {}};
+        reply = {Kind::rejected, why.what(), {}};
     }
+    reply.names_case = of != object.end();
+    return reply;
 }
 
 }  // namespace grainsweep::workers

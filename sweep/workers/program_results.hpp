@@ -15,6 +15,7 @@ struct ProgramReply {
     Kind kind = Kind::measured;
     std::string message;  ///< why there are no observations, in one sentence with file and place; empty: there are
     Observations observations;
+    bool names_case = false;  ///< a line with the key "case"
 };
 
 /// Returns the results in the case's folder, once the program has ended successfully.

@@ -33,11 +33,15 @@ bool is_digit(char c) {
 /// Fortran writes 1.0D+03, or 1.0Q+03, and 1.0-103 where the exponent has three digits.
 std::string with_plain_exponent(std::string_view text) {
     std::string plain(text);
+    const auto has_three_digits = [&plain](std::size_t sign) {
+        return plain.size() == sign + 4 && std::all_of(plain.end() - 3, plain.end(), is_digit) &&
+               plain.find('.') < sign;
+    };
     for (std::size_t k = 1; k + 1 < plain.size(); ++k) {
         const bool after_number = is_digit(plain[k - 1]) || plain[k - 1] == '.';
         const bool letter = std::string_view("dDqQ").find(plain[k]) != std::string_view::npos;
         if (after_number && letter) plain[k] = 'e';
-        if (after_number && (plain[k] == '+' || plain[k] == '-')) plain.insert(k, 1, 'e');
+        if (after_number && (plain[k] == '+' || plain[k] == '-') && has_three_digits(k)) plain.insert(k, 1, 'e');
     }
     return plain;
 }
@@ -50,17 +54,58 @@ std::optional<double> any_number_of(std::string_view text) {
     return any_number_in(with_plain_exponent(text));
 }
 
-/// The exponent with which the text behind a number goes on: the expression has found the number without it.
-std::optional<std::string> exponent_behind(const std::string& behind) {
+/// Group of a match, and the text around it that the expression did not match.
+struct FoundText {
+    FoundText(const std::smatch& parts, bool is_cut)
+        : group(parts[1].str()), behind(parts[1].second, parts.suffix().second), cut(is_cut && behind.empty()) {
+        if (parts[1].second == parts[0].second) unmatched = parts.suffix().str();
+        if (parts[1].first == parts[0].first) before = parts.prefix().str();
+    }
+    std::string group, behind;
+    std::string before, unmatched;  ///< empty if the expression itself goes on
+    bool cut = false;               ///< the line is longer than what is searched, up to the end of the group
+};
+
+/// Returns the number that the group is a part of: the expression found it without its exponent, its sign, or the
+/// digits on the other side of a point or comma.
+std::optional<std::string> whole_number_around(const FoundText& found) {
     static const std::regex exponent("^[eEdDqQ][-+]?[0-9]+(?![0-9A-Za-z_])");
-    std::smatch found;
-    if (!std::regex_search(behind, found, exponent)) return std::nullopt;
-    return found.str();
+    static const std::regex digits_behind("^[.,][0-9]+"), sign_before("(?:^|[^0-9A-Za-z_.)\\]])(-)$");
+    static const std::regex digits_before("-?[0-9.]*[0-9](?:[.]|[eEdDqQ][-+]?)?$");
+    std::smatch part;
+    if (std::regex_search(found.behind, part, exponent)) return found.group + part.str();
+    const bool whole = !found.group.empty() && std::ranges::all_of(trimmed(found.group), [](char c) {
+        return is_digit(c) || c == '-' || c == '+';
+    });
+    if (whole && is_digit(found.group.back()) && std::regex_search(found.unmatched, part, digits_behind))
+        return found.group + part.str();
+    const bool begins = !found.group.empty() && (is_digit(found.group.front()) || found.group.front() == '.');
+    if (begins && std::regex_search(found.before, part, digits_before)) return part.str() + found.group;
+    if (begins && std::regex_search(found.before, part, sign_before)) return "-" + found.group;
+    return std::nullopt;
+}
+
+/// Returns the letters with which every match begins, which are found faster than the expression; may be empty.
+std::string literal_of(std::string_view pattern) {
+    if (pattern.find('|') != std::string_view::npos) return {};
+    if (pattern.starts_with('^')) pattern.remove_prefix(1);
+    const auto end = std::min(pattern.find_first_of(".^$()[]{}*+?\\"), pattern.size());
+    const bool optional =
+        end > 0 && end < pattern.size() && std::string_view("*?{").find(pattern[end]) != std::string_view::npos;
+    return std::string(pattern.substr(0, optional ? end - 1 : end));
 }
 
 std::optional<double> number_of(std::string_view text) {
     const auto number = any_number_of(text);
     return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+/// Throws for a text that is no finite number; empty or NaN: there is no value.
+[[noreturn]] void refuse_text(const std::string& place, std::string_view text) {
+    const auto sentence = place + ", which is no number";
+    const auto number = any_number_of(text);
+    if (trimmed(text).empty() || (number && std::isnan(*number))) throw NoValue(sentence);
+    throw std::invalid_argument(sentence);
 }
 
 }  // namespace
@@ -76,14 +121,30 @@ ProgramTable::ProgramTable(std::string file, std::string text, std::string separ
         if (line.empty()) continue;
         if (line.starts_with('#')) {
             if (names_.empty()) remark = line;
+            note_other_head(line);
             continue;
         }
         if (names_.empty() && take_head(line, remark)) continue;
         if (rows_.size() >= most_rows)
             throw std::invalid_argument(fmt::format("{} has more than {} rows", file_, most_rows));
+        note_other_head(line);
         rows_.push_back(line);
     }
     if (names_.empty()) take_head({}, remark);
+}
+
+void ProgramTable::note_other_head(std::string_view line) {
+    const bool remark = line.starts_with('#');
+    if (rows_.empty() || !other_head_.empty() || (!remark && (is_digit(line.front()) || line.front() == '-'))) return;
+    while (line.starts_with('#')) line = trimmed(line.substr(1));
+    const auto cells = cells_of(line);
+    const auto is_name = [](const std::string& cell) { return !cell.empty() && !any_number_of(cell); };
+    if (cells.size() < 2 || cells == names_ || !std::ranges::all_of(cells, is_name)) return;
+    // Any words may stand in a remark.
+    const auto known = [this](const auto& cell) { return std::ranges::find(names_, cell) != names_.end(); };
+    if (remark && !std::ranges::all_of(cells, known)) return;
+    other_head_ = line;
+    rows_of_the_head_ = rows_.size();
 }
 
 bool ProgramTable::take_head(std::string_view line, std::string_view remark) {
@@ -119,24 +180,31 @@ std::size_t ProgramTable::place_of(const std::string& column) const {
     if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
     std::string listed;
     for (const auto& name : names_) listed += (listed.empty() ? "" : ", ") + name;
-    throw std::invalid_argument(fmt::format("{} has no column '{}'; it has {}", file_, column,
-                                            listed.empty() ? "none" : shortened(listed, 200)));
+    throw NoValue(fmt::format("{} has no column '{}'; it has {}", file_, column,
+                              listed.empty() ? "none" : shortened(listed, 200)));
 }
 
 double ProgramTable::number(std::size_t row, std::size_t place, const std::string& column) const {
+    if (!other_head_.empty() && row >= rows_of_the_head_)
+        throw std::invalid_argument(fmt::format("{}: row {} stands below other names, '{}': the file has two tables",
+                                                file_, row, shortened(std::string(other_head_), 60)));
     const auto cells = cells_of(rows_[row]);
-    if (place >= cells.size()) throw std::invalid_argument(fmt::format("{}: row {} has no '{}'", file_, row, column));
+    if (place >= cells.size()) throw NoValue(fmt::format("{}: row {} has no '{}'", file_, row, column));
+    for (std::size_t k = names_.size(); separator_ == "comma" && k < cells.size(); ++k)
+        if (!trimmed(cells[k]).empty())
+            throw std::invalid_argument(
+                fmt::format("{}: row {} has {} cells under {} names; numbers have decimal points", file_, row,
+                            cells.size(), names_.size()));
     if (const auto number = number_of(cells[place])) return *number;
-    throw std::invalid_argument(
-        fmt::format("{}: '{}' in row {} is '{}', which is no number", file_, column, row, shortened(cells[place], 60)));
+    refuse_text(fmt::format("{}: '{}' in row {} is '{}'", file_, column, row, shortened(cells[place], 60)),
+                cells[place]);
 }
 
 double ProgramTable::value(const std::string& column, std::int64_t row) const {
     const std::size_t place = place_of(column);
     const auto rows = static_cast<std::int64_t>(rows_.size());
     const std::int64_t at = row < 0 ? rows + row : row;
-    if (at < 0 || at >= rows)
-        throw std::invalid_argument(fmt::format("{} has {} rows, and row {} is asked", file_, rows, row));
+    if (at < 0 || at >= rows) throw NoValue(fmt::format("{} has {} rows, and row {} is asked", file_, rows, row));
     return number(static_cast<std::size_t>(at), place, column);
 }
 
@@ -158,14 +226,15 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     std::string why;
     const auto file = folder.open("stdout.txt", why);
     if (!file.is_open()) throw std::invalid_argument("standard output " + why);
-    std::optional<std::string> last, behind;
+    const auto literal = literal_of(pattern);
+    std::optional<FoundText> last;
     std::string line;
     std::smatch parts;
     const auto search = [&] {
-        if (std::regex_search(line, parts, found->second) && parts[1].matched) {
-            last = parts[1].str();
-            behind = std::string(parts[1].second, line.cend());
-        }
+        // The end of a line of Windows is two ends with nothing between them.
+        const bool may_match = !line.empty() && line.find(literal) != std::string::npos;
+        if (may_match && std::regex_search(line, parts, found->second) && parts[1].matched)
+            last.emplace(parts, line.size() >= longest_searched);
         line.clear();
     };
     const auto began = std::chrono::steady_clock::now();
@@ -174,22 +243,29 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
          (length = ::read(file.number(), piece.data(), piece.size())) > 0 || (length < 0 && errno == EINTR);) {
         if (std::chrono::steady_clock::now() - began > longest_search)
             throw std::invalid_argument(fmt::format("standard output: to search for '{}' takes too long", pattern));
-        for (ssize_t k = 0; k < length; ++k) {
-            const char c = piece[static_cast<std::size_t>(k)];
-            if (c == '\n')
-                search();
-            else if (line.size() < longest_searched)
-                line += c;
+        std::string_view rest(piece.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+        while (!rest.empty()) {
+            const auto end = rest.find_first_of("\r\n");  // a progress bar returns to the start of its line
+            line += rest.substr(0, std::min(end, longest_searched - line.size()));
+            if (end == std::string_view::npos) break;
+            search();
+            rest.remove_prefix(end + 1);
         }
     }
     if (!line.empty()) search();
-    if (!last) throw std::invalid_argument(fmt::format("standard output has no line with '{}'", pattern));
-    if (const auto cut = exponent_behind(*behind))
-        throw std::invalid_argument(fmt::format("standard output: '{}' found '{}', a part of the number '{}{}'",
-                                                pattern, shortened(*last, 60), shortened(*last, 60), *cut));
-    if (const auto number = number_of(*last)) return *number;
-    throw std::invalid_argument(
-        fmt::format("standard output: '{}' found '{}', which is no number", pattern, shortened(*last, 60)));
+    if (!last) throw NoValue(fmt::format("standard output has no line with '{}'", pattern));
+    if (last->cut)
+        throw std::invalid_argument(fmt::format(
+            "standard output: '{}' found a value beyond the first {} bytes of a line", pattern, longest_searched));
+    if (const auto whole = whole_number_around(*last))
+        throw std::invalid_argument(fmt::format(
+            "standard output: '{}' found '{}', a part of the number '{}'{}", pattern, shortened(last->group, 60),
+            shortened(*whole, 60),
+            whole->find(',') == std::string::npos
+                ? ""
+                : "; numbers have decimal points, and a comma between two numbers belongs to the expression"));
+    if (const auto number = number_of(last->group)) return *number;
+    refuse_text(fmt::format("standard output: '{}' found '{}'", pattern, shortened(last->group, 60)), last->group);
 }
 
 }  // namespace grainsweep::workers

@@ -29,6 +29,7 @@
 #include "solver/dem/time_step.hpp"
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/granular_beds.hpp"
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/trade_off.hpp"
@@ -235,7 +236,7 @@ void chute(std::vector<Setting>& all, int seeds) {
 // ---- spreading -------------------------------------------------------------------------------------------------
 
 void spreading(std::vector<Setting>& all, int seeds, const std::string& only) {
-    const SceneInfo& scene = *find_scene("powder_spreading");
+    const SceneInfo& scene = *campaign::scene_named("powder_spreading");
     struct Question {
         double friction, diameter, gap, speed;
     };

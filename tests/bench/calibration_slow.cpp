@@ -58,7 +58,7 @@ std::vector<double> log_density(const designs::Calibration& found, stats::Rows p
         if (!found.models[t]) continue;
         const auto& target = found.targets[t];
         targets.push_back({target.value, target.error, target.discrepancy, 1});
-        predictions.push_back(found.models[t]->predict(points));
+        predictions.push_back(std::get<stats::ResponseModel>(*found.models[t]).predict(points));
     }
     return stats::log_likelihood(targets, predictions);
 }

@@ -1,6 +1,6 @@
 // Ready machines against ensembles of LIGGGHTS: means over seeds, within three standard errors of their difference;
-// minutes: slow_machines. References: ensembles.csv of tests/reference/machines and of tests/reference/laboratory,
-// definitions in their README.md. With
+// minutes: slow_machines. References: ensembles.csv of tests/reference/machines, of tests/reference/laboratory and of
+// tests/reference/conveying, definitions in their README.md. With
 // GRAINSWEEP_WRITE_DOCUMENTS the means are written to tests/reference/measured/machines.csv for the documents.
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/csv_table.hpp"
@@ -41,7 +41,7 @@ struct Reference {
 const std::map<std::pair<std::string, std::string>, Reference>& references() {
     static const auto all = [] {
         std::map<std::pair<std::string, std::string>, Reference> found;
-        for (const std::string folder : {"machines", "laboratory"}) {
+        for (const std::string folder : {"machines", "laboratory", "conveying"}) {
             std::ifstream file(tests::source("tests/reference/" + folder + "/ensembles.csv"));
             std::stringstream text;
             text << file.rdbuf();
@@ -141,6 +141,11 @@ std::vector<Quantity> of_laboratory(const std::vector<std::string>& observables)
     return quantities;
 }
 
+const std::vector<Quantity> of_conveyor = of_laboratory({"transport_speed", "height"});
+const std::vector<Quantity> of_belt = of_laboratory({"load", "powder_speed", "height"});
+const std::vector<Quantity> of_screen = of_laboratory({"passed_fine", "passed_middle", "passed_near"});
+const std::vector<Quantity> of_vanes = of_laboratory({"rate", "solid_fraction", "torque"});
+
 class MachinesAgainstLiggghts : public testing::TestWithParam<Case> {};
 
 TEST_P(MachinesAgainstLiggghts, AgreeWithinThreeStandardErrors) {
@@ -222,7 +227,16 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"shear_box",
                          "shear_box",
                          {{"width", 0.06}, {"displacement", 0.012}},
-                         of_laboratory({"stress_ratio", "shear_stress", "normal_stress"})}),
+                         of_laboratory({"stress_ratio", "shear_stress", "normal_stress"})},
+                    Case{"conveyor_K1.6", "vibrating_conveyor", {{"throw_number", 1.6}}, of_conveyor},
+                    Case{"conveyor_K2.4", "vibrating_conveyor", {{"throw_number", 2.4}}, of_conveyor},
+                    Case{"belt_slope10", "belt", {{"slope", 10.0}, {"speed", 0.8}}, of_belt},
+                    Case{"screen_slope20", "screen", {{"openings", std::int64_t{10}}, {"start_time", 0.8}}, of_screen},
+                    Case{"vane_rpm120", "vane_feeder", {{"speed", 120.0}}, of_vanes},
+                    Case{"ribbon_rpm60",
+                         "ribbon_mixer",
+                         {{"particles", std::int64_t{1600}}, {"revolutions", std::int64_t{3}}},
+                         of_laboratory({"torque", "lacey"})}),
     [](const auto& one) {
         std::string name = one.param.reference;
         std::ranges::replace(name, '.', '_');

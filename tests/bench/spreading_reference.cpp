@@ -3,6 +3,7 @@
 //
 //     bench_spreading_reference [SEEDS [FIRST_POINT LAST_POINT [FIRST_SEED [mixed|double]]]]
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/reference.hpp"
 
 #include <cmath>
@@ -34,7 +35,7 @@ int main(int argc, char** argv) {
     const int first_seed = argument(4, 1);
     const std::string precision = argc > 5 ? argv[5] : "mixed";
     const auto table = tests::read_table(tests::reference("spreading/mfr_table.csv"));
-    const SceneInfo& scene = *find_scene("powder_spreading");
+    const SceneInfo& scene = *campaign::scene_named("powder_spreading");
     double chi_square = 0;
     double mean_here = 0;
     double mean_there = 0;

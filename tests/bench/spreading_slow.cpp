@@ -1,6 +1,7 @@
 // A roller against LIGGGHTS 3.8 (tests/reference/walls, section 4 "roller"): 3000 spheres, three spins, forty seeds
 // each, since the scatter between runs, 0.005 to 0.014 from sets of ten, decides; minutes: slow_spreading.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/reference_table.hpp"
 
 #include <gtest/gtest.h>
@@ -78,7 +79,7 @@ TEST(Roller, AgreesWithLiggghts) {
     for (const int spin : {0, 1, 2}) {
         Scatter flux, solid, whole;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-            const SceneInfo& info = *find_scene("powder_spreading");
+            const SceneInfo& info = *campaign::scene_named("powder_spreading");
             Inputs inputs = info.defaults();
             inputs["tool"] = std::string("roller");
             inputs["roller_diameter"] = 16 * d;

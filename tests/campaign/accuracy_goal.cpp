@@ -200,6 +200,8 @@ TEST(AccuracyGoal, WrongQuestionsAreOneSentence) {
     EXPECT_THAT(says({{"accuracy", {{"tolerances", 0.1}}}}), HasSubstr("Did you mean 'tolerance'?"));
     EXPECT_THAT(says({{"convergence", {{"observable", "mfr"}}}}), HasSubstr("leave one of them out"));
     EXPECT_THAT(says({{"replicates", 2}}), HasSubstr("one run of each point"));
+    EXPECT_THAT(says({{"fixed", {{"time_step_fraction", 0.2}, {"precision", "mixed"}, {"settle_time", 0.1}}}}),
+                HasSubstr("they would agree whatever their error"));
     EXPECT_THAT(says({{"design", {{"sequences", 1}}}}), HasSubstr("\"sequences\" of at least 4"));
     EXPECT_THAT(says({{"design", {{"points", 12}}}}), HasSubstr("at least 4 points for each"));
     EXPECT_THAT(says({{"factors", {{{"name", "gap"}, {"between", {0.0036, 0.0075}}, {"step", 0.0005}}}}}),
@@ -207,6 +209,29 @@ TEST(AccuracyGoal, WrongQuestionsAreOneSentence) {
     EXPECT_THAT(says({{"factors", {{{"name", "gap"}, {"levels", {0.004, 0.005}}}}}}),
                 HasSubstr("a factor with a range"));
     EXPECT_THAT(says(json::object(), "work"), HasSubstr("use run, or name a setting"));
+}
+
+// Cases of one setting that were computed elsewhere are taken where the run comes to them, and give the same end.
+TEST(AccuracyGoal, TakesOldResultsOfOneSetting) {
+    const Folder folder;
+    folder.write("a.json", narrow_strip(0.2).dump());
+    const auto computed = run_of(folder, "a.db", "2");
+    folder.write("old.csv", output_of(folder, {"query", "a.db", "SELECT * FROM a_reference", "--format", "csv"}));
+    const auto unnamed = run_program({"import", "old.csv", "a.json", "b.db"}, folder.path());
+    EXPECT_EQ(unnamed.code, 2);
+    EXPECT_THAT(unnamed.err, HasSubstr("reference, survey: lines belong to one setting of the numerics"));
+    const auto said = output_of(folder, {"import", "old.csv", "a.json", "b.db", "--accuracy", "reference"});
+    EXPECT_THAT(said, HasSubstr("imported into 'a_reference'"));
+    const auto ended = run_of(folder, "b.db", "2");
+    EXPECT_EQ(ended["converged"], true);
+    const auto corrected = [&](const std::string& database) {
+        return json::parse(
+            output_of(folder, {"converge", database, "--campaign", "a", "--format", "json"}))[0]["corrected"];
+    };
+    EXPECT_EQ(corrected("b.db")["statistics"], corrected("a.db")["statistics"]);
+    const auto times = "SELECT count(*) AS n FROM a_reference WHERE wall_seconds IS NOT NULL";
+    const auto rows = json::parse(output_of(folder, {"query", "b.db", times, "--format", "json"}));
+    EXPECT_EQ(rows.at(0).at("n"), 0) << "no case of reference was computed again";
 }
 
 }  // namespace grainsweep::tests::accuracy_goal_test

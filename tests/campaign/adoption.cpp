@@ -72,6 +72,8 @@ TEST_F(Adoption, TakesAnswersOverAndSaysWhereTheyComeFrom) {
     const auto id = rows_of(folder, "SELECT case_id FROM q WHERE point = 0")[0]["case_id"].get<std::string>();
     EXPECT_THAT(program({"explain", "p.db", id, "--wide"}).out, HasSubstr("adopted from case"));
 
+    EXPECT_THAT(program({"explain", "p.db", id}).out, HasSubstr("answer adopted from case "));
+
     // Resumed, nothing is left; asked again, the new program computes.
     EXPECT_EQ(program({"run", "c.json", "--db", "p.db", "--adopt", "p"}).code, 0);
     EXPECT_EQ(runs(), 8);
@@ -79,6 +81,22 @@ TEST_F(Adoption, TakesAnswersOverAndSaysWhereTheyComeFrom) {
     EXPECT_EQ(runs(), 16);
     EXPECT_EQ(program({"verify", "p.db"}).code, 0);
     EXPECT_THAT(program({"dump", "p.db"}).out, Not(HasSubstr("adopted")));
+}
+
+TEST_F(Adoption, ReplaysWithTheSeedOfTheAnswer) {
+    const std::string random = "echo \"{\\\"y\\\": $2}\" > out.json\n";
+    const json seeded = {{"command", {"sh", "script.sh", "{x}", "{seed31}"}}};
+    ASSERT_EQ(run_script(folder, random, named("p", 2, seeded)).code, 0);
+    for (const std::string next : {"q", "r"}) {
+        const std::string last = next == "q" ? "p" : "q";
+        const auto ended = run_script(folder, random + "# " + next + "\n", named(next, 2, seeded),
+                                      {"--db", "p.db", "--adopt", last, "--quiet"});
+        ASSERT_EQ(ended.code, 0) << ended.err;
+        const auto id = rows_of(folder, "SELECT case_id FROM " + next)[0]["case_id"].get<std::string>();
+        const auto replayed = program({"replay", "p.db", id});
+        EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+        EXPECT_THAT(replayed.err, HasSubstr(", because the answer is adopted from case "));
+    }
 }
 
 TEST_F(Adoption, IsRefusedWhereAnAnswerMayBeAnother) {

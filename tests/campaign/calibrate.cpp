@@ -294,6 +294,92 @@ TEST(CalibrateCampaign, FailuresAreNoReasonToCallAFactorDetermined) {
     EXPECT_EQ(found["posterior"][1]["verdict"], "not determined");
 }
 
+/// A machine whose speed is undefined with the probability 1 - gate: the velocity of its grain is uniform from -1 to 1.
+json fit_to_share(const Folder& folder) {
+    folder.write("chance.json", R"({"name": "chance", "summary": "a grain of any velocity", "main": "speed",
+      "parameters": {"gate": {"default": 0.5, "bounds": [0, 1], "meaning": "probability of a value"},
+                     "size": {"unit": "m", "default": 0.001, "bounds": [0.001, 0.002], "meaning": "of the grain"}},
+      "domain": {"low": [0, 0, 0], "high": [1, 1, 1]}, "gravity": [0, 0, 0],
+      "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa", "poisson_ratio": 0.3}},
+      "contacts": {"restitution": 0.5, "friction": 0.5},
+      "species": {"grain": {"material": "glass", "diameter": "size"}},
+      "fill": [{"species": "grain", "count": 1, "shaken": 1, "in": {"box": {"low": [0.4, 0.4, 0.4], "high": [0.6, 0.6, 0.6]}}}],
+      "phases": [{"name": "fly", "for": "1 ms", "frames": 1}],
+      "measure": {"v": {"velocity": {"of": "grain", "along": [1, 0, 0]}, "during": "fly", "as": "last"},
+                  "speed": {"velocity": {"of": "grain", "along": [1, 0, 0]}, "during": "fly", "as": "last",
+                            "unless": "v > 2*gate - 1"}}})");
+    return json::parse(R"({"campaign": "fit", "scene": "machine", "machine": "chance.json",
+      "factors": [{"name": "gate", "between": [0, 1]}],
+      "calibration": {"targets": [{"observable": "speed", "without_value": {"count": 3, "of": 10, "discrepancy": 0}}],
+                      "waves": 2, "points_per_wave": 80}})");
+}
+
+// k of n without a value: with the true probability the posterior of the gate is Beta(n - k + 1, k + 1).
+TEST(CalibrateCampaign, ToAShareOfRunsWithoutAValueIsAboutThePosteriorOfBayes) {
+    const Folder folder;
+    folder.write("c.json", fit_to_share(folder).dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "2"});
+    ASSERT_EQ(ended.code, 0) << ended.out << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("share without speed"));
+    EXPECT_THAT(ended.err, HasSubstr("the discrepancy of share without speed is 0"));
+    const auto found = json::parse(run_program({"converge", "a.db", "--format", "json"}, folder.path()).out)[0];
+    EXPECT_EQ(found["waves"][0]["failed"], 0);
+    const double sd = std::sqrt(8. * 4 / (12. * 12 * 13));
+    EXPECT_NEAR(found["posterior"][0]["mean"].get<double>(), 8. / 12, sd);
+    EXPECT_GT(found["posterior"][0]["sd"].get<double>(), 0.8 * sd);
+    EXPECT_LT(found["posterior"][0]["sd"].get<double>(), 1.8 * sd) << "80 runs leave an error of their own";
+    EXPECT_EQ(found["targets"][0]["value"], 0.3);
+    EXPECT_EQ(found["targets"][0]["runs"], 8);
+    EXPECT_EQ(run_program({"report", "a.db"}, folder.path()).code, 0);
+    EXPECT_EQ(calibrate(folder, "a.db", {"-j", "1"}).code, 0) << "again: nothing is left to run";
+}
+
+// Imported lines with an empty cell are runs without a value; a table without the column says nothing of them.
+TEST(CalibrateCampaign, OldResultsWithoutAValueCountAsSuch) {
+    const Folder folder;
+    folder.write("c.json", fit_to_share(folder).dump());
+    std::string table = "gate,v,speed\n";
+    for (int k = 0; k < 40; ++k) table += "0." + std::to_string(101 + 2 * k) + ",0.9,\n";
+    folder.write("old.csv", table);
+    const std::vector<std::string> words = {"import", "old.csv", "c.json", "a.db", "--partial"};
+    const auto imported = run_program(words, folder.path());
+    ASSERT_EQ(imported.code, 0) << imported.err;
+    ASSERT_EQ(calibrate(folder, "a.db", {"-j", "2", "--quiet"}).code, 0);
+    EXPECT_THAT(run_program({"converge", "a.db"}, folder.path()).out,
+                HasSubstr("40 settings that were computed elsewhere are in the models"));
+    folder.write("old.csv", "gate,v\n0.3,0.9\n");
+    const auto refused = run_program({"import", "old.csv", "c.json", "b.db", "--partial"}, folder.path());
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("no column for 'speed', whose missing values the calibration counts"));
+}
+
+TEST(CalibrateCampaign, RefusesAWrongShareInOneSentence) {
+    const Folder folder;
+    const auto asked = fit_to_share(folder);
+    const auto with = [&](const json& without, const json& more = json::object()) {
+        auto changed = asked;
+        changed["calibration"]["targets"][0]["without_value"] = without;
+        changed["calibration"].merge_patch(more);
+        return refusal(folder, changed);
+    };
+    const std::string place = "$.calibration.targets[0].without_value";
+    EXPECT_THAT(with({{"count", 11}, {"of", 10}, {"discrepancy", 0}}),
+                HasSubstr(place + ".count: got 11; must be at most the number of measured runs, 10"));
+    EXPECT_THAT(with({{"count", 1.5}, {"of", 10}, {"discrepancy", 0}}), HasSubstr(place + ".count"));
+    EXPECT_THAT(with({{"count", 0}, {"of", 0}, {"discrepancy", 0}}), HasSubstr(place + ".of"));
+    EXPECT_THAT(with({{"count", 3}, {"of", 10}, {"discrepancy", 0.5}}), HasSubstr(place + ".discrepancy"));
+    EXPECT_THAT(with({{"count", 3}, {"of", 10}}), HasSubstr("'discrepancy' is missing"));
+    EXPECT_THAT(with(3), HasSubstr(place));
+    EXPECT_THAT(with({{"count", 3}, {"of", 10}, {"discrepancy", 0}}, {{"discrepancy", {{"speed", 1}}}}),
+                HasSubstr("no target measures a value of this observable"));
+    auto both = asked;
+    both["calibration"]["targets"][0]["value"] = 0.5;
+    EXPECT_THAT(refusal(folder, both), HasSubstr("$.calibration.targets[0].value: got 0.5; has no place beside"));
+    auto twice = asked;
+    twice["calibration"]["targets"].push_back(twice["calibration"]["targets"][0]);
+    EXPECT_THAT(refusal(folder, twice), HasSubstr("is a target twice under the same condition"));
+}
+
 TEST(CalibrateCampaign, WithoutFreshRunsNothingIsCalibrated) {
     const Folder folder;
     auto asked = failing_fit(folder, R"(
@@ -347,7 +433,7 @@ TEST(CalibrateCampaign, RefusesInOneSentence) {
     EXPECT_THAT(refusal(folder, asked), HasSubstr("'y' is missing: how far the simulation itself may be"));
     asked = config();
     asked["calibration"]["discrepancy"]["z"] = 1;
-    EXPECT_THAT(refusal(folder, asked), HasSubstr("no target measures this observable"));
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("no target measures a value of this observable"));
     asked = config();
     asked["calibration"]["targets"][1]["inputs"]["x3"] = 0.5;
     EXPECT_THAT(refusal(folder, asked), HasSubstr("is a target twice under the same condition"));

@@ -126,7 +126,7 @@ TEST_F(Drum, WhereTheSystemGivesNoMoreThreadsACaseIsComputedAllTheSame) {
     EXPECT_EQ(json::parse(limited.out).at("scalars"), json::parse(free.out).at("scalars"));
 }
 
-// Spheres glued onto a wide base: a terabyte.
+// Spheres glued onto a wide base: more than a process may have here.
 TEST_F(Drum, WhatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
     const json config = {{"campaign", "wide"},
                          {"scene", "powder_spreading"},
@@ -134,8 +134,8 @@ TEST_F(Drum, WhatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
                          {"fixed",
                           {{"diameter", 1e-6},
                            {"gap", 1e-5},
-                           {"travel", 1.0},
-                           {"width", 1000},
+                           {"travel", 0.002},
+                           {"width", 300},
                            {"layer_area", 1e-9},
                            {"blade_thickness", 1e-4},
                            {"base", "rough"}}},
@@ -144,7 +144,10 @@ TEST_F(Drum, WhatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
     for (const auto& command : {std::vector<std::string>{"plan", "wide.json"},
                                 {"solve", "wide.json"},
                                 {"run", "wide.json", "--db", "wide.db", "--quiet"}}) {
-        const auto refused = run_program(command, folder.path());
+        std::vector<std::string> argv = {"/bin/sh", "-c", "ulimit -v 900000; exec \"$@\"", "sh"};
+        const auto words = program_command(command);
+        argv.insert(argv.end(), words.begin(), words.end());
+        const auto refused = Process(argv, folder.path()).wait();
         EXPECT_EQ(refused.code, 2) << command.front();
         EXPECT_THAT(refused.err, HasSubstr("GB of memory, and this machine gives a process")) << command.front();
     }

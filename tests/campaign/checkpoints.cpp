@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -20,12 +21,17 @@ const char* config = R"({
   "execution": {"launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0.1", "sh"]}
 })";
 
-/// Whole files; what a killed process left half written beside them is swept later.
+/// Whole files but the definition of the machine, which its workers read; what a killed process left half written
+/// beside them is swept later.
 std::size_t files_in(const std::filesystem::path& folder) {
     std::size_t count = 0;
     std::error_code absent;
     for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
-        count += entry.path().extension() == ".artefact";
+        if (entry.path().extension() != ".artefact") continue;
+        std::ifstream file(entry.path(), std::ios::binary);
+        std::string head(200, '\0');
+        file.read(head.data(), static_cast<std::streamsize>(head.size()));
+        count += head.find("definition") == std::string::npos;
     }
     return count;
 }

@@ -53,6 +53,18 @@ TEST_F(FirstOutput, OfSolveFitsAScreenAndLeadsOn) {
     EXPECT_GT(std::ranges::count(all, '\n'), 2 * screen);
 }
 
+// The rate of a screen with too small holes was 0, and only plan and run warned.
+TEST_F(FirstOutput, OfSolveWarnsAsPlanDoes) {
+    folder.write("m.json", R"({"name": "falling", "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}},
+      "parameters": {"diameter": {"unit": "mm", "default": 3, "bounds": [1, 5]}},
+      "species": {"bead": {"diameter": "diameter"}}, "walls": {"floor": {"plane": {"normal": [0, 0, 1]}}},
+      "fill": [{"species": "bead", "spheres": [{"at": [0, 0, "3 mm"]}]}],
+      "phases": [{"name": "fall", "for": "1 ms"}], "measure": {"top": {"height": {}, "as": "last"}},
+      "checks": [{"when": "diameter > 0.002", "warn": "large", "that": "{1000*diameter} mm does not pass"}]})");
+    EXPECT_EQ(run({"solve", "m.json"}).err, "warning: large: 3 mm does not pass\n");
+    EXPECT_EQ(run({"solve", "m.json", "--set", "diameter=1.5"}).err, "");
+}
+
 TEST_F(FirstOutput, OfSolveOfAMachineFitsAScreen) {
     const auto text = run({"solve", "hopper", "--set", "particles=200"}).out;
     EXPECT_LE(std::ranges::count(text, '\n'), screen) << text;

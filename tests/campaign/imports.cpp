@@ -181,6 +181,49 @@ TEST_F(Imports, InformACalibration) {
     EXPECT_THAT(late.err, HasSubstr("has begun"));
 }
 
+/// A calibration with two experiments.
+json two_experiments() {
+    return json::parse(R"({"campaign": "k",
+      "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+      "fixed": {"response": "spreading_a", "x4": 0.5},
+      "calibration": {"experiments": {"slow": {"scene": "rehearsal", "fixed": {"x3": 0.5}},
+                                      "fast": {"scene": "rehearsal", "fixed": {"x3": 0.95}}},
+                      "targets": [{"of": "slow", "observable": "y", "value": 0.2370, "error": 0.003},
+                                  {"of": "fast", "observable": "y", "value": 0.4949, "error": 0.003}],
+                      "discrepancy": {"slow": {"y": 0.001}, "fast": {"y": 0.001}},
+                      "waves": 1, "points_per_wave": 24, "checks": 4}})");
+}
+
+TEST_F(Imports, InformTheExperimentsOfACalibration) {
+    folder.write("k.json", two_experiments().dump());
+    folder.write("slow.csv", "x1,x2,y\n0.31,0.61,0.238\n0.22,0.48,0.199\n");
+    folder.write("fast.csv", "x1,x2,y\n0.31,0.61,0.496\n");
+    for (const auto* unnamed : {"", "heap"}) {
+        std::vector<std::string> words = {"import", "slow.csv", "k.json", "k.db"};
+        if (*unnamed != 0) words.insert(words.end(), {"--experiment", unnamed});
+        const auto refused = program(words);
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_THAT(refused.err, HasSubstr("must be one of fast, slow: lines belong to one of its experiments"));
+    }
+    const auto slow = program({"import", "slow.csv", "k.json", "--experiment", "slow"});
+    ASSERT_EQ(slow.code, 0) << slow.err;
+    EXPECT_THAT(slow.out, HasSubstr("2 cases imported into 'k_slow'"));
+    ASSERT_EQ(program({"import", "fast.csv", "k.json", "k.db", "--experiment", "fast"}).code, 0);
+    const auto ended = program({"calibrate", "k.json", "--db", "k.db", "-j", "2"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(program({"converge", "k.db"}).out,
+                HasSubstr("3 settings that were computed elsewhere are in the models"));
+    EXPECT_EQ(program({"calibrate", "k.json", "--db", "k.db", "-j", "1"}).code, 0) << "again: nothing is left to run";
+    EXPECT_EQ(program({"verify", "k.db"}).code, 0);
+    folder.write("late.csv", "x1,x2,y\n0.5,0.5,0.3\n");
+    const auto late = program({"import", "late.csv", "k.json", "k.db", "--experiment", "fast"});
+    EXPECT_EQ(late.code, 2);
+    EXPECT_THAT(late.err, HasSubstr("has begun"));
+    const auto needless = program({"import", "slow.csv", "c.json", "p.db", "--experiment", "slow"});
+    EXPECT_EQ(needless.code, 2);
+    EXPECT_THAT(needless.err, HasSubstr("no calibration with experiments; leave the option out"));
+}
+
 /// A wrong file and the sentence that refuses it.
 struct WrongFile {
     std::string table, sentence;

@@ -1,6 +1,7 @@
 // Machines through the real program: swept, killed, resumed, replayed from the database alone, verified, shown.
 #include "stats/random.hpp"
 #include "tests/support/machines.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
@@ -374,6 +375,26 @@ TEST(MachineCampaigns, AnImpossibleCaseIsRejected) {
     EXPECT_THAT(rows[1]["message"].get<std::string>(), HasSubstr("$.let.gap"));
     EXPECT_EQ(rows[2]["outcome"], "rejected");
     EXPECT_THAT(rows[2]["message"].get<std::string>(), HasSubstr("of 4000 particles fit"));
+}
+
+// As `shape` says of the same file.
+TEST(MachineCampaigns, APlanStatesHowSpheresCoverAShape) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "c", "scene": "stones", "fixed": {"spheres": 12},
+                               "factors": [{"name": "friction", "between": [0.1, 0.5]}],
+                               "design": {"kind": "halton", "points": 2}})");
+    const auto planned = run_program({"plan", "c.json", "--format", "json"}, folder.path());
+    const auto grain = json::parse(planned.out).at("grains").at(0);
+    const auto asked = run_program(
+        {"shape", source("configs/machines/stone.stl"), "--spheres", "12", "-o", "s.csv", "--format", "json"},
+        folder.path());
+    std::map<std::string, double> fact;
+    for (const auto& row : json::parse(asked.out)) fact[row["quantity"]] = row["value"];
+    EXPECT_EQ(grain["grain"], "stone");
+    EXPECT_EQ(grain["spheres"], fact.at("spheres"));
+    EXPECT_NEAR(grain["shared volume"], fact.at("shared volume divided by the volume"), 1e-12);
+    EXPECT_NEAR(grain["smallest sphere"], fact.at("smallest sphere divided by this diameter"), 1e-12);
+    EXPECT_NEAR(grain["cost"], fact.at("cost of a grain divided by a sphere's, about"), 1e-9);
 }
 
 }  // namespace grainsweep::tests::machine_campaigns_test

@@ -116,7 +116,7 @@ TEST_P(OldArchive, ItsAttemptsAreOfTheMachineThatRanThem) {
     EXPECT_EQ(query("SELECT count(*) AS n FROM attempt WHERE computer_id IS NULL")[0]["n"], 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Released, OldArchive, testing::Range(1, 11),
+INSTANTIATE_TEST_SUITE_P(Released, OldArchive, testing::Range(1, 12),
                          [](const auto& one) { return "Schema" + std::to_string(one.param); });
 
 // Heap, hopper and drum were scenes before they became machines, whose cases have other ids.

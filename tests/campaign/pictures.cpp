@@ -166,7 +166,7 @@ TEST(Pictures, AMachineIsDrawnWhoseFillingDoesNotFit) {
     EXPECT_EQ(full.code, 0) << full.err;
     EXPECT_NE(full.err.find("grainsweep: full: drawn without particles: ball: "), std::string::npos) << full.err;
     EXPECT_NE(full.err.find("of 1000 particles fit into the region"), std::string::npos) << full.err;
-    EXPECT_NE(full.out.find("with 0 particles"), std::string::npos) << full.out;
+    EXPECT_NE(full.out.find("with 0 spheres"), std::string::npos) << full.out;
     EXPECT_TRUE(std::filesystem::exists(folder / "full.html"));
 }
 

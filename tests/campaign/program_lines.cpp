@@ -88,6 +88,41 @@ TEST(ProgramLines, EveryFailureIsOneClearOutcome) {
                "rejected: it replied to case \"other\", which was not asked");
 }
 
+/// A second line would be taken for the reply to the next question.
+TEST(ProgramLines, TwoLinesForOneQuestionAreNoAnswers) {
+    const std::string nameless = "    print(json.dumps({'observables': {'y': 2 * x}}))\n    sys.stdout.flush()\n";
+    for (const std::string between : {"", "    time.sleep(0.01)\n"}) {
+        const Folder folder;
+        auto campaign = lines_campaign(6);
+        campaign["limits"] = {{"attempts", 1}};
+        (void)run_script(folder, replying("", nameless + between + nameless), campaign);
+        EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM p WHERE outcome = 'completed'")[0]["n"], 0);
+        expect_has(rows_of(folder, "SELECT message FROM attempt LIMIT 1")[0]["message"].get<std::string>(),
+                   "the program wrote a line that was not asked for: {");
+    }
+    const Folder folder;
+    auto campaign = lines_campaign(9);
+    campaign["limits"] = {{"attempts", 1}};
+    const std::string later =
+        "    n = globals().get('n', 0) + 1\n"
+        "    print(json.dumps({'observables': {'y': 2 * x}}) + ('\\n{}' if n == 3 else ''))\n    sys.stdout.flush()\n";
+    (void)run_script(folder, replying("", later), campaign, {"-j", "1"});
+    const auto said = rows_of(folder, "SELECT message FROM attempt WHERE outcome <> 'completed' LIMIT 1");
+    expect_has(said.dump(), "its 3 replies before named no");
+}
+
+TEST(ProgramLines, AnOptionalObservableMayBeAbsent) {
+    const Folder folder;
+    auto campaign = lines_campaign(8);
+    campaign["program"]["observables"]["y"]["optional"] = true;
+    const std::string some =
+        "    print(json.dumps({'observables': {'y': x} if x > 0.6 else {'y': None} if x > 0.3 else {}}))";
+    EXPECT_EQ(run_script(folder, replying("", some), campaign).code, 0);
+    EXPECT_EQ(rows_of(folder, "SELECT count(*) AS n FROM p WHERE (y IS NULL) = (x <= 0.6)")[0]["n"], 8);
+    const auto id = rows_of(folder, "SELECT case_id FROM p WHERE y IS NULL LIMIT 1")[0]["case_id"].get<std::string>();
+    EXPECT_EQ(run_program({"replay", "p.db", id}, folder.path()).code, 0);
+}
+
 TEST(ProgramLines, OneThatEndsNowAndThenIsStartedAnew) {
     const Folder folder;
     const auto script = replying("n = 0", sound + "\n    n += 1\n    if n == 7: sys.stdout.flush(); sys.exit(0)");

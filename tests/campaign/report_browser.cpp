@@ -58,6 +58,9 @@ const drawn = (canvas) => {
   for (let i = 3; i < data.length; i += 4) ink += data[i] > 0;
   return ink;
 };
+// Painted figures: label, shapes and texts of each.
+const drawings = () => [...document.querySelectorAll("figure .drawing")].map((one) => [one.getAttribute("aria-label"),
+  one.querySelectorAll("svg path, svg circle").length, [...one.querySelectorAll("svg text")].map((text) => text.textContent)]);
 const answer = (seen) => {
   seen.complaints = complaints;
   seen.intruder = window.intruder ?? "";
@@ -88,7 +91,9 @@ constexpr std::string_view reader = R"(<script>
   };
   const rows = () => all(".rows tr[data-row]");
   try {
+    await until(() => document.querySelector("figure"));
     for (const canvas of all("figure canvas")) await chartOf(canvas);
+    seen.drawings = drawings();
     seen.titles = all("section h2").map((one) => one.textContent);
     seen.figures = all("figure canvas").map((canvas) => [canvas.getAttribute("aria-label"), drawn(canvas)]);
     seen.listed = rows().length;
@@ -131,7 +136,7 @@ constexpr std::string_view reader = R"(<script>
     choose(other, seen.others[seen.others.length - 1]);
     await until(() => document.querySelector(".overlaid"));
     seen.overlaid = document.querySelector(".overlaid").textContent;
-    seen.lines = (await chartOf(document.querySelector("#effects canvas"))).data.datasets.length;
+    seen.effects = all("#effects figure").map((one) => [...one.querySelectorAll(".drawing")].map((drawing) => drawing.getAttribute("aria-label")));
     choose(document.getElementById("campaign"), seen.others[1]);
     for (const canvas of all("figure canvas")) await chartOf(canvas);
     seen.second = document.querySelector("h1").textContent;
@@ -145,12 +150,11 @@ constexpr std::string_view reader = R"(<script>
 /// The same for the page of a process window: its figures and the numbers under its heads.
 constexpr std::string_view window_reader = R"(<script>
 (async () => {
-  const seen = { figures: [] };
+  const seen = {};
   try {
-    for (const canvas of document.querySelectorAll("figure canvas")) {
-      await chartOf(canvas);
-      seen.figures.push([canvas.getAttribute("aria-label"), drawn(canvas)]);
-    }
+    await until(() => document.querySelector("figure"));
+    seen.drawings = drawings();
+    seen.library = "Chart" in window;
     seen.titles = [...document.querySelectorAll("section h2")].map((one) => one.textContent);
     seen.set = document.querySelector("#setting table").innerText;
   } catch (error) {
@@ -210,6 +214,14 @@ void expect_quiet(const Json& seen) {
     EXPECT_EQ(seen.value("intruder", "no answer"), "") << "a script ran that is not the page's";
 }
 
+/// Every painted figure has marks and the labels of two axes.
+void expect_drawn(const Json& drawings) {
+    for (const auto& one : drawings) {
+        EXPECT_GT(one[1], 2) << one[0];
+        EXPECT_GT(one[2].size(), 4u) << one[0];
+    }
+}
+
 struct ReportInABrowser : ::testing::Test {
     Folder folder;
 
@@ -239,9 +251,10 @@ TEST_F(ReportInABrowser, DrawsAProcessWindow) {
     expect_quiet(seen);
     if (seen.contains("failed")) return;
     // Two maps; response and probability against each of three factors.
-    EXPECT_EQ(seen["figures"].size(), 8u);
-    for (const auto& [title, ink] : seen["figures"].get<std::vector<std::pair<std::string, int>>>())
-        EXPECT_GT(ink, 500) << title;
+    EXPECT_EQ(seen["drawings"].size(), 8u);
+    expect_drawn(seen["drawings"]);
+    EXPECT_GT(seen["drawings"][0][1], 1681) << "41 x 41 cells";
+    EXPECT_FALSE(seen["library"].get<bool>()) << "nothing is drawn by a script";
     EXPECT_EQ(seen["titles"], Json({"Setting", "Process window", "Along each factor", "To run next", "Basis"}));
     EXPECT_NE(seen["set"].get<std::string>().find("x1"), std::string::npos);
 }
@@ -259,9 +272,12 @@ TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
     if (seen.contains("failed")) return;
     for (const auto& [title, ink] : seen["figures"].get<std::vector<std::pair<std::string, int>>>())
         EXPECT_GT(ink, 500) << title;
-    // A distribution, five moments, three effects, the shares, the cases, the map, three pictures against a factor; of
-    // the response model three curves and two maps.
-    EXPECT_EQ(seen["figures"].size(), 20u);
+    EXPECT_EQ(seen["figures"].size(), 5u)
+        << "in which readers act: the cases, the map, three pictures against a factor";
+    // A distribution, five moments, three effects, the shares, the parts of the variance; of the response model three
+    // curves and two maps.
+    EXPECT_EQ(seen["drawings"].size(), 16u);
+    expect_drawn(seen["drawings"]);
     EXPECT_LT(seen["listed"], 60);  // of 320: the rows in view only
 
     const std::string row_1 = query("SELECT case_id FROM first ORDER BY point, replicate LIMIT 1 OFFSET 1");
@@ -279,18 +295,18 @@ TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
     EXPECT_NEAR(seen["lowest"].get<double>(), std::stod(query("SELECT min(x1) FROM first")), 1e-5);
     EXPECT_NEAR(seen["highest"].get<double>(), std::stod(query("SELECT max(x1) FROM first")), 1e-5);
 
-    ASSERT_EQ(seen["svg"].size(), 20u);
+    ASSERT_EQ(seen["svg"].size(), 21u);
     for (const auto& picture : seen["svg"]) {
         EXPECT_TRUE(picture[0].get<bool>());
-        EXPECT_GT(picture[1], 10);
+        EXPECT_GT(picture[1], 2);
         EXPECT_GT(picture[2], 4);
     }
-    EXPECT_EQ(seen["png"], 20);
-    EXPECT_EQ(seen["saved"].size(), 40u);
+    EXPECT_EQ(seen["png"], 21);
+    EXPECT_EQ(seen["saved"].size(), 42u);
 
     EXPECT_EQ(seen["others"], Json({"nothing", "second"}));
-    EXPECT_EQ(seen["overlaid"], "Blue: first; orange: second");
-    EXPECT_EQ(seen["lines"], 2);
+    EXPECT_EQ(seen["overlaid"], "Blue: first; orange: second. Painted figures stand one below the other.");
+    EXPECT_EQ(seen["effects"], Json({{"x1, first", "x1, second"}, {"x2"}, {"response"}}));
     EXPECT_EQ(seen["second"], "second");
 }
 
@@ -308,7 +324,8 @@ TEST_F(ReportInABrowser, ShowsCurvesAndTheCampaignsOfAnotherDatabase) {
     EXPECT_GT(seen["widest"], 3);
     EXPECT_EQ(seen["away"], 5);
     EXPECT_EQ(seen["others"], Json({"nothing", "plain (c.db)"}));
-    EXPECT_EQ(seen["overlaid"], "Blue: curves (other.db); orange: plain (c.db)");
+    EXPECT_EQ(seen["overlaid"],
+              "Blue: curves (other.db); orange: plain (c.db). Painted figures stand one below the other.");
     EXPECT_EQ(seen["second"], "plain");
 }
 

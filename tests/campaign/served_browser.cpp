@@ -91,7 +91,12 @@ TEST_F(ServedInABrowser, FitsAPhoneAndTheDark) {
     EXPECT_LE(page.value(wide), 0) << "nothing to scroll sideways";
     const auto ground = [&] { return page.value("getComputedStyle(document.body).backgroundColor"); };
     EXPECT_EQ(ground(), "rgb(18, 22, 26)");
+    // Painted figures, too.
+    ASSERT_TRUE(page.until("document.querySelector('.drawing text')"));
+    const auto ink = "getComputedStyle(document.querySelector('.drawing text')).fill";
+    EXPECT_EQ(page.value(ink), "rgb(230, 234, 238)");
     page.show({.width = 1600, .height = 1000, .dark = false});
+    EXPECT_TRUE(page.until(ink + std::string(" === 'rgb(0, 0, 0)'")));
     EXPECT_TRUE(page.until("getComputedStyle(document.body).backgroundColor === 'rgb(245, 246, 248)'"));
     EXPECT_LE(page.value(wide), 0);
     page.value("[...document.querySelectorAll('#sql button')].find((one) => one.textContent === 'Run').click()");

@@ -88,8 +88,7 @@ TEST_F(StrangersDatabase, AnEmptyCommandIsRefused) {
 
 TEST_F(StrangersDatabase, ReplayNamesTheCommandThatItRuns) {
     craft([](json&) {});
-    EXPECT_THAT(run({"replay", "p.db", case_id}).err,
-                HasSubstr("runs the stored command of this case: sh p.sh"));
+    EXPECT_THAT(run({"replay", "p.db", case_id}).err, HasSubstr("runs the stored command of this case: sh p.sh"));
     EXPECT_THAT(run({"replay", "--help"}).out, HasSubstr("runs the stored command"));
 }
 

@@ -58,6 +58,14 @@ function differing(a, b) {
   for (let i = 0; i < a.length; i += 4) count += a[i] !== b[i] || a[i + 1] !== b[i + 1] || a[i + 2] !== b[i + 2] ? 1 : 0;
   return count;
 }
+// Returns a function that tells how many lines of forces were drawn since.
+function gl_draws({ painter: { gl } }) {
+  let most = 0;
+  const draw = gl.drawArraysInstanced.bind(gl);
+  let calls = 0;
+  gl.drawArraysInstanced = (mode, first, count, instances) => { if (++calls > 1) most = instances; draw(mode, first, count, instances); };
+  return () => { gl.drawArraysInstanced = draw; return most; };
+}
 function places({ places, spheres, header }, frame) {
   const mean = [0, 0, 0];
   let count = 0;
@@ -93,6 +101,13 @@ function tested(player) {
     player.painter.show.walls = false;
     told.walls = differing(before, pixels(player, middle));
     player.painter.show.walls = true;
+  }
+  if (film.forces) {
+    const without = pixels(player, last), { show } = player.painter, draw = gl_draws(player);
+    show.forces = true;
+    told.forces = { differing: differing(without, pixels(player, last)), contacts: film.forces.first.length, drawn: draw() };
+    show.forces = false;
+    told.forces.off = differing(without, pixels(player, last));
   }
   told.slices = film.header.slices.map((slice, k) => {
     player.chooseSlice(-1);
@@ -136,9 +151,11 @@ std::string inside(const std::string& element) {
 }
 
 /// Solves the case with --watch and tests the page.
-json watched(const char* config, const char* frames, const Folder& folder) {
+json watched(const char* config, const char* frames, const Folder& folder, const std::vector<std::string>& more = {}) {
     folder.write("c.json", config);
-    const auto ended = run_program({"solve", "c.json", "--watch", "case.html", "--frames", frames}, folder.path());
+    std::vector<std::string> words = {"solve", "c.json", "--watch", "case.html", "--frames", frames};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto ended = run_program(words, folder.path());
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_NE(ended.out.find("case.html ("), std::string::npos) << ended.out;  // it says what it wrote
     std::string page = contents(folder / "case.html");
@@ -186,6 +203,17 @@ TEST(Watch, ABedIsPlayedWithItsBlade) {
     EXPECT_EQ(told.at("wrong"), true);
     EXPECT_EQ(told.at("reset"), 0);
     EXPECT_LT(told.at("last").at("mean")[2], told.at("first").at("mean")[2]);  // the powder settles
+}
+
+TEST(Watch, ForcesAreDrawnWhereTheyAreRequested) {
+    const Folder folder;
+    EXPECT_FALSE(watched(bed, "4", folder).contains("forces"));
+    const json forces = watched(bed, "4", folder, {"--forces"}).at("forces");
+    EXPECT_GT(forces.at("contacts"), 10) << forces;
+    EXPECT_GT(forces.at("drawn"), 5) << forces;
+    EXPECT_GT(forces.at("differing"), 100) << forces;
+    EXPECT_EQ(forces.at("off"), 0) << forces;
+    EXPECT_NE(run_program({"solve", "c.json", "--forces"}, folder.path()).err.find("needs --watch"), std::string::npos);
 }
 
 TEST(Watch, AFlowIsSliced) {
@@ -280,10 +308,10 @@ TEST(Watch, FilmsOfAReportPlayBesideTheirCase) {
     EXPECT_NE(made.err.find("film 3 of 3: largest mfr"), std::string::npos) << made.err;
     EXPECT_NE(made.err.find("3 films: "), std::string::npos) << made.err;
     EXPECT_EQ(plain.err, "");
-    EXPECT_EQ(contents(folder / "plain.html").find("watch-canvas"),
-              std::string::npos);  // the player only where it is needed
     const std::string page = contents(folder / "r.html");
     const std::regex film("id=\"watch-([0-9a-f]{32})\" data-film data-campaign=\"b\"");
+    const std::string unwatched = contents(folder / "plain.html");
+    EXPECT_FALSE(std::regex_search(unwatched, film)) << "only the machine before it runs";
     std::vector<std::string> ids;
     for (std::sregex_iterator found(page.begin(), page.end(), film), end; found != end; ++found)
         ids.push_back((*found)[1]);
@@ -302,7 +330,11 @@ TEST(Watch, FilmsOfAReportPlayBesideTheirCase) {
     for (const auto& row : rows)
         if (std::ranges::find(ids, row.at("case_id").get<std::string>()) == ids.end()) without = row.at("case_id");
     const Browsed other = browse(folder / "r.html", "#case=" + without, folder.path());
-    EXPECT_EQ(other.document.find("<canvas class=\"watch-canvas\""), std::string::npos);
+    const std::size_t beside = other.document.find("id=\"case-panel\"");
+    ASSERT_NE(beside, std::string::npos);
+    EXPECT_EQ(other.document.substr(beside, other.document.find("</aside>", beside) - beside)
+                  .find("<canvas class=\"watch-canvas\""),
+              std::string::npos);
     EXPECT_THAT(other.console, testing::IsEmpty());
 }
 

@@ -49,12 +49,8 @@ public:
         EXPECT_TRUE(dump("local.db") == dump("hosted.db"));
         EXPECT_GT(dump("local.db").size(), 1000U);
     }
-    [[nodiscard]] std::int64_t ask(const std::string& sql) const {
-        return number_in(folder_ / "hosted.db", sql);
-    }
-    void await(Process& run, std::int64_t cases) const {
-        await_settled(run, folder_ / "hosted.db", cases);
-    }
+    [[nodiscard]] std::int64_t ask(const std::string& sql) const { return number_in(folder_ / "hosted.db", sql); }
+    void await(Process& run, std::int64_t cases) const { await_settled(run, folder_ / "hosted.db", cases); }
     void expect_no_orphans() const {
         const std::string mark = (folder_ / "hosted.artefacts").string();
         for (int tries = 0; tries < 400 && !processes_with(mark).empty(); ++tries)

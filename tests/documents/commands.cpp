@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 class Clone {
 public:
     Clone() {
-        for (const char* name : {"configs", "bootstrap.sh", "packaging"}) fs::create_symlink(source(name), folder_ / name);
+        for (const char* name : {"configs", "bootstrap.sh", "packaging"})
+            fs::create_symlink(source(name), folder_ / name);
         fs::create_directory(folder_ / "build");
         fs::create_symlink(executable(), folder_ / "build/grainsweep");
         fs::create_directory(folder_ / "absent");
@@ -36,7 +37,8 @@ public:
         }
     }
     [[nodiscard]] Ended bash(const std::string& script) const {
-        const std::string whole = "export PATH=\"$PWD/build:$PATH:$PWD/absent\" PYTHONPATH=\"$PWD/packaging/python\"\n" + script;
+        const std::string whole =
+            "export PATH=\"$PWD/build:$PATH:$PWD/absent\" PYTHONPATH=\"$PWD/packaging/python\"\n" + script;
         return Process({"/bin/bash", "-e", "-u", "-o", "pipefail", "-c", whole}, folder_.path()).wait();
     }
     [[nodiscard]] Ended grainsweep(const std::vector<std::string>& arguments) const {
@@ -265,8 +267,8 @@ TEST(Bootstrap, RunsACampaignAndWritesItsPage) {
 
 TEST(Options, InTheDocumentsExist) {
     // Of other programs, as the documents use them.
-    std::set<std::string> known = {"--gtest_filter", "--preset", "--build", "--target",
-                                   "--install",      "--prefix", "--part",  "--signal"};
+    std::set<std::string> known = {"--gtest_filter", "--preset", "--build",  "--target", "--install",
+                                   "--prefix",       "--part",   "--signal", "--mpi"};
     for (const auto& command : command_names())
         for (const auto& option : options_of(command)) known.insert(option);
     for (const auto& option : options_of("")) known.insert(option);

@@ -101,8 +101,9 @@ std::string parameters_table(const ordered_json& scene) {
 
 const std::set<std::string>& common_to_machines() {
     static const std::set<std::string> common = {
-        "particles_scale", "stiffness_scale", "time_step", "time_step_fraction", "precision", "particles", "lost",
-        "max_overlap",     "max_wall_overlap"};
+        "aspect_ratio",       "particles_scale", "stiffness_scale", "time_step",
+        "time_step_fraction", "precision",       "particles",       "lost",
+        "max_overlap",        "max_wall_overlap"};
     return common;
 }
 
@@ -118,11 +119,14 @@ std::string common_parameters() {
 /// What a machine declares itself, without what every machine has.
 ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
     const auto& declared = catalogue({"machines", name});
+    const auto& other = catalogue({"machines", "chute"})[part];
     ordered_json own = ordered_json::array();
     for (const auto& one : declared[part]) {
         const std::string what = one["name"];
-        if (!common_to_machines().contains(what) || (what == "particles" && part == "parameters"))
-            if (!what.ends_with("_error")) own.push_back(one);
+        const bool shared = common_to_machines().contains(what) && std::ranges::any_of(other, [&](const auto& theirs) {
+                                return theirs["name"] == one["name"] && theirs["meaning"] == one["meaning"];
+                            });
+        if (!shared && !what.ends_with("_error")) own.push_back(one);
     }
     ordered_json machine;
     machine[part] = own;
@@ -235,15 +239,17 @@ std::string powder_keys_table() {
 /// The keys of one object of the campaign file, as the JSON Schema tells them.
 std::string keys_table(const std::string& section) {
     const auto& schema = answer_in_json({"schema"});
-    const auto& object = section == "campaign" ? schema
-                         : section == "factor"
-                             ? schema["allOf"][0]["then"]["properties"]["factors"]["items"]["oneOf"][0]
-                         : section == "target" ? schema["properties"]["calibration"]["properties"]["targets"]["items"]
-                         : section == "experiment"
-                             ? schema["properties"]["calibration"]["properties"]["experiments"]["additionalProperties"]
-                         : section == "accuracy" ? schema["properties"]["accuracy"]["oneOf"][1]
-                         : section == "stop"     ? schema["properties"]["calibration"]["properties"]["stop"]
-                                                 : schema["properties"][section];
+    const auto& object =
+        section == "campaign" ? schema
+        : section == "factor" ? schema["allOf"][0]["then"]["properties"]["factors"]["items"]["oneOf"][0]
+        : section == "without_value"
+            ? schema["properties"]["calibration"]["properties"]["targets"]["items"]["properties"]["without_value"]
+        : section == "target" ? schema["properties"]["calibration"]["properties"]["targets"]["items"]
+        : section == "experiment"
+            ? schema["properties"]["calibration"]["properties"]["experiments"]["additionalProperties"]
+        : section == "accuracy" ? schema["properties"]["accuracy"]["oneOf"][1]
+        : section == "stop"     ? schema["properties"]["calibration"]["properties"]["stop"]
+                                : schema["properties"][section];
     std::string table = head({"key", "default", "meaning"});
     for (const auto& [name, key] : object["properties"].items()) {
         const bool required =

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <string>
@@ -35,6 +36,39 @@ TEST(MachineConveying, ABeltKeepsTheFedMass) {
     EXPECT_NEAR(seen.at("load") * 0.6 / 0.15, 1, 0.03);
     EXPECT_NEAR(seen.at("flux") / 0.15, 1, 0.03);
     EXPECT_NEAR(seen.at("slip"), 0, 0.005);
+}
+
+// Along the belt its ends do not move: a sphere that meets one rebounds from a wall at rest.
+TEST(MachineConveying, OnlyThePartOfAVelocityAlongTheSurfaceCounts) {
+    auto machine = nlohmann::json::parse(R"({
+      "name": "ends", "gravity": [0, 0, 0],
+      "materials": {"m": {"density": 2500, "youngs_modulus": 1e7}},
+      "contacts": {"restitution": 0.5},
+      "species": {"p": {"material": "m", "diameter": "5 mm"}},
+      "domain": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5]},
+      "walls": {"w": {"box": {"low": [-0.1, -0.1, 0], "high": [0.1, 0.1, 0.1], "open": ["+z"]},
+                      "motion": [{"convey": {"velocity": [0.5, 0, 0]}}]}},
+      "fill": [{"species": "p", "spheres": [{"at": [0.09, 0, 0.05], "velocity": [1, 0, 0]}]}],
+      "phases": [{"name": "s", "for": 0.03, "frames": 5}],
+      "measure": {"vx": {"velocity": {"along": [1, 0, 0]}, "as": "last"}, "work": {"wall_work": {"wall": "w"}, "as": "last"}}
+    })");
+    for (const char* precision : {"mixed", "double"}) {
+        const auto conveyed = answer_of(spec_of(machine, {{"precision", precision}})).scalars;
+        auto still = machine;
+        still["walls"]["w"].erase("motion");
+        const auto at_rest = answer_of(spec_of(still, {{"precision", precision}})).scalars;
+        EXPECT_NEAR(at_rest.at("vx"), -0.5, 0.05);
+        EXPECT_NEAR(conveyed.at("vx"), at_rest.at("vx"), 1e-6) << precision;
+        EXPECT_NEAR(conveyed.at("work"), 0, 1e-12) << precision;
+        // with friction, the floor carries it along, to two sevenths of its speed as it comes to roll
+        auto rough = machine;
+        rough["gravity"] = {0, 0, -9.81};
+        rough["contacts"]["friction"] = 0.5;
+        rough["fill"][0]["spheres"][0] = {{"at", {0, 0, 0.0025}}};
+        rough["phases"][0]["for"] = 0.1;
+        EXPECT_NEAR(answer_of(spec_of(rough, {{"precision", precision}})).scalars.at("vx"), 0.5 * 2 / 7, 0.003)
+            << precision;
+    }
 }
 
 TEST(MachineConveying, AVibratingTroughThrowsABedAsAPlasticMass) {

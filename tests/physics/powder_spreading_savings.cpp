@@ -1,6 +1,7 @@
 // What the spreading scene does not compute: a sweep beyond the wanted accuracy, a bed another case has settled. Each
 // against the plain path.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ using Changes = std::initializer_list<std::pair<const char*, Value>>;
 
 /// A layer of 60 large spheres and a short settling.
 Inputs small_case(Changes changes = {}) {
-    Inputs inputs = find_scene("powder_spreading")->defaults();
+    Inputs inputs = campaign::scene_named("powder_spreading")->defaults();
     const Changes small = {
         {"diameter", 0.003}, {"gap", 0.005}, {"width", 4.0}, {"layer_area", 1e-4}, {"settle_time", 0.05}};
     for (const auto& [name, value] : small) inputs[name] = value;
@@ -46,7 +47,7 @@ Inputs small_case(Changes changes = {}) {
 }
 
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) {
-    return find_scene("powder_spreading")->make(inputs, seed, artefacts);
+    return campaign::scene_named("powder_spreading")->make(inputs, seed, artefacts);
 }
 
 struct Answer {
@@ -124,7 +125,7 @@ TEST(WantedStandardError, AnswersWithinItsError) {
     constexpr int cases = 12;
     double sum = 0, mean = 0, squares = 0, stated = 0, saved = 0;
     for (std::uint64_t seed = 1; seed <= cases; ++seed) {
-        Inputs inputs = find_scene("powder_spreading")->defaults();
+        Inputs inputs = campaign::scene_named("powder_spreading")->defaults();
         inputs["diameter"] = 0.003;
         inputs["gap"] = 0.004 + 2e-4 * static_cast<double>(seed);
         const auto whole = ask(inputs, seed);

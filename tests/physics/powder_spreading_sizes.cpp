@@ -1,5 +1,6 @@
 // Powder of unequal spheres under the blade: what is drawn is what was asked, and equal spheres are a limit of it.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,11 +13,11 @@ namespace grainsweep::tests::powder_spreading_sizes_test {
 
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed) {
     static NoArtefacts none;
-    return find_scene("powder_spreading")->make(inputs, seed, none);
+    return campaign::scene_named("powder_spreading")->make(inputs, seed, none);
 }
 
 Inputs powder(const char* distribution, double spread = 0.2) {
-    Inputs inputs = find_scene("powder_spreading")->defaults();
+    Inputs inputs = campaign::scene_named("powder_spreading")->defaults();
     inputs["size_distribution"] = std::string(distribution);
     inputs["size_spread"] = spread;
     return inputs;

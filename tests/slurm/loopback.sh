@@ -3,7 +3,7 @@
 # run without Slurm.
 #   tests/slurm/loopback.sh GRAINSWEEP SCENARIO
 # SCENARIO: calm, host_killed, node_killed, spreading (a node killed under a real campaign), cancelled, requeued,
-# controller, walltime, array, mpi (a case is a program of MPI)
+# controller, walltime, array, mpi (a case is a program of MPI), mpi_nodes (and needs several nodes)
 # The cluster is made by `slurm-loopback` (start DIR, stop DIR, env DIR, kill-node DIR NODE, kill-ctld DIR, start-ctld
 # DIR), named by the environment variable SLURM_LOOPBACK or found on the search path. Exit code 77 where it, or Slurm
 # itself, is not installed.
@@ -241,6 +241,24 @@ JSON
     settled_in 180 "$job"
     [ "$(query "SELECT count(*) FROM c WHERE ranks = 2 AND abs(sum - 2 * x) < 1e-12")" = 24 ]
     [ "$(query "SELECT count(DISTINCT host) FROM attempt JOIN attempt_computer USING (computer_id)")" -ge 1 ]
+    expect_no_crash
+    ;;
+mpi_nodes)
+    # A case of six ranks on three nodes of two cores: srun starts them in the allocation, MPICH by PMI-2.
+    command -v mpicc.mpich >/dev/null || skip "there is no MPICH (mpicc.mpich)"
+    srun --mpi=list 2>&1 | grep -q pmi2 || skip "this Slurm has no PMI-2"
+    mpicc.mpich -o ranks "$sources/ranks.c"
+    cat >c.json <<JSON
+{"campaign": "c", "scene": "program",
+ "program": {"command": ["srun", "--mpi=pmi2", "-n", "{processes}", "./ranks", "{x}"], "files": ["ranks"], "processes": 6,
+  "parameters": {"x": {"unit": "1"}},
+  "observables": {"sum": {"from": {"output": "sum = (.*)"}}, "ranks": {"from": {"output": "ranks = (.*)"}},
+                  "nodes": {"from": {"output": "nodes = (.*)"}}}},
+ "factors": [{"name": "x", "between": [0, 1]}], "design": {"kind": "halton", "points": 12}, "execution": {"workers": 1}}
+JSON
+    job=$(in_three_nodes)
+    settled_in 180 "$job"
+    [ "$(query "SELECT count(*) FROM c WHERE ranks = 6 AND nodes = 3 AND abs(sum - 6 * x) < 1e-12")" = 12 ]
     expect_no_crash
     ;;
 array)

@@ -1,5 +1,7 @@
 // The main program is killed (SIGKILL) after the k-th thing it showed, for every k; the disk's quota ends in mid-write.
 // The next main program needs no unlocking, finds what was shown, and ends with the undisturbed text.
+#include "sweep/store/database.hpp"
+#include "tests/support/failing_disk.hpp"
 #include "tests/support/whole_campaign.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +10,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <utility>
 
 namespace grainsweep::tests::store_kill_test {
 
@@ -130,6 +134,58 @@ TEST(StoreKill, ReadersAndASecondWriter) {
     const int shown = child.next();  // and there it waits, in the midst of its campaign
     EXPECT_GE(completed_in(file), shown) << "a writer does not stop readers";
     EXPECT_THROW(store::Store(file, store::Store::Mode::create), SystemError) << "it has the lock";
+}
+
+/// Schema of the file, and its campaigns without the JSON of schema 12, or without its column.
+std::pair<std::int64_t, std::int64_t> schema_of(const std::filesystem::path& file) {
+    const store::Connection db(file, store::Connection::Access::read);
+    const auto number = [&](const char* sql) {
+        auto statement = db.prepare(sql);
+        return statement.step() ? statement.get<std::int64_t>(0) : -1;
+    };
+    const bool column = number("SELECT count(*) FROM pragma_table_info('campaign') WHERE name = 'resolved'") == 1;
+    return {number("PRAGMA user_version"),
+            number(column ? "SELECT count(*) FROM campaign WHERE resolved IS NULL" : "SELECT count(*) FROM campaign")};
+}
+
+// A run brings the file of an older program to the present schema. Killed at its k-th write, sync, truncation or
+// removal it leaves the old file or the new one, and both have the same results.
+TEST(StoreKill, AtEveryWriteOfAMigration) {
+    const WholeCampaign whole(24);
+    const Folder folder;
+    const auto made = folder / "made.db", file = folder / "a.db";
+    whole.run(made, [](std::size_t) {});
+    const auto present = schema_of(made);
+    const std::string expected = dump_of(store::Store(made, store::Store::Mode::read));
+    take_back_to_schema(1, made);
+    const auto old = schema_of(made);
+    ASSERT_NE(old, present);
+    int of_old = 0, of_new = 0;
+    for (bool killed = true; killed;) {
+        for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part);
+        std::filesystem::copy_file(made, file);
+        const pid_t process = fork();
+        if (process == 0) {
+            FailingDisk disk;
+            disk.fail_at(of_old + of_new + 1, FailingDisk::Fault::killed, false);
+            whole.run(file, [](std::size_t) {});
+            _exit(0);
+        }
+        int status = 0;
+        waitpid(process, &status, 0);
+        killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+        const auto left = schema_of(file);
+        ASSERT_TRUE(left == old || left == present) << left.first << ", " << left.second << " without JSON";
+        (left == old ? of_old : of_new) += killed ? 1 : 0;
+        ASSERT_EQ(complaints(file), "ok");
+        ASSERT_EQ(dump_of(store::Store(file, store::Store::Mode::read)), expected);
+        whole.run(file, [](std::size_t) {});
+        ASSERT_EQ(schema_of(file), present);
+        ASSERT_EQ(dump_of(store::Store(file, store::Store::Mode::read)), expected);
+    }
+    EXPECT_GE(of_old, 25);
+    EXPECT_GE(of_old + of_new, 50);
+    EXPECT_GE(of_new, 1);
 }
 
 TEST(StoreKill, TheQuotaEndsInMidWrite) {

@@ -80,6 +80,11 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
 
 void take_back_to_schema(int version, const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    db.execute(  // 12
+        "ALTER TABLE campaign DROP COLUMN resolved; DELETE FROM table_checksum WHERE name = 'campaign.resolved'; "
+        "PRAGMA "
+        "user_version = 11");
+    if (version == 11) return;
     db.execute("DROP TABLE attempt_import; DROP TABLE campaign_import; PRAGMA user_version = 10");  // 11
     if (version == 10) return;
     db.execute("DROP TABLE campaign_file; PRAGMA user_version = 9");  // 10

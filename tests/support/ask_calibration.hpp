@@ -26,9 +26,7 @@ inline designs::DesignRequest calibration_request(std::size_t dimensions,
     designs::DesignRequest request{
         .levels = std::vector<std::size_t>(dimensions, 0), .options = std::move(options), .seed = seed};
     for (std::size_t j = 0; j < dimensions; ++j) {
-        auto& factor = request.factors.emplace_back();
-        factor.name = "f" + std::to_string(j);
-        factor.value_at = [](double u) { return u; };
+        request.factors.push_back({"f" + std::to_string(j), designs::Between{0, 1}});
     }
     return request;
 }

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 
@@ -24,6 +25,7 @@ struct FailingDisk::State {
         ++count;
         const bool now = from_then_on ? count >= fail_at : count == fail_at;
         failed = failed || now;
+        if (now && fault == Fault::killed) (void)std::raise(SIGKILL);
         return now;
     }
 };

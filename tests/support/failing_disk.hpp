@@ -20,7 +20,8 @@ public:
     FailingDisk& operator=(const FailingDisk&) = delete;
     ~FailingDisk();
 
-    enum class Fault { input_output, full };
+    /// killed: the process is killed in place of the call.
+    enum class Fault { input_output, full, killed };
     enum class Calls {
         changes,  ///< write, sync, truncate, remove
         looks,    ///< open, read, lock, map shared memory, ask for a size or whether a file is there

@@ -1,4 +1,4 @@
-// Reads a film as its format is described (sweep/report/film_codec.hpp, film.hpp), independently of the player.
+// Reads a film as its format is described (sweep/report/packed_column.hpp, film.hpp), independently of the player.
 #pragma once
 
 #include <cstddef>

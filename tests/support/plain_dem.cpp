@@ -277,7 +277,7 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
         c.n = closest.normal;
     }
     c.n = pose.turn(c.n);
-    c.velocity = v_[i] - geometry::twist_at(wall.motions, t).at(x_[i] - distance * c.n);
+    c.velocity = v_[i] - geometry::twist_at(wall.motions, t).at(x_[i] - distance * c.n, c.n);
     c.overlap = ri - distance;
     if (c.overlap <= end_of_contact(m, ri, at_walls_that_last_.contains({i, w}), true)) {
         wall_history_.erase({i, w});

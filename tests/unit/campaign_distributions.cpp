@@ -2,13 +2,16 @@
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
 #include "sweep/campaign/stored_request.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/stored_both_ways.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -41,6 +44,21 @@ const std::string five = R"({"name": "x1", "normal": {"mean": "50 %", "sd": 0.12
     {"name": "x2", "lognormal": {"median": 0.2, "sigma": 0.25}}, {"name": "x3", "triangular": {"low": 0.1, "mode": 0.2, "high": 0.9}},
     {"name": "x4", "beta": {"low": 0, "high": 0.5, "a": 2, "b": 5}}, {"name": "x5", "uniform": {"low": 0.25, "high": "75 %"}})";
 
+// A standard deviation, a step or an error of 5 degC is one of 5 K.
+TEST(Distributions, DifferencesOfTemperaturesHaveNoOffset) {
+    const ParameterSpec kelvin{"t", "K", {}, 0.0, Interval{-1e9, 1e9}, {}},
+        celsius{"t", "degC", {}, 0.0, Interval{-1e9, 1e9}, {}};
+    const auto read_as = [](const char* text, const ParameterSpec& parameter, Reads reads) {
+        const nlohmann::json json = text;
+        return std::get<double>(read_value(Cursor(json, "$"), parameter, {}, reads));
+    };
+    EXPECT_NEAR(read_as("20 degC", kelvin, Reads::value), 293.15, 1e-9);
+    EXPECT_NEAR(read_as("5 degC", kelvin, Reads::difference), 5, 1e-9);
+    EXPECT_NEAR(read_as("5 K", celsius, Reads::difference), 5, 1e-9);
+    EXPECT_EQ(read_as("5 K", kelvin, Reads::difference), 5);
+    EXPECT_EQ(read_as("5", celsius, Reads::difference), 5);
+}
+
 TEST(Distributions, AreReadWithTheirUnits) {
     const auto factors = read(five).space.factors;
     ASSERT_EQ(factors.size(), 5U);
@@ -67,32 +85,25 @@ TEST(Distributions, AStatedLengthWithAUnitIsInMetres) {
         R"({"campaign": "c", "scene": "powder_spreading", "factors": [{"name": "diameter", "normal": {"mean": "34 um", "sd": "3 um"}}],
             "design": {"kind": "halton", "points": 8}})",
         ".");
-    EXPECT_THAT(identity_of(campaign).factors, testing::StartsWith("diameter normal 3.4e-05 3e-06 within "));
+    EXPECT_THAT(texts_of(identity_of(campaign)).factors, testing::StartsWith("diameter normal 3.4e-05 3e-06 within "));
 }
 
 TEST(Distributions, ComeBackFromTheArchiveAsTheyWereAsked) {
     const auto campaign = read(five);
     const auto identity = identity_of(campaign);
-    const auto stated = factors_of(identity);
-    ASSERT_EQ(stated.size(), 5U);
-    for (std::size_t j = 0; j < 4; ++j) {
-        ASSERT_TRUE(stated[j].distribution);
-        EXPECT_EQ(*stated[j].distribution, std::get<stats::Distribution>(campaign.space.factors[j].range));
-        EXPECT_TRUE(stated[j].continuous());
-    }
-    EXPECT_EQ(stated[4].between, (Between{0.25, 0.75, Scale::linear}));
-    EXPECT_EQ(factor_names(identity), (std::vector<std::string>{"x1", "x2", "x3", "x4", "x5"}));
-    const auto request = request_of(identity);
+    const auto stored = stored_both_ways(identity);
+    EXPECT_EQ(stored.factors, campaign.space.factors);
+    const auto request = request_of(stored);
     for (std::size_t j = 0; j < 5; ++j) {
-        EXPECT_EQ(request.factors[j].value_at(0.3), campaign.request.factors[j].value_at(0.3));
-        EXPECT_EQ(request.factors[j].endless, j < 2);
+        EXPECT_EQ(request.factors[j].number(0.3), campaign.request.factors[j].number(0.3));
+        EXPECT_EQ(request.factors[j].endless(), j < 2);
     }
 }
 
 TEST(Distributions, UniformIsTheSameCampaignAsBetween) {
     const auto between = read(R"({"name": "x1", "between": [0.25, 0.75]})");
     const auto uniform = read(R"({"name": "x1", "uniform": {"low": 0.25, "high": 0.75}})");
-    EXPECT_EQ(identity_of(uniform).factors, "x1 between 0.25 0.75 linear\n");
+    EXPECT_EQ(texts_of(identity_of(uniform)).factors, "x1 between 0.25 0.75 linear\n");
     EXPECT_EQ(unfold(uniform, {})[3].question.id, unfold(between, {})[3].question.id);
 }
 
@@ -182,21 +193,19 @@ TEST_F(Samples, FactorsOfOneFileTakeItsRows) {
 TEST_F(Samples, AColumnAloneGivesItsQuantilesAndMayHaveAnotherName) {
     const auto campaign =
         read(R"({"name": "x1", "sample": {"file": "measured.csv", "column": "friction"}})", folder.path());
-    EXPECT_EQ(campaign.request.factors[0].value_at(0), 0.28);
-    EXPECT_EQ(campaign.request.factors[0].value_at(0.5), 0.3);
-    EXPECT_EQ(campaign.request.factors[0].value_at(1), 0.31);
+    EXPECT_EQ(campaign.request.factors[0].number(0), 0.28);
+    EXPECT_EQ(campaign.request.factors[0].number(0.5), 0.3);
+    EXPECT_EQ(campaign.request.factors[0].number(1), 0.31);
 }
 
 TEST_F(Samples, TheArchiveKeepsThem) {
     const auto campaign =
         read(R"({"name": "x2", "sample": "posterior.csv"}, {"name": "x1", "sample": "posterior.csv"})", folder.path());
     const auto identity = identity_of(campaign);
-    const auto stated = factors_of(identity);
+    const auto again = stored_both_ways(identity).factors;
+    EXPECT_EQ(again, campaign.space.factors);
     const double u[] = {0.6, 0.2};
-    std::vector<Factor> again;
-    for (const auto& factor : stated) again.push_back({factor.name, *factor.distribution});
     for (std::size_t j = 0; j < 2; ++j) {
-        EXPECT_EQ(*stated[j].distribution, std::get<stats::Distribution>(campaign.space.factors[j].range));
         EXPECT_EQ(value_at(again, j, u), value_at(campaign.space.factors, j, u));
     }
     folder.write("posterior.csv", "x1,x2\n0.2,0.3\n0.5,0.6\n0.8,0.85\n0.9,0.9500001\n");

@@ -4,10 +4,12 @@
 
 #include "solver/particles/size_table.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "tests/support/powder_exports.hpp"
 
+#include <cmath>
 #include <map>
 #include <ostream>
 #include <sstream>
@@ -245,6 +247,53 @@ TEST(PowderExport, AsksForWhatItCannotKnow) {
     EXPECT_THAT(refusal("1,2,3\n2,3,4\n4,5,6\n"), HasSubstr("state it by --sizes"));
 }
 
+// Middles of classes whose counts fade to 0 were taken for lower edges, half a class too coarse, and no line doubted
+// it.
+TEST(PowderExport, DoubtsAnEdgeThatAFadingTailSuggests) {
+    const auto fading = campaign::import_sizes("CE diameter (um),Count\n10,3\n20,997\n40,998\n80,2\n160,0\n", {}).notes;
+    ASSERT_FALSE(fading.empty());
+    EXPECT_THAT(fading.back(), HasSubstr("the edge is a guess from shares that fade to 0; with --edge "));
+    EXPECT_THAT(fading.back(), HasSubstr("with --edge middle d50 is 28.28 um"));
+    const std::string classes = "Size (um),Volume In %\n10,0.5\n20,49.5\n40,49.5\n80,0.5\n160,";
+    for (const char* bare : {"\n", "0\n"}) {
+        const auto imported = campaign::import_sizes(classes + bare, {});
+        EXPECT_EQ(imported.csv, campaign::import_sizes(classes + "\n", {.edge = "lower"}).csv);
+        EXPECT_EQ(imported.notes.empty(), std::string(bare) == "\n");
+    }
+}
+
+// Two samples of 25 sizes were within a hundredth of the sum of their sums, and the last one was taken without a word.
+TEST(PowderExport, TakesNoSampleForAnother) {
+    std::string sums = "Size (um),Lot A volume under %,Lot B volume under %\n",
+                classes = "Size (um),Lot A volume in %,";
+    classes += "Lot B volume in %\n";
+    for (int k = 0; k < 25; ++k) {
+        const auto below = [](double x) { return 100 / (1 + std::pow(x, -4)); };
+        const double size = 10 * std::pow(1.12, k), next = 1.12 * size;
+        sums +=
+            fmt::format("{},{:.2f},{:.2f}\n", size, k == 24 ? 100 : below(size / 34), k == 24 ? 100 : below(size / 30));
+        const double shift = k % 2 == 0 ? 0.3 : -0.3;
+        const double share = k == 24 ? 0 : below(next / 34) - below(size / 34);
+        classes += fmt::format("{},{:.3f},{:.3f}\n", size, share, share > 1 ? share + shift : share);
+    }
+    EXPECT_THAT(refusal(sums), HasSubstr("state it by --shares"));
+    EXPECT_THAT(refusal(classes), HasSubstr("state it by --shares"));
+}
+
+TEST(PowderExport, TakesSizesForWhatTheirHeaderSays) {
+    EXPECT_THAT(refusal("log10 d (um),Q3 (%)\n1,0\n1.5,50\n2,100\n", {.sizes = "1"}), HasSubstr("holds logarithms"));
+    const std::string between = "Passing (um),Retained on (um),Mass (g)\n";
+    const auto both = campaign::import_sizes(between + "20,10,25\n40,20,50\n80,40,25\n", {}).csv;
+    EXPECT_EQ(campaign::import_sizes("Size (um),Volume under %\n10,0\n20,25\n40,75\n80,100\n", {}).csv, both);
+}
+
+TEST(PowderExport, RefusesWeightsWithTheirSieve) {
+    const std::string weighed = "Maschenweite [mm];Leergewicht [g];Bruttogewicht [g]\n0,5;400;410\n0,25;390;420\n";
+    const auto rule = HasSubstr("weighs the sieve too: add a column of what each sieve retained");
+    EXPECT_THAT(refusal(weighed), rule);
+    EXPECT_THAT(refusal(weighed, {.shares = "Bruttogewicht"}), rule);
+}
+
 TEST(PowderExport, RefusesWhatIsNoDistribution) {
     EXPECT_THAT(refusal(""), HasSubstr("no table of sizes and shares is in it"));
     EXPECT_THAT(refusal("D10;20\n"), HasSubstr("no table"));
@@ -257,6 +306,24 @@ TEST(PowderExport, RefusesWhatIsNoDistribution) {
                 HasSubstr("Did you mean 'passing'?"));
     EXPECT_THAT(refusal("Size (um),Volume Under %\n1,0\n2,100\n", {.unit = "s"}), HasSubstr("'s' does not fit 'm'"));
     EXPECT_THAT(refusal("Size (um),Volume Under %\n1,0\n2,100\n", {.shares = "7"}), HasSubstr("must be a column"));
+}
+
+// A row that is left out would end the table early, and what is missing then looks like a coarse tail.
+TEST(PowderExport, RefusesARowThatIsNoNumber) {
+    const std::string head = "Size (um),Volume passing (%)\n10,0\n";
+    EXPECT_THAT(refusal(head + "20,50\n25*,60\n30,90\n40,100\n"), HasSubstr("line 4: '25*' is no number"));
+    EXPECT_THAT(refusal(head + "20,50\nnan,60\n30,90\n40,100\n"), HasSubstr("line 4: 'nan' is no number"));
+    EXPECT_THAT(refusal(head + "4D1,60\n45,90\n50,100\n"), HasSubstr("line 3: '4D1' is no number"));
+    EXPECT_THAT(refusal(head + "20,50\n40*,100\n"), HasSubstr("line 4: '40*' is no number"));
+    // words end a table
+    EXPECT_THAT(refusal(head + "20,50\n30,80\nTotal,100\n"), HasSubstr("--largest"));
+}
+
+TEST(PowderExport, TakesRadiiAsHalfDiameters) {
+    const auto sizes = campaign::import_sizes("Radius (um),Q3 (%)\n10,0\n20,50\n40,100\n", {});
+    EXPECT_THAT(sizes.sentence, HasSubstr("from 20 um to 80 um"));
+    EXPECT_THAT(sizes.sentence, HasSubstr("d50 40 um"));
+    EXPECT_THAT(sizes.notes, testing::ElementsAre(HasSubstr("column 1 holds radii")));
 }
 
 TEST(PowderExport, RefusesSizesOfNoPowder) {

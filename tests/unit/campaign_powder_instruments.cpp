@@ -218,7 +218,7 @@ std::vector<Layout> laser_exports() {
              "m),Volume Density (%)\n6.4,0.00\n" + rows("%e,%p\n") + "444.1,0.00\n",
          {},
          "volume",
-         "agree with the import"},
+         "agree with the import, within its classes"},
         {"Mastersizer3000German",
          with_commas("Gr\xC3\xB6\xC3\x9F"
                      "enklassen (" +
@@ -230,7 +230,7 @@ std::vector<Layout> laser_exports() {
          wide + "\n" + wide_row + "\n",
          {.unit = "um", .as = "passing", .by = "volume"},
          "volume",
-         "agree with the import"},
+         "agree with the import, within its classes"},
         // HELOS and QICPIC (WINDOX): x0 is the upper edge, xm the middle of a class; q3lg is a density.
         {"HelosWindox", with_commas("x0/" + micro + "m;Q3/%;xm/" + micro + "m;q3lg\n" + rows("%E;%Q;%e;0.31\n"))},
         {"QicpicByNumber", "EQPC\nx / " + micro + "m\tQ0 / %\n" + rows("%E\t%Q\n"), {}, "number"},
@@ -241,7 +241,7 @@ std::vector<Layout> laser_exports() {
              rows("%k,%E,%p,%Q\n"),
          {},
          "volume",
-         "agree with the import"},
+         "agree with the import, within its classes"},
         {"HoribaFrequencyOnly", "Distribution base;Volume\nDiameter (um);Frequency (%)\n8;0\n" + rows("%E;%p\n")},
         // LS 13 320: three lines of names, the last line is an edge without a share.
         {"BeckmanLs13320",
@@ -260,7 +260,7 @@ std::vector<Layout> laser_exports() {
              rows("%E\t%p\t%Q\n", true),
          {},
          "volume",
-         "agree with the import"},
+         "agree with the import, within its classes"},
         {"CilasLying", cilas, {.by = "volume"}},
         // Analysette 22: classes with two edges.
         {"FritschClasses",
@@ -298,7 +298,7 @@ std::vector<Layout> image_exports() {
              camsizer("Size class [mm]"),
          {},
          "volume",
-         "agree with the import"},
+         "agree with the import, within its classes"},
         {"CamsizerGerman", "CAMSIZER\n\n" + camsizer("Gr\xC3\xB6\xC3\x9F"
                                                      "enklasse [mm]")},
         {"CamsizerOversizeChosen", camsizer("Size class [mm]"), {.shares = "1-Q3", .edge = "upper"}},

@@ -7,16 +7,15 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_changes.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "tests/support/process.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
@@ -32,22 +31,13 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// A folder with some files to name.
-class Beside {
-public:
-    Beside() : path_(fs::temp_directory_path() / ("grainsweep-program-" + std::to_string(::getpid()))) {
-        fs::create_directories(path_ / "mesh");
+struct Beside : Folder {
+    Beside() {
+        fs::create_directories(path() / "mesh");
         write("run.py", "print(1)\n");
         write("in.deck", "friction {{ mu }} seed {{seed31}}\n");
         write("mesh/drum.stl", "solid\n");
     }
-    Beside(const Beside&) = delete;
-    Beside& operator=(const Beside&) = delete;
-    ~Beside() { fs::remove_all(path_); }
-    void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
 };
 
 json sound_file() {
@@ -436,6 +426,9 @@ TEST(ProgramQuantities, ExpressionsLinkParameters) {
         << of.said(of.file(mixed, {{"length", "2*gap"}}));
     EXPECT_NE(of.said(of.file(si, {{"area", "2*gop"}, {"n", 2}})).find("the nearest is 'gap'"), std::string::npos)
         << of.said(of.file(si, {{"area", "2*gop"}, {"n", 2}}));
+    const auto of_word = of.said(of.file(si, {{"area", "if(tool == 1, 2, 3)*gap"}, {"n", 2}, {"tool", "blade"}}));
+    EXPECT_NE(of_word.find("the values of tool are words, and expressions are of numbers"), std::string::npos)
+        << of_word;
     const auto half = of.read(of.file({{"gap", {{"unit", "1"}}}, {"n", {{"whole", true}}}}, {{"n", "gap/2 + 0.25"}}));
     try {
         const std::vector<double> u = {0.5};
@@ -499,6 +492,43 @@ TEST(ProgramQuantities, AConditionThatIsFalseSendsTheDefault) {
     const auto again = program_in(program_text(*known_program(campaign.scene().name)));
     EXPECT_EQ(again.parameters[0].standard, Value{2.5});
     EXPECT_EQ(program_scene_name(again), campaign.scene().name);
+}
+
+TEST(ProgramQuantities, ANumberThatIsSentHasItsBounds) {
+    Quantity of;
+    const json conditional = {{"name", "gap"}, {"between", {1, 3}}, {"when", "tool = 'b'"}};
+    const auto said = [&](const json& gap) { return of.said(of.file({{"gap", gap}}, {{"tool", "b"}}, conditional)); };
+    EXPECT_NE(said({{"bounds", {1, 3}}})
+                  .find("$.program.parameters.gap.bounds: got [1,3]; 0 lies outside, and 'gap' "
+                        "is 0 where its \"when\" is false: state \"default\""),
+              std::string::npos)
+        << said({{"bounds", {1, 3}}});
+    EXPECT_EQ(said({{"bounds", {1, 3}}, {"default", 1}}), "");
+    EXPECT_EQ(said({{"bounds", {0, 3}}}), "");
+    const auto undefined = of.read(of.file({{"gap", {{"unit", "1"}}}, {"n", {{"unit", "1"}}}}, {{"n", "1/(gap-2)"}}));
+    try {
+        const std::vector<double> u = {0.5};
+        check_expressions(undefined.space, undefined.space.at(u));
+        FAIL() << "1/0 is no number";
+    } catch (const InputError& wrong) {
+        EXPECT_NE(std::string(wrong.what()).find("where gap = 2"), std::string::npos) << wrong.what();
+    }
+}
+
+TEST(ProgramQuantities, FunctionsOfAnglesTakeRadians) {
+    Quantity of;
+    const auto said = [&](const std::string& expression, const std::string& unit = "deg") {
+        return of.said(of.file({{"gap", {{"unit", unit}}}, {"slope", {{"unit", "1"}}}}, {{"slope", expression}}));
+    };
+    EXPECT_NE(said("tan(gap)")
+                  .find("$.fixed.slope: got \"tan(gap)\"; sin, cos, tan and atan2 are of radians, and gap "
+                        "is in deg: write gap*pi/180"),
+              std::string::npos)
+        << said("tan(gap)");
+    EXPECT_NE(said("1 + 2*sin(gap)"), "");
+    for (const char* sound : {"tan(gap*pi/180)", "sin(gap/57.29578)", "2*gap"}) EXPECT_EQ(said(sound), "") << sound;
+    EXPECT_EQ(said("tan(gap)", "rad"), "");
+    EXPECT_EQ(said("sin(gap)", "1"), "");
 }
 
 TEST(ProgramQuantities, FormatsAreCheckedWhereTheyStand) {
@@ -629,6 +659,8 @@ TEST(ProgramSection, TheHashIsOfWhatChangesAnAnswer) {
     EXPECT_NE(same, name_of({{"program", {{"command", {"python3", "run.py"}}}}}));
     EXPECT_NE(same, name_of({{"program", {{"observables", {{"flow", {{"from", {{"row", "last"}}}}}}}}}}));
     EXPECT_NE(same, name_of({{"program", {{"observables", {{"angle", {{"bounds", {0, 90}}}}}}}}}));
+    EXPECT_EQ(same, name_of({{"program", {{"observables", {{"angle", {{"optional", false}}}}}}}}));
+    EXPECT_NE(same, name_of({{"program", {{"observables", {{"angle", {{"optional", true}}}}}}}}));
     beside.write("mesh/drum.stl", "another\n");
     EXPECT_NE(same, name_of({}));
 }

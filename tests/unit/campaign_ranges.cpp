@@ -13,7 +13,7 @@ using namespace campaign;
 // Without care rounding misses the ends: 30000 (1e6/30000)^1 is 1000000.0000000001, and 0.2 + (0.9 - 0.2) is
 // 0.8999999999999999.
 TEST(ParameterSpace, EveryRangeHasItsEndsExactlyAndNothingBeyond) {
-    const auto at = [](const Between& range, double u) { return std::get<double>(value_at({"x1", range}, u)); };
+    const auto at = [](const Between& range, double u) { return Factor{"x1", range}.number(u); };
     for (int k = 0; k < 2000; ++k) {
         const double low = 0.001 * (1 + k % 37) * std::pow(10, k % 5);
         const double high = low * (1.001 + 0.37 * (k % 101));

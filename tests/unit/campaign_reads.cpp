@@ -30,8 +30,8 @@ TEST(CampaignFile, IsReadAsItWasMeant) {
     EXPECT_EQ(campaign.where, "x1 > x2");
     EXPECT_EQ(campaign.replicates, 2);
     EXPECT_EQ(campaign.seed, 9007199254740993U);  // beyond 2^53: read as the whole number it is
-    const std::vector<Factor> factors = {{"x2", Between{0.001, 0.1, Scale::log}},
-                                         {"x1", Between{0, 1, Scale::linear}},
+    const std::vector<Factor> factors = {{.name = "x2", .range = Between{0.001, 0.1, Scale::log}, .unit = "1"},
+                                         {.name = "x1", .range = Between{0, 1, Scale::linear}, .unit = "1"},
                                          {"response", Levels{{std::string("sum"), std::string("ishigami")}}}};
     EXPECT_EQ(campaign.space.factors, factors);
     EXPECT_EQ(campaign.space.fixed,

@@ -152,12 +152,12 @@ TEST(CalibrationWaves, EveryTargetIsAskedUnderItsOwnCondition) {
     auto asked = calibration_request(2, {{"a", 0.5, 0.02, 0, {{"f1", 0}}}, {"a", 1.1, 0.02, 0, {{"f1", 2}}}},
                                      {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{1}}});
     asked.levels[1] = 3;
-    asked.factors[1].levels = {"0", "1", "2"};
-    asked.factors[1].parts = 3;
+    asked.factors[1].range = designs::Levels{{0.0, 1.0, 2.0}};
     const auto response = [](Point u) { return u[0] + 0.6 * (std::floor(3 * u[1]) / 2); };
     const auto found = answered(asked, {{"a", response}});
     ASSERT_TRUE(found.shape);
-    EXPECT_EQ(found.factors, std::vector<std::string>{"f0"});
+    ASSERT_EQ(found.factors.size(), 1U);
+    EXPECT_EQ(found.factors[0].name, "f0");
     EXPECT_NEAR(found.shape->mean[0], 0.5, 0.01);
     EXPECT_NEAR(found.shape->sd[0], 0.02 / std::sqrt(2.0), 0.002);
     for (std::size_t p = 0; p < found.points.size(); ++p)
@@ -197,9 +197,7 @@ TEST_P(CalibrationLevels, HaveTheProbabilityOfBayes) {
     const MeasuredTarget a{"a", 0.85, 0.1, 0, {}}, b{"b", 0.35, 0.1, 0, {}};
     auto asked = calibration_request(2, {a, b}, {{"waves", std::int64_t{2}}, {"points_per_wave", std::int64_t{32}}});
     asked.levels[1] = levels.size();
-    asked.factors[1].value_at = nullptr;
-    asked.factors[1].levels = levels;
-    asked.factors[1].parts = levels.size();
+    asked.factors[1].range = designs::Levels{{levels.begin(), levels.end()}};
     const auto level = [&](double u) { return asked.factors[1].part(u); };
     const auto found = answered(asked, {{"a", [&](Point u) { return first(u[0], level(u[1])); }},
                                         {"b", [&](Point u) { return second(u[0], level(u[1])); }}});

@@ -25,9 +25,10 @@ TEST(Catalogue, TheSizeIsThatOfTheSample) {
     for (const auto& info : designs::design_catalogue()) {
         designs::DesignRequest request{.levels = {0, 0, 3}, .options = {}, .seed = 3};
         for (const char* name : {"a", "b", "c"}) request.factors.push_back({name, {}});
+        request.factors[2].range = designs::Levels{{0.0, 1.0, 2.0}};
         if (info.grows) {
             request.levels[1] = 2;
-            request.factors[0].value_at = [](double u) { return u; };
+            request.factors[1].range = designs::Levels{{0.0, 1.0}};
         }
         for (const auto& option : info.options) {
             if (option.default_value) request.options[option.name] = *option.default_value;

@@ -33,7 +33,8 @@ DesignRequest request(std::vector<std::size_t> levels, double threshold, double 
     for (std::size_t j = 0; j < levels.size(); ++j) {
         auto& factor = asked.factors.emplace_back();
         factor.name = "f" + std::to_string(j);
-        if (levels[j] == 0) factor.value_at = [](double u) { return 10 + 80 * u; };
+        factor.range = designs::Between{10, 90};
+        if (levels[j] > 0) factor.range = designs::Levels{std::vector<Value>(levels[j], 0.0)};
     }
     return asked;
 }

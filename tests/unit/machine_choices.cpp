@@ -78,6 +78,10 @@ TEST(MachineChoices, ExpressionsTakeQuantities) {
     EXPECT_EQ(plain("-29 mm"), "");
     EXPECT_EQ(plain("2*hub + 1e-3"), "");
     EXPECT_EQ(plain("x2 + y3"), "");
+    EXPECT_EQ(campaign::unclear_quotient("1/2 mm"), "'(1/2)*(1 mm)' or '1/(2 mm)'");
+    EXPECT_NE(campaign::unclear_quotient("gap + 5/2.5 mm"), "");
+    for (const char* clear : {"1/2", "gap/2 mm", "(1/2)*2 mm", "1/(2 mm)", "29 mm/2", "3 mm/4 mm", "1/2*d"})
+        EXPECT_EQ(campaign::unclear_quotient(clear), "") << clear;
     EXPECT_EQ(campaign::value_in_expressions("rpm", 120), "12.57 rad/s");
     EXPECT_EQ(campaign::value_in_expressions("Hz", 25), "");
     EXPECT_EQ(campaign::value_in_expressions("mm", 3), "0.003 m");
@@ -130,6 +134,9 @@ TEST(MachineChoices, WallsFollowTheTime) {
     says(R"({"times": [0, 1]})", "\"positions\" or \"angles\"");
     says(R"({"angle": "t", "every": 1e-6, "until": 1, "axis": [0, 0, 1]})", "at most 200 are possible");
     says(R"({"angle": "t", "every": 0.1, "until": 1})", "'axis' is missing");
+    says(R"({"times": [0, 1], "positions": [[0, 0, "5 mm"], [0, 0, "5 mm"]]})",
+         "its first position is [0, 0, 0.005], and must be 0");
+    says(R"({"angle": "0.5 + t", "every": 0.1, "until": 1, "axis": [0, 0, 1]})", "its first angle is 0.5");
     says(R"({"position": ["1/t", 0, 0], "every": 0.1, "until": 1})", "no finite value");
 }
 

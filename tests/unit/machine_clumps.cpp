@@ -4,10 +4,15 @@
 
 #include "sweep/campaign/input_error.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <string_view>
 
 namespace grainsweep::tests::machine_clumps_test {
 
@@ -128,6 +133,30 @@ TEST(MachineClumps, ArePlacedWithAnOrientation) {
     EXPECT_NEAR(answer.at("orientation"), 0, 1e-12);
 }
 
+// At rest on the floor: the sum of force times way from the floor to the centre of mass is weight times height, and
+// compression is positive; also of spheres in a machine that has a clump somewhere.
+TEST(MachineClumps, CarryTheirWeightByStress) {
+    const json inside = {{"box", {{"low", {0, 0, -0.01}}, {"high", {0.02, 0.04, 0.02}}}}};
+    const double volume = 0.02 * 0.04 * 0.03;
+    for (const bool sphere : {false, true}) {
+        json machine = pour({{"aspect_ratio", 1.5}});
+        machine["species"]["ball"] = {{"material", "grain"}, {"diameter", "5 mm"}};
+        machine["fill"] = {{{"species", sphere ? "ball" : "rice"}, {"spheres", {{{"at", {0.01, 0.02, 0.0026}}}}}},
+                           {{"species", "rice"}, {"glued", true}, {"spheres", {{{"at", {0.03, 0.02, 0.05}}}}}}};
+        machine["phases"][0]["for"] = 0.5;
+        json component = {{"in", inside}, {"quantity", "component"}, {"force", {0, 0, 1}}, {"face", {0, 0, 1}}};
+        machine["measure"] = {{"zz", {{"stress", component}, {"as", "last"}}},
+                              {"pressure", {{"stress", {{"in", inside}}}, {"as", "last"}}},
+                              {"height", {{"centre", {{"along", {0, 0, 1}}, {"in", inside}}}, {"as", "last"}}}};
+        for (const char* precision : {"mixed", "double"}) {
+            const auto seen = answer_of(spec_of(machine, {{"precision", precision}})).scalars;
+            const double expected = 2500 * volume_of_one * 9.81 * seen.at("height") / volume;
+            EXPECT_NEAR(seen.at("zz") / expected, 1, 2e-3) << sphere << precision;
+            EXPECT_NEAR(seen.at("pressure") / (expected / 3), 1, 2e-2) << sphere << precision;
+        }
+    }
+}
+
 TEST(MachineClumps, SpinsHaveEnergy) {
     json machine = pour({{"spheres", {{-1, 0, 0, 2}, {1, 0, 0, 2}}}});
     machine["fill"] =
@@ -162,6 +191,108 @@ std::string why_refused(const json& machine, const FileTexts& files = {}) {
         return why.what();
     }
     return "";
+}
+
+/// A box of 12 x 8 x 6 mm as an STL file, in mm.
+std::string box_stl() {
+    constexpr std::array<std::array<double, 3>, 8> corner = {
+        {{-6, -4, -3}, {6, -4, -3}, {6, 4, -3}, {-6, 4, -3}, {-6, -4, 3}, {6, -4, 3}, {6, 4, 3}, {-6, 4, 3}}};
+    constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
+        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+    std::string text = "solid box\n";
+    for (const auto& side : sides)
+        for (const auto& triangle : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for (const int k : triangle) {
+                const auto& [x, y, z] = corner[side[static_cast<std::size_t>(k)]];
+                text += fmt::format("vertex {} {} {}\n", x, y, z);
+            }
+            text += "endloop\nendfacet\n";
+        }
+    return text + "endsolid box\n";
+}
+
+// It comes to rest on them, is carried by them alone, and every joule of it is booked.
+TEST(MachineClumps, CarryAFreeBody) {
+    const double mass = 8.64e-4, weight = 9.81 * mass;
+    for (const char* precision : {"mixed", "double"}) {
+        json machine = pour({{"aspect_ratio", 1.5}});
+        machine["domain"] = {{"low", {-0.02, -0.02, -0.01}}, {"high", {0.02, 0.02, 0.08}}};
+        machine["walls"]["tube"] = {{"cylinder", {{"axis", {0, 0, 1}}, {"radius", "15 mm"}}}};
+        machine["walls"]["box"] = {{"stl", "box.stl"},
+                                   {"scale", "1 mm"},
+                                   {"at", {0, 0, 0.03}},
+                                   {"motion", {{{"free", {{"mass", mass}, {"speed_at_most", 2}}}, {"from", "fall"}}}}};
+        machine["species"]["rice"]["diameter"] = "3 mm";
+        machine["fill"] = {{{"species", "rice"},
+                            {"count", 250},
+                            {"as", "random"},
+                            {"in", {{"cylinder", {{"base", {0, 0, 0.001}}, {"radius", "15 mm"}, {"length", 0.05}}}}}}};
+        machine["phases"] = {
+            {{"name", "settle"}, {"for", 0.15}}, {{"name", "fall"}, {"for", 0.35}}, {{"name", "lie"}, {"for", 0.05}}};
+        machine["measure"] = {
+            {"carried", {{"wall_force", {{"wall", "box"}, {"along", {0, 0, 1}}}}, {"during", "lie"}, {"as", "mean"}}},
+            {"kinetic", {{"wall_energy", {{"wall", "box"}}}, {"as", "last"}}},
+            {"residual", {{"wall_energy", {{"wall", "box"}, {"part", "residual"}}}, {"as", "last"}}},
+            {"fallen",
+             {{"wall_position", {{"wall", "box"}, {"along", {0, 0, -1}}, {"of", {0, 0, 0.03}}}}, {"as", "last"}}}};
+        std::string one;
+        for (const int threads : {1, 2}) {
+            auto spec = spec_of(machine, {{"precision", precision}}, {{"box.stl", box_stl()}});
+            machine::Run run(spec, 1);
+            run.use_threads(threads);
+            run.advance(1e9);
+            Observations seen;
+            run.observe(seen);
+            EXPECT_NEAR(seen.scalars.at("carried"), weight, 1e-3 * weight) << precision;
+            EXPECT_LT(seen.scalars.at("kinetic"), 1e-4 * weight * 0.02) << precision;
+            EXPECT_NEAR(seen.scalars.at("residual"), 0, 1e-12 * weight) << precision;
+            // on a bed some 9 mm high, on one of its sides
+            EXPECT_GT(seen.scalars.at("fallen"), 0.03 - 0.02) << precision;
+            EXPECT_LT(seen.scalars.at("fallen"), 0.03 - 0.006) << precision;
+            const auto text = text_of(seen);
+            if (one.empty()) one = text;
+            EXPECT_EQ(text, one) << precision << " " << threads;
+        }
+    }
+}
+
+TEST(MachineClumps, EveryMachineGivesItsPowderAnAspectRatio) {
+    json machine = pour({{"aspect_ratio", 1.7}}), plain = machine;
+    plain["species"]["rice"].erase("shape");
+    for (json* one : {&machine, &plain}) (*one)["fill"][0]["in"]["box"]["high"] = {0.04, 0.04, "rice_largest + 0.08"};
+    EXPECT_EQ(text_of(answer_of(spec_of(plain, {{"aspect_ratio", 1.7}}))), text_of(answer_of(spec_of(machine))));
+    // Single and glued particles, and species with a shape, stay as they are.
+    plain["species"]["ball"] = {{"material", "grain"}, {"diameter", "5 mm"}};
+    plain["species"]["rod"] = {{"material", "grain"}, {"diameter", "5 mm"}, {"shape", {{"aspect_ratio", 3}}}};
+    plain["fill"].push_back({{"species", "ball"}, {"spheres", {{{"at", {0.02, 0.02, 0.095}}}}}});
+    plain["fill"].push_back({{"species", "rod"}, {"glued", true}, {"spheres", {{{"at", {0.02, 0.02, -0.005}}}}}});
+    const auto spec = spec_of(plain, {{"aspect_ratio", 1.5}});
+    const auto members = [&](std::string_view name) {
+        const auto found = std::ranges::find(spec.species, name, &machine::Species::name);
+        return found->shape ? found->shape->balls.size() : 1;
+    };
+    EXPECT_EQ(members("rice"), 2u);
+    EXPECT_EQ(members("ball"), 1u);
+    EXPECT_EQ(members("rod"), 5u);
+}
+
+TEST(MachineClumps, AMachineMayHaveAnAspectRatioOfItsOwn) {
+    json machine = pour({{"aspect_ratio", 1}});
+    machine["species"]["rice"].erase("shape");
+    machine["parameters"] = {{"aspect_ratio", {{"default", 7}, {"meaning", "of the box"}}}};
+    EXPECT_FALSE(spec_of(machine).species[0].shape);
+}
+
+TEST(MachineClumps, AnAspectRatioWithoutEffectIsRefused) {
+    const json machine = pour({{"aspect_ratio", 1.5}});
+    EXPECT_NO_THROW((void)spec_of(machine));
+    try {
+        (void)spec_of(machine, {{"aspect_ratio", 2.0}});
+        FAIL();
+    } catch (const campaign::InputError& wrong) {
+        EXPECT_NE(std::string(wrong.what()).find("aspect_ratio: got 2; must be 1"), std::string::npos) << wrong.what();
+    }
 }
 
 TEST(MachineClumps, WrongOnesGetASentence) {

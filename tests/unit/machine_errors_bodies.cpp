@@ -30,7 +30,7 @@ constexpr WrongMachine wrong[] = {
     {"/domain", R"({"low": [0.001, 0.001, 0.001], "high": [0.01, 0.01, 0.01]})", "",
      "heavy and light: 0 of 20 particles fit into the region on a lattice of 1.15 diameters:"},
     {"/domain", R"({"low": [0, null, null], "high": [0.005, null, null], "sides": ["periodic", "open", "open"]})",
-     "$: ", "a wall that turns about an axis across a periodic one has no image"},
+     "$: ", "wall 'paddle': a wall that turns about an axis across the periodic axis x has no image"},
     {"/materials", "REMOVE", "$: ", "key 'materials' is missing: by name: density and stiffness."},
     {"/materials", "{}", "$.materials: ", "must be an object of materials by name."},
     {"/materials", "[]", "$.materials: ", "must be an object of materials by name."},

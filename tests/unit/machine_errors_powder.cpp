@@ -81,11 +81,13 @@ constexpr WrongMachine wrong[] = {
     {"/fill/0/in", R"({"ball": {"centre": [0.01, 0.01, 0.02], "radius": -0.01}})",
      "$.fill[0].in.ball: ", "a ball needs a radius above 0."},
     {"/fill/0/in", R"({"sphere": {"centre": [0.01, 0.01, 0.02], "radius": 0.01}})", "$.fill[0].in: ",
-     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'all', 'any' or "
+     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'moving', 'all', 'any' "
+     "or "
      "'not'."},
     {"/fill/0/in", R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "ball": {"centre": [0,0,0], "radius": 1}})",
      "$.fill[0].in: ",
-     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'all', 'any' or "
+     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'moving', 'all', 'any' "
+     "or "
      "'not'."},
     {"/fill/0/in", R"({"cylinder": {"base": [0.01, 0.01, 0.012], "radius": 0.005, "inner": 0.005, "length": 0.01}})",
      "$.fill[0].in.cylinder: ", R"("inner" of a cylinder is from 0 to its radius.)"},
@@ -97,17 +99,19 @@ constexpr WrongMachine wrong[] = {
     {"/fill/0/in", R"({"all": {"box": {"low": [0, 0, 0], "high": [1, 1, 1]}}})",
      "$.fill[0].in.all: ", "must be a list."},
     {"/fill/0/in", R"({"not": []})", "$.fill[0].in.not: ",
-     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'all', 'any' or "
+     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'moving', 'all', 'any' "
+     "or "
      "'not'."},
     {"/fill/0/in", R"({"half_space": {"normal": [0, 0, 0]}})",
      "$.fill[0].in.half_space.normal: ", "a direction must not be 0."},
     {"/fill/0/in", R"("box")", "$.fill[0].in: ",
-     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'all', 'any' or "
+     "a region is an object with one key: 'box', 'cylinder', 'ball', 'half_space', 'level_set', 'moving', 'all', 'any' "
+     "or "
      "'not'."},
     {"/fill/0/in", R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1], "open": ["+z"]}})",
      "$.fill[0].in.box.open: unknown key", "unknown key"},
     {"/fill/0/as", R"("latice")",
-     "$.fill[0].as: ", "must be 'lattice', 'random', 'rain' or 'packed'. Did you mean 'lattice'?"},
+     "$.fill[0].as: ", "must be 'lattice', 'random', 'rain', 'packed' or 'cells'. Did you mean 'lattice'?"},
     {"/fill/0/velocity", R"([0, 0, "1 m"])",
      "$.fill[0].velocity[2]: ", "'m' does not fit 'm/s', these fit: mm/s, m/s, cm/s, km/h."},
     {"/fill/0/shaken", "-1", "$.fill[0].shaken: ", "must be a number from 0, m/s."},

@@ -112,6 +112,28 @@ TEST(MachineFrames, MeansOfLoadsAreImpulsesOverTime) {
     }
 }
 
+// One sphere passes z = 0 at 0.05 s of 0.2 s: the mean over frames would be 3/4 of it.
+TEST(MachineFrames, WhatCountsAllSoFarIsItsLastValueByDefault) {
+    json machine = in_box(
+        R"({"default": {"passed_number": {"point": [0, 0, 0], "normal": [0, 0, 1]}},
+            "last": {"passed_number": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "as": "last"},
+            "mean": {"passed_number": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "as": "mean"},
+            "density": {"residence_time_density": {"along": [0, 0, 1], "from": -0.004, "to": 0.004, "longest": 0.1,
+                                                   "bins": 2}}})",
+        0.2, 15);
+    machine["fill"] =
+        json::parse(R"([{"species": "b", "spheres": [{"at": [0, 0, -0.005], "velocity": [0, 0, 0.1]}]}])");
+    machine["gravity"] = {0, 0, 0};
+    const auto found = answer_of(spec_of(machine));
+    EXPECT_EQ(found.scalars.at("default"), 1);
+    EXPECT_EQ(found.scalars.at("last"), 1);
+    EXPECT_NEAR(found.scalars.at("mean"), 0.75, 0.07);
+    EXPECT_EQ(found.scalars.contains("default_error"), false) << "a sum has no error of a mean";
+    double integral = 0;
+    for (const auto& sample : found.series.at("density")) integral += sample.value * 0.05;
+    EXPECT_NEAR(integral, 1, 1e-12) << "of the last frame, not the mean of all";
+}
+
 TEST(MachineFrames, ResumedOneGivesTheSameBits) {
     for (const char* precision : precisions) {
         json machine = in_box(

@@ -19,6 +19,30 @@ using geometry::operator-;
 using geometry::operator*;
 using nlohmann::json;
 
+// At the step that the program chooses, wherever in a step the impact begins.
+TEST(MachineImpacts, HaveTheirRestitutionAtTheProgramsStep) {
+    for (const bool linear : {false, true})
+        for (const double restitution : {0.3, 0.6, 0.9})
+            for (int k = 0; k < 6; ++k) {
+                json machine = json::parse(R"({
+                  "name": "two", "gravity": [0, 0, 0],
+                  "materials": {"m": {"density": 2500, "youngs_modulus": 1e7}},
+                  "species": {"p": {"diameter": 0.005}},
+                  "domain": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5]},
+                  "phases": [{"name": "s", "for": 0.01}],
+                  "measure": {"v": {"fastest": {"along": [1, 0, 0]}, "as": "last"}}
+                })");
+                machine["contacts"] = {{"restitution", restitution}};
+                if (linear) machine["contacts"].update({{"normal_law", "linear"}, {"stiffness", 1000}});
+                machine["fill"] = {{{"species", "p"},
+                                    {"spheres",
+                                     {{{"at", {0, 0, 0}}, {"velocity", {0.15, 0, 0}}},
+                                      {{"at", {0.005 + 1.5e-5 * k, 0, 0}}, {"velocity", {-0.15, 0, 0}}}}}}};
+                EXPECT_NEAR(answer_of(spec_of(machine)).scalars.at("v") / 0.15, restitution, 0.03)
+                    << linear << " " << restitution << " " << k;
+            }
+}
+
 class StepContacts : public testing::TestWithParam<Method::Precision> {
 protected:
     [[nodiscard]] static bool mixed() { return GetParam() == Method::Precision::mixed; }

@@ -52,6 +52,31 @@ TEST(MachineLoads, APressFollowsTheCourseOfItsForce) {
     }
 }
 
+// A punch that its limit alone held back looked like one in equilibrium with its force.
+TEST(MachineLoads, APressThatMovesAtItsLimitAtTheEndIsNamed) {
+    const auto remark_with = [](const char* limit) {
+        json machine = lone_plate(R"json({"press": {"along": [0, 0, 1], "force": 0.02, "mass": 0.1}})json");
+        machine["walls"]["plate"]["motion"][0]["press"]["speed_at_most"] = limit;
+        machine::Run run(spec_of(machine), 1);
+        run.advance(1e9);
+        return run.remark();
+    };
+    EXPECT_EQ(
+        remark_with("50 mm/s"),
+        "at the end wall 'plate' still moves at its speed_at_most of 0.05 m/s: the powder does not carry its force");
+    EXPECT_EQ(remark_with("1 m/s"), "");
+}
+
+// The bucket rises by 0.02 m and then turns by half about z = 0.03 m. Its axis, drawn at 0.01 m, rises with it.
+TEST(MachineLoads, TheAxisOfARotationMovesWithTheWall) {
+    json machine = lone_plate(R"json({"shift": {"velocity": [0, 0, 0.2]}, "from": "wait", "to": "wait"})json");
+    machine["walls"]["plate"]["motion"].push_back(json::parse(
+        R"json({"rotate": {"axis": [0, 1, 0], "through": [0, 0, 0.01], "speed": "pi/0.4"}, "from": "push", "to": "push"})json"));
+    machine["measure"] =
+        json::parse(R"json({"way": {"wall_position": {"wall": "plate", "along": [0, 0, 1]}, "as": "last"}})json");
+    EXPECT_NEAR(answer_of(spec_of(machine)).scalars.at("way"), 0.04, 1e-5);
+}
+
 TEST(MachineLoads, BeforeAndAfterItsTimesALoadIsThatOfTheEnds) {
     // 0.02 N until 0.2 s, then falling to 0 at 0.3 s.
     const double m = 0.1, f = 0.02, speed = f * 0.2 / m + f * 0.1 / (2 * m);

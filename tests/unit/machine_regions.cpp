@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -131,6 +133,88 @@ TEST(MachineRegions, VolumesAreThoseOfTheBodies) {
     EXPECT_FALSE((Region{Region::All{{box()}}}.volume()));
     EXPECT_FALSE((Region{Region::Any{{box()}}}.volume()));
     EXPECT_FALSE((Region{Region::Not{{box()}}}.volume()));
+}
+
+/// Periodic along x with the period 4, from -2 to 2.
+geometry::Domain periodic_domain() {
+    return {{-2, -5, -5}, {2, 5, 5}, {true, false, false}};
+}
+
+// By the images of the point, tried one by one.
+TEST(MachineRegions, HaveImagesAcrossPeriodicFaces) {
+    const geometry::Domain domain = periodic_domain();
+    const Region across{Region::Box{{1, -2, 0}, {3, 2, 3}}};
+    const std::vector<Region> regions = {across,
+                                         hollow(),
+                                         {Region::Ball{{-1.8, 0, 1}, 1.5}},
+                                         {Region::All{{across, {Region::Half{{2.5, 0, 0}, {1, 0, 0}}}}}},
+                                         {Region::Any{{across, above()}}},
+                                         {Region::Not{{across}}}};
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        const Region imaged = machine::with_images(regions[r], domain);
+        int beyond = 0;
+        for (std::uint64_t n = 0; n < 3000; ++n) {
+            Vec3 x = random_point(n, 5);
+            x = x + domain.wrapping(x);
+            // A combination that holds everywhere else has images where it has an edge: of its box.
+            const bool outside = std::holds_alternative<Region::Not>(regions[r].is);
+            const Region& tried = outside ? across : regions[r];
+            bool inside = false;
+            for (const double period : {-4.0, 0.0, 4.0}) inside = inside || tried.contains(x + Vec3{period, 0, 0});
+            if (outside) inside = !inside;
+            ASSERT_EQ(imaged.contains(x), inside) << r << " " << x[0] << " " << x[1] << " " << x[2];
+            beyond += imaged.contains(x) != regions[r].contains(x) ? 1 : 0;
+        }
+        EXPECT_TRUE(r == 1 || beyond > 20) << r << ": the regions of this test reach beyond a face, but for the second";
+    }
+}
+
+TEST(MachineRegions, WithinTheFacesStayThemselves) {
+    for (const Region& region : {box(), above(), Region{Region::All{{box(), ball()}}}})
+        EXPECT_EQ(machine::with_images(region, periodic_domain()).is.index(), region.is.index());
+    EXPECT_EQ(machine::with_images({Region::Ball{{9, 0, 0}, 1}}, {{-2, -5, -5}, {2, 5, 5}, {}}).is.index(),
+              Region(ball()).is.index())
+        << "the faces are open";
+}
+
+// A wall moves it by 1.5 along x, so that a box within the faces reaches beyond them.
+TEST(MachineRegions, HaveImagesWhereTheyMove) {
+    const geometry::Domain domain = periodic_domain();
+    const auto moved = std::make_shared<const Vec3>(Vec3{1.5, 0, 0});
+    const auto moving = [&](const Region& inner) {
+        Region region{Region::Moving{{inner}, 0, std::nullopt, nullptr}};
+        region = machine::with_images(std::move(region), domain);
+        std::get<Region::Moving>(region.is).moved = moved;
+        return region;
+    };
+    const Region region = moving({Region::Box{{0, -1, 0}, {1, 1, 1}}});  // at 1.5 to 2.5, so that it begins anew at -2
+    EXPECT_TRUE(region.contains({1.6, 0, 0.5}));
+    EXPECT_TRUE(region.contains({-1.6, 0, 0.5}));
+    EXPECT_FALSE(region.contains({-1.4, 0, 0.5}));
+    EXPECT_FALSE(region.contains({0.5, 0, 0.5}));
+    const Region endless = moving({Region::Box{{-100, -1, 0}, {100, 1, 1}}});
+    for (const double x : {-2.0, -0.3, 1.9}) {
+        EXPECT_TRUE(endless.contains({x, 0, 0.5}));
+        EXPECT_FALSE(endless.contains({x, 1.1, 0.5}));
+    }
+}
+
+TEST(MachineRegions, LongerThanThePeriodCountEachPointOnce) {
+    const geometry::Domain domain = periodic_domain();
+    const auto volume_of = [&](Region region) { return machine::with_images(std::move(region), domain).volume(); };
+    EXPECT_DOUBLE_EQ(volume_of({Region::Box{{-9, 0, 0}, {9, 1, 1}}}).value(), 4);
+    EXPECT_DOUBLE_EQ(volume_of({Region::Box{{1, 0, 0}, {4, 1, 1}}}).value(), 3);
+    EXPECT_DOUBLE_EQ(volume_of({Region::Round{{-9, 0, 0}, {1, 0, 0}, 1, 0, 18}}).value(), 4 * std::numbers::pi);
+    EXPECT_DOUBLE_EQ(volume_of({Region::Round{{9, 0, 0}, {-1, 0, 0}, 1, 0, 18}}).value(), 4 * std::numbers::pi);
+    EXPECT_DOUBLE_EQ(volume_of({Region::Ball{{1.5, 0, 0}, 1}}).value(), 4 * std::numbers::pi / 3);
+    EXPECT_FALSE(volume_of({Region::Ball{{0, 0, 0}, 2.5}})) << "its images overlap";
+    EXPECT_TRUE(machine::with_images({Region::Round{{9, 0, 0}, {-1, 0, 0}, 1, 0, 18}}, domain).contains({-1.9, 0, 0}));
+    // Bodies of hundreds of periods, as an `all` with a box "everywhere along x" has them.
+    const Region far{Region::All{{{Region::Box{{-1e3, -1, 0}, {1e3, 1, 2}}}, {Region::Ball{{0, 0, 0}, 1e4}}}}};
+    for (std::uint64_t n = 0; n < 500; ++n) {
+        const Vec3 x = random_point(n, 2);
+        EXPECT_EQ(machine::with_images(far, domain).contains(x), std::abs(x[1]) <= 1 && x[2] >= 0 && x[2] <= 2);
+    }
 }
 
 TEST(MachineRegions, WrongNumbersHaveASentence) {

@@ -4,19 +4,24 @@
 #include "sweep/plot/ticks.hpp"
 
 #include <cairo.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grainsweep::tests::plot_figures_test {
 
 using namespace plot;
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> labels(const std::vector<Tick>& ticks) {
     std::vector<std::string> texts;
@@ -109,8 +114,7 @@ Figure some_figure() {
 
 TEST(PlotFiles, HaveTheWidthAndTheSameBytesAgain) {
     for (const double width : {85.0, 170.0}) {
-        // SVG, too, but within one process the library numbers its surfaces: tests/campaign/figures.cpp.
-        for (const auto type : {FileType::pdf, FileType::png})
+        for (const auto type : {FileType::pdf, FileType::png, FileType::svg})
             EXPECT_TRUE(drawn(some_figure(), width, type) == drawn(some_figure(), width, type));
         const auto png = drawn(some_figure(), width, FileType::png);
         const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(png[k]); };
@@ -121,9 +125,41 @@ TEST(PlotFiles, HaveTheWidthAndTheSameBytesAgain) {
         EXPECT_EQ(png.substr(37, 4), "pHYs");
         EXPECT_EQ(word(41), 23'622U) << "600 points an inch, in points a metre";
     }
-    const auto svg = drawn(some_figure(), 85, FileType::svg);
-    EXPECT_NE(svg.find("width=\"240.944882pt\""), std::string::npos);
+    EXPECT_NE(drawn(some_figure(), 85, FileType::svg).find("width=\"240.94pt\""), std::string::npos);
     EXPECT_NE(drawn(some_figure(), 85, FileType::pdf).find("/CreationDate (20000101000000Z)"), std::string::npos);
+}
+
+TEST(PlotSvg, HoldsTextsAsTextsAndNoIds) {
+    auto figure = some_figure();
+    figure.panels[0].x.title = "a < b & \"c\" (m³)";
+    const auto svg = drawn(figure, 85, FileType::svg);
+    EXPECT_THAT(svg, HasSubstr("a &lt; b &amp; \"c\" (m<tspan dy=\"-2.72\" font-size=\"5.76\">3</tspan>"
+                               "<tspan dy=\"2.72\">)</tspan></text>"));
+    for (const char* text : {"rate (g/s)", "failed cases", "sjkr", "(b)"}) EXPECT_THAT(svg, HasSubstr(text));
+    EXPECT_THAT(svg, Not(HasSubstr(" id=")));
+    EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+TEST(PlotSvg, HasEveryMarkAtItsPlace) {
+    // Axes from 0 to 10 over a frame: numbers are places within it.
+    Panel panel{{"", 0, 10}, {"", 0, 10}};
+    panel.marks = {Points{{0, 10}, {0, 5}, {blue}, Points::Shape::dot, 1}, Line{{0, 5, 10}, {0, std::nan(""), 10}},
+                   Line{{0, 10}, {10, 10}, vermilion, 1, true}, Bars{{2}, {4}, {5}, faded(blue, 0.5)}};
+    const auto svg = drawn({{panel}}, 85, FileType::svg);
+    static const std::regex frame(R"re(<svg x="[\d.]+" y="[\d.]+" width="([\d.]+)" height="([\d.]+)">)re");
+    std::vector<std::pair<double, double>> clips;
+    for (std::sregex_iterator found(svg.begin(), svg.end(), frame), end; found != end; ++found)
+        clips.emplace_back(std::stod((*found)[1]), std::stod((*found)[2]));
+    ASSERT_EQ(clips.size(), 4U) << "one for each mark";
+    const auto [width, height] = clips[1];
+    EXPECT_NEAR(clips[0].first, width + 5, 0.02) << "a sign at the edge is whole";
+    EXPECT_THAT(svg, HasSubstr(fmt::format("<g fill=\"#0072b2\">\n<circle cx=\"2.5\" cy=\"{:.2f}\" r=\"1\"/>\n"
+                                           "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"1\"/>",
+                                           height + 2.5, width + 2.5, height / 2 + 2.5)));
+    EXPECT_THAT(svg, HasSubstr("stroke=\"#d55e00\" stroke-width=\"1\" stroke-dasharray=\"3 2\" d=\"M0 0H"));
+    EXPECT_THAT(svg, HasSubstr("<path fill=\"#0072b2\" fill-opacity=\"0.5\" d=\"M"));
+    EXPECT_THAT(svg, HasSubstr("stroke=\"#0072b2\" stroke-width=\"1\" d=\"M0 "));
+    EXPECT_THAT(svg, Not(HasSubstr("\"L"))) << "the line is broken at NaN";
 }
 
 TEST(PlotFiles, TypeIsTheEndOfTheName) {

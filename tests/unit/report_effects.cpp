@@ -47,7 +47,8 @@ TEST(Effects, BinsHoldEqualCountsAndLevelsAreBins) {
     }
     EXPECT_EQ(total, 319);
 
-    factor.levels = {"a", "b"};
+    factor.seen = {"a", "b"};
+    factor.range = campaign::Levels{factor.seen};
     for (std::size_t i = 0; i < factor.values.size(); ++i) factor.values[i] = i % 2 == 0 ? 0 : 1;
     const auto levels = main_effect(factor, response, errors);
     ASSERT_EQ(levels.size(), 2u);
@@ -119,7 +120,8 @@ TEST_F(Study, AWhiskerNeedsFourPartsOfTheSample) {
     const auto& y = responses.observable("y");
     const auto errors = effect_errors(responses, y);
     auto& factor = responses.factors[0];
-    factor.levels = {"a", "b"};
+    factor.seen = {"a", "b"};
+    factor.range = campaign::Levels{factor.seen};
     for (std::size_t row = 0; row < 16; ++row) factor.values[row] = row < 3 ? 0 : 1;
     const auto bins = main_effect(factor, responses.judged(y), errors);
     EXPECT_TRUE(std::isnan(bins[0].error));

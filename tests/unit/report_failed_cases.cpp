@@ -1,13 +1,14 @@
 // Where cases failed nothing is recommended, counted, drawn or predicted: windows, predictions, pages.
 #include "stats/random.hpp"
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/report/model_page.hpp"
+#include "sweep/report/model_panels.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
 #include "sweep/study/answers.hpp"
 #include "sweep/study/process_window.hpp"
 #include "tests/support/answered.hpp"
+#include "tests/support/drawings.hpp"
 #include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 namespace grainsweep::tests::report_failed_cases_test {
 
@@ -149,33 +151,43 @@ TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
 TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
     const auto known = cases(jams);
     const auto model = learn_or_refuse(known, known.observable("y"));
-    const auto page = tests::parsed(model_page_data(known, model, {}));
-    ASSERT_EQ(page["failed"].size(), known.failed.size());
-    EXPECT_EQ(page["failed"][0]["outcome"], "unstable");
-    EXPECT_LE(page["failed"][0]["setting"][0], 0.3);
+    EXPECT_EQ(known.failed[0].outcome, campaign::Outcome::unstable);
+    EXPECT_LE(known.failed[0].setting[0], 0.3);
+    const auto page = model_pictures(known, model, {});
     for (std::size_t i = 0; i < 31; ++i) {
-        const double x = page["curves"][0]["at"][i];
+        const double x = page.curves[0].at[i];
         if (x > 0.2 && x < 0.4) continue;
-        EXPECT_EQ(page["curves"][0]["mean"][i].is_null(), x < 0.3) << x;
-        EXPECT_EQ(page["curves"][0]["averaged"][i].is_null(), x < 0.3) << x;
+        EXPECT_EQ(std::isnan(page.curves[0].mean[i]), x < 0.3) << x;
+        EXPECT_EQ(std::isnan(page.curves[0].averaged[i]), x < 0.3) << x;
     }
-    EXPECT_TRUE(page["map"]["slice"][0].is_null());
-    EXPECT_TRUE(page["map"]["averaged"][0].is_null());
+    EXPECT_TRUE(std::isnan(page.map.value().slice[0]));
+    EXPECT_TRUE(std::isnan(page.map.value().averaged[0]));
+    const auto crosses_of = [](const plot::Panel& panel) { return std::get<plot::Points>(panel.marks.back()); };
+    const Quantity up{"y", 1};
+    const auto drawn_curve = crosses_of(curve_panel(known, 0, page.curves[0], up, {"y", 0, 1}));
+    EXPECT_EQ(drawn_curve.shape, plot::Points::Shape::cross);
+    ASSERT_EQ(drawn_curve.x.size(), known.failed.size());
+    for (std::size_t k = 0; k < known.failed.size(); ++k) {
+        EXPECT_EQ(drawn_curve.x[k], known.failed[k].setting[0]);
+        EXPECT_EQ(drawn_curve.y[k], 0) << "at the lower edge";
+    }
 
     const WindowRequest request{.where = "y >= 0.5", .objectives = {{"y"}}};
     const auto window = window_of(store, known, request);
     const auto drawn = tests::parsed(window_page_data(known, request, window, {}));
-    EXPECT_EQ(drawn["failed"].size(), known.failed.size());
+    EXPECT_EQ(drawn["failed"], true);
     EXPECT_THAT(drawn["failed_near"].get<std::string>(), HasSubstr("of the 5 nearest cases failed"));
-    const auto& map = drawn["map"];
-    const std::size_t across = map["across"];
+    for (const auto& figure : drawings_of(drawn["campaigns"][0])["maps"])
+        EXPECT_THAT(figure["svg"].get<std::string>(), HasSubstr("failed cases"));
+    const auto pictures = window_pictures(known, request, window, {});
+    const auto& map = pictures.map.value();
     for (std::size_t k = 0; k < 41 * 41; ++k) {
-        const double x1 = (static_cast<double>(across == 0 ? k % 41 : k / 41) + 0.5) / 41;
+        const double x1 = (static_cast<double>(map.across == 0 ? k % 41 : k / 41) + 0.5) / 41;
         if (x1 > 0.22) continue;
-        EXPECT_LT(map["probability"][k], 0.2) << x1;
-        EXPECT_TRUE(map["objective"][k].is_null()) << x1;
+        EXPECT_LT(map.probability[k], 0.2) << x1;
+        EXPECT_TRUE(std::isnan(map.objective[k])) << x1;
     }
-    EXPECT_TRUE(drawn["curves"][0]["responses"][0][0]["mean"].is_null());
+    EXPECT_TRUE(std::isnan(pictures.curves[0].responses[0].mean[0]));
 }
 
 /// y = x1 everywhere; every tenth case fails, whatever its setting.

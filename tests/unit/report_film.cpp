@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,7 +16,6 @@
 #include "stats/random.hpp"
 #include "sweep/report/film.hpp"
 #include "sweep/report/film_choice.hpp"
-#include "sweep/report/film_codec.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
@@ -157,6 +157,31 @@ TEST(Film, ARareLargeValueDoesNotDarkenAllOthers) {
     EXPECT_EQ(named("signed").at("high"), 2);
 }
 
+TEST(Film, ForcesAreThoseBetweenShownParticles) {
+    Film film(report::FilmLimits{.forces = true});
+    Snapshot s;
+    s.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    s.scalars = {{"id", {7, 9, 11}}};
+    s.vectors["velocity"] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    s.contacts = ContactLines{.ends = {},
+                              .scalars = {{"first", {11, 9, 7}}, {"second", {9, 7, -1}}, {"normal_force", {4, 2, 9}}},
+                              .vectors = {},
+                              .units = {},
+                              .walls = {}};
+    film.add(s, 0);
+    s.contacts->scalars = {{"first", {}}, {"second", {}}, {"normal_force", {}}};
+    film.add(s, 1);
+    const auto read = read_film(packed_film(film));
+    const auto& forces = read.header.at("forces");
+    EXPECT_EQ(forces.at("counts"), (nlohmann::json{2, 0}));
+    EXPECT_EQ(forces.at("low"), 0) << "the force on a wall, 9, does not count";
+    EXPECT_EQ(forces.at("high"), 4);
+    EXPECT_EQ(read.column(forces.at("first"), 1, 2), (Numbers{0, 1}));
+    EXPECT_EQ(read.column(forces.at("between"), 1, 2), (Numbers{1, 1}));
+    EXPECT_EQ(read.column(forces.at("shades"), 1, 2), (Numbers{128, 255}));
+    EXPECT_FALSE(read_film(packed_film(three_spheres())).header.contains("forces")) << "only where requested";
+}
+
 TEST(Film, UndefinedValuesHaveNoColour) {
     Film film;
     Snapshot s;
@@ -200,6 +225,36 @@ TEST(Film, WallsMoveStandAndVanish) {
     EXPECT_NEAR(x(1, 0), 2, 1e-4);
     EXPECT_EQ(read.column(walls[0].at("triangles"), 1, 3), (Numbers{0, 1, 2}));
     EXPECT_EQ(read.column(walls[0].at("edges"), 1, 2), (Numbers{0, 1}));
+}
+
+// Of more pictures than wanted some are kept: each wall as it was in those, also one that is in one of them only.
+TEST(Film, KeptFramesKeepTheirWalls) {
+    Film film;
+    WallSurface blade{"blade", {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}, {{0, 1}}};
+    WallSurface gate = blade;
+    gate.name = "gate";
+    for (int t = 0; t < 5; ++t) {
+        Snapshot s;
+        s.positions = {{0, 0, 0}};
+        for (auto& corner : blade.corners) corner[0] = t;
+        s.walls = {blade};
+        if (t == 1) s.walls.push_back(gate);
+        film.add(s, t);
+    }
+    film.keep({1, 2, 4});
+    const auto read = read_film(packed_film(film));
+    const auto& walls = read.header.at("walls");
+    ASSERT_EQ(walls.size(), 2U);
+    EXPECT_EQ(walls[0].at("frames"), 3);
+    const auto places = read.column(walls[0].at("places"), 3, 9);
+    constexpr std::array<double, 3> kept = {1, 2, 4};
+    for (std::size_t frame = 0; frame < 3; ++frame)
+        EXPECT_NEAR(walls[0].at("low")[0].get<double>() + walls[0].at("step")[0].get<double>() * places[9 * frame],
+                    kept[frame], 1e-4)
+            << frame;
+    EXPECT_EQ(walls[1].at("name"), "gate");
+    EXPECT_EQ(walls[1].at("first"), 0);
+    EXPECT_EQ(walls[1].at("frames"), 1);
 }
 
 TEST(Film, AFlowIsCutThroughTheMiddle) {

@@ -1,5 +1,6 @@
 // Factors that move in groups: designs, and one index or effect a group.
 #include "stats/sensitivity.hpp"
+#include "sweep/report/figures.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/study/influence.hpp"
 #include "tests/support/ask_design.hpp"
@@ -121,6 +122,15 @@ TEST_F(Study, EffectsOfGroupsStandInTablesAndJson) {
     report::write(csv, report::influence_document(responses, y, report::Format::csv), report::Format::csv);
     EXPECT_THAT(csv.str(), HasSubstr("g,y,morris,outer,"));
     EXPECT_THAT(csv.str(), testing::Not(HasSubstr("g,y,morris,x1,")));
+}
+
+TEST_F(Study, FiguresOfGroupsAreOverTheirFactors) {
+    answer_by(store, grouped(R"({"kind": "saltelli", "base_points": 64})"), g_function);
+    const auto responses = ask("g");
+    const report::FigureSubject subject{store, responses, responses.observable("y")};
+    const auto cases = report::figure_named(subject, "cases").panels.front();
+    EXPECT_EQ(cases.x.title, "x1") << "the first factor of the group that explains most";
+    EXPECT_EQ(report::figure_named(subject, "map").panels.front().y.title, "x4");
 }
 
 }  // namespace grainsweep::tests::report_groups_test

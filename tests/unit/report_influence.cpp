@@ -165,7 +165,7 @@ TEST_F(Study, PlacesOfLevelsAreThoseOfTheCampaign) {
         "design": {"kind": "halton", "points": 64}})",
               [](const Inputs& inputs) { return input(inputs, "x1"); });
     const auto responses = ask("c");
-    EXPECT_EQ(responses.factors[1].levels.size(), 3U);
+    EXPECT_EQ(responses.factors[1].seen.size(), 3U);
     for (std::size_t row = 0; row < responses.rows(); ++row) {
         const double level = responses.factors[1].values[row];
         EXPECT_DOUBLE_EQ(responses.factors[1].coordinate(row), level == 0 ? 0 : level == 1 ? 0.75 : 1);

@@ -1,5 +1,6 @@
 // When the axis of a response in a figure is logarithmic.
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/plot/ticks.hpp"
 #include "sweep/report/figures.hpp"
 #include "sweep/report/print_axes.hpp"
 #include "tests/support/study.hpp"
@@ -33,6 +34,20 @@ TEST(LogAxisRule, NeedsPositiveNumbersOverTwoDecades) {
     EXPECT_FALSE(spans_decades({1e-6, 9.9e-5}));
     EXPECT_FALSE(spans_decades({0, 1}));
     EXPECT_FALSE(spans_decades({-1, 1000}));
+}
+
+TEST(LogAxisRule, EndsAreNumbersWhereTheRangeIsThatOfADouble) {
+    for (const auto& range : {NumberRange{1e-313, 1}, {1e-310, 1e-2}, {1e-300, 1e300}, {1, 1e307}}) {
+        const auto axis = number_axis({"y", 1}, range, true);
+        EXPECT_GT(axis.low, 0) << range.low;
+        EXPECT_LE(axis.low, range.low);
+        EXPECT_TRUE(std::isfinite(axis.high)) << range.high;
+        EXPECT_GE(axis.high, range.high);
+        const auto ticks = plot::ticks_of(axis, 7);
+        EXPECT_GE(ticks.size(), 2U);
+        EXPECT_LE(ticks.size(), 12U);
+        EXPECT_TRUE(plot::minor_ticks(axis).empty());
+    }
 }
 
 TEST_F(LogAxis, IsTakenWhereTheResponseSpansDecades) {

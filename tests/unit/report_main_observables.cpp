@@ -1,4 +1,5 @@
 // What text output shows first: main observables in a few words, and commands that can be copied.
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/report/main_observables.hpp"
 #include "sweep/report/next_command.hpp"
 #include "sweep/report/print_axes.hpp"
@@ -27,7 +28,7 @@ TEST(MainObservables, OfEverySceneAreFewAndAmongItsScalars) {
 
 // A name from a thesis explains nothing to a new reader.
 TEST(MainObservables, OfSpreadingBeginWithTheLayer) {
-    EXPECT_EQ(main_observables(*find_scene("powder_spreading")).front().name, "packing_fraction");
+    EXPECT_EQ(main_observables(*campaign::scene_named("powder_spreading")).front().name, "packing_fraction");
 }
 
 TEST(MainObservables, AreTheFirstScalarsOfASceneThatNamesNone) {

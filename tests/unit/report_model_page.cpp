@@ -28,43 +28,57 @@ double known(double x1, double x2, double x3) {
 }
 
 struct ModelPage : Study {
-    Json data(int points, const std::string& more = "", const PageModels& models = {}) {
+    void answer(int points, const std::string& more = "") {
         answer_by(store,
                   R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
                       {"name": "x2", "between": [0, 1]}, {"name": "x3", "levels": [0, 0.5, 1]}],
                       "design": {"kind": "halton", "points": )" +
                       std::to_string(points) + "}" + more + "}",
                   [](const Inputs& i) { return known(input(i, "x1"), input(i, "x2"), input(i, "x3")); });
+    }
+    Json data(int points, const std::string& more = "", const PageModels& models = {}) {
+        answer(points, more);
         const PageSource source{&store, "a.db"};
         return tests::parsed(page_data({&source, 1}, models))["campaigns"][0]["models"];
     }
+    ModelPictures pictures(int points, const std::string& more = "") {
+        answer(points, more);
+        const auto cases = settled_and_imported_cases(ask("c"));
+        return model_pictures(cases, learn_or_refuse(cases, cases.observable("y")), admission(store, cases));
+    }
 };
 
-TEST_F(ModelPage, AveragesAndSlicesAreThoseOfTheResponse) {
+TEST_F(ModelPage, TextsBesideItsFigures) {
     const auto models = data(150);
     ASSERT_EQ(models.size(), 1U);
-    const auto& model = models[0];
-    EXPECT_EQ(model["observable"], "y");
-    EXPECT_THAT(model["says"].get<std::string>(), HasSubstr("model of y: 150 cases"));
-    EXPECT_EQ(model["order"], Json({0, 1, 2}));
-    EXPECT_EQ(model["middle"]["texts"], Json({"0.5", "0.5", "0.5"}));
-    const auto& along_x1 = model["curves"][0];
-    ASSERT_EQ(along_x1["at"].size(), 31U);
-    EXPECT_EQ(along_x1["at"].front(), 0);
-    EXPECT_EQ(along_x1["at"].back(), 1);
+    EXPECT_EQ(models[0]["observable"], "y");
+    EXPECT_THAT(models[0]["says"].get<std::string>(), HasSubstr("model of y: 150 cases"));
+    EXPECT_EQ(models[0]["over"], Json({"x1", "x2"}));
+    EXPECT_EQ(models[0]["others"], "x3 0.5");
+    EXPECT_EQ(models[0]["failed"], false);
+}
+
+TEST_F(ModelPage, AveragesAndSlicesAreThoseOfTheResponse) {
+    const auto found = pictures(150);
+    EXPECT_THAT(found.order, testing::ElementsAre(0, 1, 2));
+    EXPECT_THAT(found.middle, testing::ElementsAre(0.5, 0.5, 0.5));
+    const auto& along_x1 = found.curves[0];
+    ASSERT_EQ(along_x1.at.size(), 31U);
+    EXPECT_EQ(along_x1.at.front(), 0);
+    EXPECT_EQ(along_x1.at.back(), 1);
     for (std::size_t i = 0; i < 31; ++i) {
-        const double x = along_x1["at"][i];
-        EXPECT_NEAR(along_x1["mean"][i], known(x, 0.5, 0.5), 0.02) << x;
-        EXPECT_NEAR(along_x1["averaged"][i], known(x, 0.5, 0.5), 0.02) << x;
-        EXPECT_GT(along_x1["mean_half_width"][i], 0);
-        EXPECT_GE(along_x1["run_half_width"][i], along_x1["mean_half_width"][i]);
-        const double x2 = model["curves"][1]["at"][i];
-        EXPECT_NEAR(model["curves"][1]["mean"][i], known(0.5, x2, 0.5), 0.02) << x2;
-        EXPECT_NEAR(model["curves"][1]["averaged"][i], 2 / std::numbers::pi + x2 / 4 + 0.025, 0.02) << x2;
+        const double x = along_x1.at[i];
+        EXPECT_NEAR(along_x1.mean[i], known(x, 0.5, 0.5), 0.02) << x;
+        EXPECT_NEAR(along_x1.averaged[i], known(x, 0.5, 0.5), 0.02) << x;
+        EXPECT_GT(along_x1.mean_half_width[i], 0);
+        EXPECT_GE(along_x1.run_half_width[i], along_x1.mean_half_width[i]);
+        const double x2 = found.curves[1].at[i];
+        EXPECT_NEAR(found.curves[1].mean[i], known(0.5, x2, 0.5), 0.02) << x2;
+        EXPECT_NEAR(found.curves[1].averaged[i], 2 / std::numbers::pi + x2 / 4 + 0.025, 0.02) << x2;
     }
-    EXPECT_EQ(model["curves"][2]["at"], Json({0.0, 0.5, 1.0}));
-    EXPECT_NEAR(model["curves"][2]["averaged"][2].get<double>() - model["curves"][2]["averaged"][0].get<double>(), 0.05,
-                0.01);
+    const auto& along_x3 = found.curves[2];
+    EXPECT_THAT(along_x3.at, testing::ElementsAre(0.0, 0.5, 1.0));
+    EXPECT_NEAR(along_x3.averaged[2] - along_x3.averaged[0], 0.05, 0.01);
 }
 
 TEST_F(ModelPage, SharesOfTheVarianceAreThoseOfSensitivity) {
@@ -84,20 +98,19 @@ TEST_F(ModelPage, SharesOfTheVarianceAreRefusedWhereThePointsLeaveAPartOut) {
 }
 
 TEST_F(ModelPage, TheMapIsOverTheTwoFactorsThatMatterMost) {
-    const auto models = data(150, R"(, "where": "x1 + x2 <= 1.5")");
-    const auto& map = models[0]["map"];
-    EXPECT_EQ(map["across"], 0);
-    EXPECT_EQ(map["up"], 1);
-    ASSERT_EQ(map["slice"].size(), 21U * 21U);
-    ASSERT_EQ(map["across_edges"].size(), 22U);
+    const auto found = pictures(150, R"(, "where": "x1 + x2 <= 1.5")");
+    const auto& map = found.map.value();
+    EXPECT_EQ(map.across, 0U);
+    EXPECT_EQ(map.up, 1U);
+    EXPECT_EQ(map.count, 21U);
+    ASSERT_EQ(map.slice.size(), 21U * 21U);
     for (std::size_t j = 0; j < 21; ++j)
         for (std::size_t i = 0; i < 21; ++i) {
             const double x1 = (static_cast<double>(i) + 0.5) / 21, x2 = (static_cast<double>(j) + 0.5) / 21;
-            const auto& slice = map["slice"][j * 21 + i];
-            const auto& averaged = map["averaged"][j * 21 + i];
-            ASSERT_EQ(slice.is_null(), x1 + x2 > 1.5) << "what the condition leaves out is empty";
-            ASSERT_EQ(averaged.is_null(), x1 + x2 > 1.5);
-            if (slice.is_null()) continue;
+            const double slice = map.slice[j * 21 + i], averaged = map.averaged[j * 21 + i];
+            ASSERT_EQ(std::isnan(slice), x1 + x2 > 1.5) << "what the condition leaves out is empty";
+            ASSERT_EQ(std::isnan(averaged), x1 + x2 > 1.5);
+            if (std::isnan(slice)) continue;
             EXPECT_NEAR(slice, known(x1, x2, 0.5), 0.05) << x1 << ' ' << x2;
             EXPECT_NEAR(averaged, known(x1, x2, 0.5), 0.05) << x1 << ' ' << x2;
         }

@@ -54,7 +54,7 @@ TEST(Conditions, TakeUnitsAndRatios) {
     };
     EXPECT_TRUE(united("mfr >= 0.4 g/s and gap < 3 mm", {0.0004, 0, 0.0029}));
     EXPECT_FALSE(united("mfr >= 0.4 g/s and gap < 3 mm", {0.00039, 0, 0.0029}));
-    EXPECT_TRUE(united("(0.4 g/s <= mfr) or gap between 2 mm and 30 um", {0.0004, 0, 0}));
+    EXPECT_TRUE(united("(0.4 g/s <= mfr) or gap between 30 um and 2 mm", {0.0004, 0, 0}));
     EXPECT_TRUE(united("not rough < 5 %", {0, 0.06, 0}));
     EXPECT_TRUE(united("mfr/gap > 2 and rough < 1", {3, 0.5, 1}));
     EXPECT_FALSE(united("mfr/gap > 2", {3, 0.5, none}));
@@ -80,19 +80,17 @@ std::string refused_condition(std::string_view text) {
 }
 
 ModelFactor range(std::string name, std::string unit, double low, double high) {
-    ModelFactor factor;
-    factor.name = std::move(name);
-    factor.unit = std::move(unit);
-    factor.low = low;
-    factor.high = high;
+    ModelFactor factor{{.name = std::move(name), .range = campaign::Between{low, high}, .unit = std::move(unit)}};
     return factor;
 }
 
 std::vector<ModelFactor> factors() {
     auto law = range("law", "", 0, 0);
     law.words = {"sjkr", "sjkr2", "paper"};
+    law.range = campaign::Levels{{law.words.begin(), law.words.end()}};
     auto cohesion = range("cohesion", "J/m3", 0, 35000);
     cohesion.numbers = {0, 10000, 35000};
+    cohesion.range = campaign::Levels{{0.0, 10000.0, 35000.0}};
     return {range("friction", "1", 0.2, 0.3), range("diameter", "m", 0.001, 0.003), range("gap", "m", 0.001, 0.005),
             cohesion, law};
 }

@@ -1,10 +1,12 @@
 // The page is one file: its data is well-formed and cannot break out, and nothing in it asks a network.
+#include "sweep/report/figures.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
 #include "tests/support/answered.hpp"
+#include "tests/support/drawings.hpp"
 #include "tests/support/written.hpp"
 
 #include <fmt/format.h>
@@ -110,14 +112,9 @@ TEST_F(Page, HoldsAllFiguresOfEveryCampaign) {
 
     const auto& y = campaign["observables"][campaign["main"].get<std::size_t>()];
     EXPECT_EQ(y["name"], "y");
-    EXPECT_EQ(y["history"]["points"], Json({40, 80, 120, 160}));
-    EXPECT_EQ(y["history"]["statistics"]["mean"]["errors"].size(), 4u);
     EXPECT_EQ(y["history"]["converged_at"], 120);  // g1 rests on 30 values from 80 points on
     EXPECT_EQ(unpacked(y["values"]).size(), 160u);
-    EXPECT_EQ(y["effects"].size(), 2u);
-    EXPECT_EQ(y["effects"][1].size(), 2u);
-    EXPECT_EQ(y["influence"]["factors"][0]["name"], "x1");
-    EXPECT_GT(y["influence"]["factors"][0]["first"], 0.9);
+    EXPECT_EQ(y["order"], Json({"x1", "response"}));
     EXPECT_EQ(y["largest"].size(), 8u);
     EXPECT_GE(y["largest"][0]["value"], y["largest"][1]["value"]);
     EXPECT_LE(y["smallest"][0]["value"], y["smallest"][1]["value"]);
@@ -127,9 +124,44 @@ TEST_F(Page, HoldsAllFiguresOfEveryCampaign) {
     EXPECT_EQ(failures["listed"].size(), failures["count"]);
     EXPECT_EQ(failures["listed"][0]["reason"], "the formula has no answer");
     EXPECT_EQ(failures["count"], y["history"]["excluded"]);
-    std::int64_t counted = 0;
-    for (const auto& n : y["histogram"]["counts"]) counted += n.get<std::int64_t>();
-    EXPECT_EQ(counted, y["history"]["count"]);
+}
+
+/// The same bytes as of the command `figure`.
+TEST_F(Page, ItsFiguresAreThoseOfTheCommand) {
+    answer("first", 160);
+    const report::PageSource source{&store, "a.db"};
+    const auto data = tests::parsed(report::page_data({&source, 1}));
+    const auto figures = drawings_of(data["campaigns"][0]);
+    std::vector<std::string> names;
+    for (const auto& [name, svg] : figures["y"].items()) names.push_back(name);
+    EXPECT_THAT(names,
+                testing::ElementsAre("distribution", "convergence:mean", "convergence:sd", "convergence:skewness",
+                                     "convergence:g1", "convergence:kurtosis", "effects:x1", "effects:response",
+                                     "sensitivity", "variance", "model:x1", "model:response", "model-map:averaged"));
+    const auto responses = study::read_responses(store, store.campaigns().front());
+    const report::FigureSubject subject{store, responses, responses.observable("y")};
+    names.resize(names.size() - 2);  // each figure of the model fits it: one of three is enough
+    for (const auto& name : names)
+        EXPECT_EQ(figures["y"][name].get<std::string>(),
+                  plot::drawn(report::figure_named(subject, name), 85, plot::FileType::svg))
+            << name;
+    EXPECT_FALSE(figures["y"]["effects:x1"] == figures["y"]["effects:response"]);
+    // Failed cases: crosses at the lower edge, with their entry of the legend.
+    EXPECT_THAT(figures["y"]["model:x1"].get<std::string>(), HasSubstr("failed cases"));
+}
+
+TEST_F(Page, TextsOfTheDatabaseStayTextsInItsFigures) {
+    answer_by(store,
+              R"({"campaign": "words", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+                  {"name": "response", "levels": ["sum", "ishigami"]}], "design": {"kind": "halton", "points": 40}})",
+              [](const Inputs& inputs) { return input(inputs, "x1"); });
+    auto responses = study::read_responses(store, store.campaigns().front());
+    responses.factors[1].seen[0] = evil + "\xff\x01";
+    const report::FigureSubject subject{store, responses, responses.observable("y")};
+    const auto svg = plot::drawn(report::figure_named(subject, "effects:response"), 85, plot::FileType::svg);
+    EXPECT_THAT(svg, HasSubstr("&lt;script&gt;alert(1)&lt;/script&gt;"));
+    EXPECT_THAT(svg, Not(HasSubstr("<script")));
+    EXPECT_THAT(svg, HasSubstr("\xEF\xBF\xBD\\x01</text>"));
 }
 
 TEST_F(Page, HoldsEveryCaseAsItIsStored) {
@@ -164,7 +196,6 @@ TEST_F(Page, SaysWhereWhiskersComeFromAndWhatIsUnexplained) {
     EXPECT_THAT(y["whiskers"].get<std::string>(), HasSubstr("the 8 independent sequences"));
     EXPECT_TRUE(y["pure_error"].is_null());
     EXPECT_EQ(y["influence"]["factors"][0]["trend"], "rises");
-    EXPECT_NEAR(y["influence"]["variance"]["main_effects"].get<double>(), 1, 0.01);
     EXPECT_THAT(y["influence"]["unexplained"].get<std::string>(), HasSubstr("main effects together explain"));
 }
 
@@ -329,8 +360,6 @@ TEST_F(Page, ALargeCampaignStaysLight) {
     EXPECT_EQ(unpacked(campaign["factors"][0]["values"]).size(), 6000u);
     EXPECT_EQ(campaign["failures"]["listed"].size(), report::most_listed_failures);
     EXPECT_GT(campaign["failures"]["count"], report::most_listed_failures);
-    EXPECT_LE(campaign["observables"][0]["history"]["points"].size(), 151u);
-    EXPECT_EQ(campaign["observables"][0]["history"]["points"].back(), 6000);
     EXPECT_LT(data.dump().size(), 300'000u);
 }
 

@@ -46,12 +46,11 @@ TEST(PrintAxes, ALogarithmicRangeStaysPositive) {
     EXPECT_NEAR(axis.high / 10, 0.001 / axis.low, 1e-12);
 }
 
-study::FactorColumn factor_of(std::vector<double> values, std::vector<std::string> levels = {}) {
-    study::FactorColumn factor;
-    factor.name = "a";
-    factor.levels = std::move(levels);
+study::FactorColumn factor_of(std::vector<double> values, const std::vector<Value>& levels = {}) {
+    study::FactorColumn factor{{"a", campaign::Between{0, 1}}};
+    if (!levels.empty()) factor.range = campaign::Levels{levels};
+    factor.seen = levels;
     factor.values = std::move(values);
-    if (factor.levels.empty()) factor.low = 0, factor.high = 1;
     return factor;
 }
 

@@ -35,7 +35,7 @@ TEST_F(Study, ReadsFactorsAndResponsesInOrderOfThePoints) {
     EXPECT_EQ(responses.settled_points, 64);
     ASSERT_EQ(responses.factors.size(), 2u);
     EXPECT_EQ(responses.factors[1].name, "x2");
-    EXPECT_EQ(responses.factors[1].high, 0.5);
+    EXPECT_EQ(responses.factors[1].ends().second, 0.5);
     ASSERT_NE(responses.main_observable(), nullptr);
     EXPECT_EQ(responses.main_observable()->name, "y");
     for (std::size_t row = 0; row < 64; ++row) {
@@ -51,8 +51,8 @@ TEST_F(Study, LevelsKeepTheOrderOfTheFile) {
         "design": {"kind": "lattice"}})",
               [](const Inputs& inputs) { return input(inputs, "x1"); });
     const auto responses = ask("c");
-    EXPECT_THAT(responses.factors[0].levels, ElementsAre("sum", "ishigami", "g_function"));
-    EXPECT_THAT(responses.factors[1].levels, ElementsAre("0.5", "0.25"));
+    EXPECT_THAT(responses.factors[0].seen_texts(), ElementsAre("sum", "ishigami", "g_function"));
+    EXPECT_THAT(responses.factors[1].seen_texts(), ElementsAre("0.5", "0.25"));
     EXPECT_THAT(responses.factors[0].values, ElementsAre(0, 0, 1, 1, 2, 2));
     EXPECT_EQ(factor_text(responses.factors[0], 3), "ishigami");
 }

@@ -150,12 +150,12 @@ TEST(SceneEstimates, CountTheGluedSpheres) {
     Inputs rough = campaign::scene_named("powder_spreading")->defaults();
     rough["diameter"] = 1e-6;
     rough["gap"] = 1e-5;
-    rough["travel"] = 1.0;
+    rough["travel"] = 0.5;
     rough["layer_area"] = 1e-9;
     rough["blade_thickness"] = 1e-4;
     const double smooth_bytes = campaign::scene_named("powder_spreading")->estimate_cost(rough, {}).bytes;
     rough["base"] = std::string("rough");
-    const double glued = 1.02e6 * 10 / (1.2 * 1.2);
+    const double glued = 0.52e6 * 10 / (1.2 * 1.2);
     EXPECT_NEAR(campaign::scene_named("powder_spreading")->estimate_cost(rough, {}).bytes - smooth_bytes, 1500 * glued,
                 0.05 * 1500 * glued);
 }

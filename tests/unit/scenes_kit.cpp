@@ -1,8 +1,9 @@
 // The kit of scenes: what a handle declares is what it reads, and the powder block means what it says.
 #include "solver/dem/material.hpp"
+#include "solver/scenes/kit/observable.hpp"
 #include "solver/scenes/kit/powder.hpp"
-#include "solver/scenes/kit/stl_wall.hpp"
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,14 +24,6 @@ Inputs defaults(const std::vector<ParameterSpec>& specs) {
     Inputs inputs;
     for (const auto& spec : specs) inputs.emplace(spec.name, spec.default_value);
     return inputs;
-}
-
-std::vector<ParameterSpec> block() {
-    return kit::declared(powder.diameter, powder.size_distribution, powder.size_spread, powder.size_file,
-                         powder.density, powder.youngs_modulus, powder.poisson_ratio, powder.restitution,
-                         powder.friction, powder.rolling_friction, powder.rolling_law, powder.tangential_limit,
-                         powder.cohesion, powder.cohesion_law, powder.surface_energy, powder.time_step,
-                         powder.time_step_fraction, powder.precision);
 }
 
 TEST(Kit, HandlesReadWhatTheyDeclare) {
@@ -67,84 +60,38 @@ TEST(Kit, HandlesRecordWhatTheyDeclare) {
     EXPECT_EQ(specs[1].over, "time (s)");
 }
 
-TEST(Kit, SizesInAFileAreTakenAsTheyAre) {
-    auto inputs = defaults(block());
-    inputs["size_distribution"] = std::string("file");
-    EXPECT_THROW((void)powder.sizes(inputs, {}), std::invalid_argument) << "no file named";
-    inputs["size_file"] = "file:" + std::string(32, '0') + ":/sizes.csv";
-    EXPECT_THROW((void)powder.sizes(inputs, {}), std::invalid_argument) << "no file given";
-    const Files files = {{"size_file", "diameter,number_fraction\n1e-3,0.5\n3e-3,0.5\n"}};
-    const auto sizes = powder.sizes(inputs, files);
-    EXPECT_DOUBLE_EQ(sizes.smallest() * powder.diameter(inputs), 1e-3);
-    EXPECT_DOUBLE_EQ(sizes.moment(1), 1);
-    inputs["diameter"] = 4e-3;
-    EXPECT_THROW((void)powder.sizes(inputs, files), std::invalid_argument) << "D outside of the file";
-}
-
 // The largest value of k A(d) - 4/3 E* sqrt(R*) d^(3/2), searched for.
-TEST(Kit, BondNumberIsTheLargestAttractionOverTheWeight) {
-    auto inputs = defaults(block());
-    inputs["diameter"] = 50e-6;
-    inputs["cohesion"] = 2e5;
+TEST(Scenes, BondNumberIsTheLargestAttractionOverTheWeight) {
+    const auto spreading = campaign::scene_named("powder_spreading");
+    Inputs inputs = spreading->defaults();
+    const double diameter = 2e-3, radius = diameter / 2, weight = dem::sphere_mass(radius, 7980) * 9.81;
+    const auto bond_number = [&] {
+        NoArtefacts none;
+        Observations into;
+        spreading->make(inputs, 1, none)->observe(into);
+        return into.scalars.contains("bond_number") ? into.scalars.at("bond_number") : 0.0;
+    };
+    inputs["cohesion"] = 2e4;
+    dem::Material material;
+    material.youngs_modulus = 21e6, material.poisson_ratio = 0.3;
+    const double stiffness = 4.0 / 3 * dem::effective_modulus(material) * std::sqrt(radius / 2);
     for (const auto& [word, factor] : {std::pair("sjkr", 1.0), std::pair("sjkr2", 2.0), std::pair("paper", 0.25)}) {
         inputs["cohesion_law"] = std::string(word);
-        const auto material = powder.material(inputs);
-        const double radius = 25e-6, stiffness = 4.0 / 3 * dem::effective_modulus(material) * std::sqrt(radius / 2);
         double largest = 0;
         for (int k = 0; k < 200'000; ++k) {
             const double d = 1e-13 * std::pow(1.0001, k);
             if (d > 0.01 * radius) break;
-            largest = std::max(largest, 2e5 * factor * std::numbers::pi * radius * d - stiffness * std::pow(d, 1.5));
+            largest = std::max(largest, 2e4 * factor * std::numbers::pi * radius * d - stiffness * std::pow(d, 1.5));
         }
-        EXPECT_NEAR(kit::pull_off_force(material, 50e-6) / largest, 1, 1e-6) << word;
-        Observations into;
-        kit::record_bond_number(into, material, 50e-6, 9.81);
-        EXPECT_NEAR(into.scalars.at("bond_number") * dem::sphere_mass(radius, material.density) * 9.81 / largest, 1,
-                    1e-6);
+        EXPECT_NEAR(bond_number() * weight / largest, 1, 1e-6) << word;
     }
-    inputs["surface_energy"] = 2e-3;  // which 'paper' does not know
-    EXPECT_EQ(powder.material(inputs).surface_energy, 0);
+    inputs["surface_energy"] = 2e-3;
     for (const auto& [word, factor] : {std::pair("jkr", 1.5), std::pair("dmt", 2.0)}) {
         inputs["cohesion_law"] = std::string(word);
-        const auto material = powder.material(inputs);
-        EXPECT_EQ(material.cohesion, 0) << "which " << word << " does not know";
-        EXPECT_NEAR(kit::pull_off_force(material, 50e-6) / (factor * std::numbers::pi * 2e-3 * 12.5e-6), 1, 1e-12);
+        EXPECT_NEAR(bond_number() * weight / (factor * std::numbers::pi * 2e-3 * radius / 2), 1, 1e-12);
     }
     inputs["surface_energy"] = 0.0;
-    Observations none;
-    kit::record_bond_number(none, powder.material(inputs), 50e-6, 9.81);
-    EXPECT_TRUE(none.scalars.empty());
-}
-
-TEST(Kit, AWallFromAnStlFileIsItsContents) {
-    constexpr kit::StlWall tool = kit::stl_wall("tool_file", "the tool", "tool_scale", "tool_facet_angle");
-    const auto specs = kit::declared(tool.file, tool.scale, tool.facet_angle);
-    auto inputs = defaults(specs);
-    EXPECT_FALSE(tool.given(inputs));
-    const std::string text =
-        "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 2 0 1\nvertex 0 3 1\nendloop\nendfacet\n"
-        "endsolid t\n";
-    const auto& check = std::get<Words>(specs[0].bounds).check_file;
-    EXPECT_NO_THROW(check(text));
-    EXPECT_THROW(check("x,y,z\n1,2,3\n"), std::invalid_argument);
-
-    inputs["tool_file"] = "file:" + std::string(32, 'a') + ":/somewhere/tool.stl";
-    inputs["tool_facet_angle"] = 6.0;
-    ASSERT_TRUE(tool.given(inputs));
-    const auto mesh = tool.mesh(inputs, {{"tool_file", text}});
-    ASSERT_EQ(mesh.triangles().size(), 1U);
-    EXPECT_DOUBLE_EQ(mesh.high()[1], 3e-3) << "mm";
-    EXPECT_NEAR(mesh.one_contact_angle(), 0.10472, 1e-5);
-    const auto refusal = [&](const Files& files) {
-        try {
-            (void)tool.mesh(inputs, files);
-        } catch (const std::invalid_argument& reason) {
-            return std::string(reason.what());
-        }
-        return std::string();
-    };
-    EXPECT_EQ(refusal({}), "tool_file: the contents of /somewhere/tool.stl are not given");
-    EXPECT_EQ(refusal({{"tool_file", "solid t\nendsolid t\n"}}), "tool_file: STL: there is no triangle in it");
+    EXPECT_EQ(bond_number(), 0) << "none without cohesion";
 }
 
 }  // namespace grainsweep::tests::scenes_kit_test

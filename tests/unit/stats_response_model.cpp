@@ -6,10 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <ranges>
 #include <variant>
 #include <vector>
 
@@ -114,6 +116,51 @@ TEST(ResponseModel, SaysHowMuchIsNoise) {
     EXPECT_NEAR(p.run_half_width(), 2.1199 * p.run_error(), 1e-4 * p.run_error());
     EXPECT_TRUE(p.inside);
     EXPECT_FALSE(model.predict(std::vector{0.5, 1.01}).inside);
+}
+
+/// Sobol's g-function of three factors: kinks that no smooth model follows.
+double kinks(std::span<const double> u) {
+    double product = 1;
+    for (std::size_t j = 0; j < u.size(); ++j) {
+        const auto a = static_cast<double>(j);
+        product *= (std::abs(4 * u[j] - 2) + a) / (1 + a);
+    }
+    return product;
+}
+
+/// Campaigns of the g-function; the first settings come again with values that are off by `noise`.
+Campaign with_repeats(std::size_t repeated, double noise) {
+    Campaign c = ask(kinks, 3, 96, noise);
+    for (std::size_t i = 0; i < repeated; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) c.points.push_back(c.points[3 * i + j]);
+        c.values.push_back(c.values[i] + noise);
+    }
+    return c;
+}
+
+TEST(ResponseModel, NoiseOfAResponseWithoutScatterIsMisfit) {
+    const auto known = fitted(with_repeats(3, 0)), plain = fitted(with_repeats(2, 0));
+    EXPECT_EQ(known.quality().noise, Noise::misfit);
+    EXPECT_EQ(known.quality().noise_share, 0);
+    const auto fresh = ask_design("random", 3, {{"points", std::int64_t{500}}}, 99);
+    const auto held = [&](const ResponseModel& model) {
+        return std::ranges::count_if(std::views::iota(std::size_t{0}, fresh.size()), [&](std::size_t i) {
+            const auto one = model.predict(fresh.point(i));
+            return std::abs(one.mean - kinks(fresh.point(i))) <= one.mean_half_width();
+        });
+    };
+    EXPECT_GT(held(known), 460);
+    EXPECT_GT(held(known), held(plain));
+    const auto one = known.predict(fresh.point(0));
+    EXPECT_EQ(one.scatter, 0);
+    EXPECT_EQ(one.run_error(), one.mean_error);
+}
+
+TEST(ResponseModel, RepeatsDecideWhatTheNoiseIs) {
+    EXPECT_EQ(fitted(with_repeats(0, 0)).quality().noise, Noise::scatter);
+    EXPECT_EQ(fitted(with_repeats(2, 0)).quality().noise, Noise::scatter) << "two could be chance";
+    EXPECT_EQ(fitted(with_repeats(3, 0)).quality().noise, Noise::misfit);
+    EXPECT_EQ(fitted(with_repeats(4, 0.05)).quality().noise, Noise::scatter);
 }
 
 TEST(ResponseModel, NoiseOfItsOwnPlaceIsFollowed) {

@@ -122,6 +122,20 @@ TEST(StoreExpression, AChainOfComparisonsIsRefused) {
         EXPECT_EQ(refusal(sound), "accepted") << sound;
 }
 
+// SQL puts every number before every text, and has words of its own.
+TEST(StoreExpression, WhatOtherLanguagesWriteIsRefused) {
+    for (const std::string_view quoted :
+         {"gap < '0.5'", "gap <= '1 mm'", "'0.2' < gap", "gap between 0.2 and '0.3'", "gap between '0.2' and 0.3",
+          "not gap > '.2'"})
+        EXPECT_THAT(refusal(quoted), HasSubstr("is a text, and no number lies above it")) << quoted;
+    EXPECT_THAT(refusal("gap > 0.5 && particles > 1"), HasSubstr("write AND"));
+    EXPECT_THAT(refusal("gap > 0.5 || particles > 1"), HasSubstr("write OR"));
+    EXPECT_THAT(refusal("gap > 0,5"), HasSubstr("'0,5': numbers have a decimal point"));
+    for (const std::string_view sound : {"cohesion_law > 'a'", "cohesion_law = '2'", "cohesion_law || '2' > 'a'",
+                                         "max(0,5) > gap", "(particles & 3) = 3", "particles in (1,2)"})
+        EXPECT_EQ(refusal(sound), "accepted") << sound;
+}
+
 TEST(StoreExpression, NothingAsksNothing) {
     EXPECT_TRUE(holds(""));
     EXPECT_TRUE(holds(" \n\t"));

@@ -61,7 +61,7 @@ TEST(ProgramTables, NumbersOfFortranAreRead) {
     EXPECT_EQ(table.column("a"), (Values{1000, 100}));
     EXPECT_EQ(table.column("b"), (Values{-2.5e-3, 1}));
     EXPECT_EQ(table.column("a b"), (Values{1.5e-103, 0}));
-    for (const char* none : {"1.0D", "D+03", "1.0DD3", "1-2-3", "1e400", "-1.0D+400", "0x10"})
+    for (const char* none : {"1.0D", "D+03", "1.0DD3", "1-2-3", "1-2", "3-005", "1.5-10", "1e400", "-1.0D+400", "0x10"})
         EXPECT_EQ(refusal(ProgramTable("f", std::string("v\n") + none + "\n", "comma"), "v"),
                   std::string("f: 'v' in row 0 is '") + none + "', which is no number");
 }
@@ -76,6 +76,26 @@ TEST(ProgramTables, ATableWithoutRowsHasItsNames) {
     EXPECT_TRUE(ProgramTable("f", "t v\n", "blank").column("v").empty());
     EXPECT_EQ(refusal(ProgramTable("f", "", "comma"), "v"), "f has no column 'v'; it has none");
     EXPECT_EQ(refusal(ProgramTable("f", "#\n", "comma"), "v"), "f has no column 'v'; it has none");
+}
+
+TEST(ProgramTables, ARowWithMoreCellsThanNamesIsRefused) {
+    const ProgramTable commas("f", "t,y\n0,1,5\n", "comma"), ends("f", "t,y\n0,2.5,\n", "comma");
+    EXPECT_THROW((void)commas.value("y", -1), std::invalid_argument) << "1,5 is one number with a decimal comma";
+    EXPECT_EQ(ends.value("y", -1), 2.5) << "a comma behind each line";
+}
+
+// A program that is started again, or writes two tables, may append below other names.
+TEST(ProgramTables, RowsBelowOtherNamesAreRefused) {
+    const ProgramTable two("f", "t,y\n0,5\n1,6\nu,v\n7,8\n", "comma");
+    EXPECT_EQ(refusal(two, "y", -1), "f: row 3 stands below other names, 'u,v': the file has two tables");
+    EXPECT_EQ(two.value("y", 1), 6);
+    EXPECT_THROW((void)two.column("y"), std::invalid_argument);
+    const ProgramTable turned("f", "# t y\n0 5\n# y t\n8 1\n", "blank");
+    EXPECT_EQ(refusal(turned, "y", -1), "f: row 1 stands below other names, 'y t': the file has two tables");
+    EXPECT_EQ(turned.value("y", 0), 5);
+    EXPECT_EQ(ProgramTable("f", "# t y\n0 5\n# t y\n1 8\n", "blank").value("y", -1), 8) << "the same names";
+    EXPECT_EQ(ProgramTable("f", "# t y\n0 5\n# in between\n1 8\n#\n", "blank").value("y", -1), 8);
+    EXPECT_EQ(ProgramTable("f", "name,y\na,nan\nb,8\n", "comma").value("y", -1), 8);
 }
 
 }  // namespace grainsweep::tests::tables_of_programs_test

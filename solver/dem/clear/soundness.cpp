@@ -133,11 +133,8 @@ void ClearEngine::check_energy() {
 
 /// Compares the length of a part with the longest stable step of the present contacts.
 void ClearEngine::check_network() {
-    gather_network(false);
+    gather_network(control_.looks_again());
     if (!control_.look(network_, part_, std::max(largest_overlap_, largest_wall_overlap_))) return;
-    gather_network(true);
-    network_.keep(control_.lasting());
-    static_cast<void>(network_.bound(part_));
     const StepShare found = network_.share(part_);
     if (!control_.judge(found, network_)) return;
     std::vector<ContactForce> all;

@@ -188,7 +188,7 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
             t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
             if (!walls.laws(w, field_.kind[i]).begin(t, of_contact.data())) continue;
             const Vec3 place = x - closest.distance * closest.normal;
-            visit(i, WallPoint{place, wall.twist().at(place)}, t, of_contact);
+            visit(i, WallPoint{place, wall.twist().at(place, closest.normal)}, t, of_contact);
         }
     });
 }

@@ -55,7 +55,7 @@ struct alignas(64) Record {
 /// Rounding errors of the last additions to position and velocity, carried to the next step. A separate column if radii
 /// differ, otherwise stored in Record and Force (residual.hpp).
 struct alignas(32) Residual {
-    float position[4];
+    float position[4];  ///< fourth, if radii differ: what single precision drops of the radius; 0 for members of clumps
     float velocity[4];
 };
 
@@ -142,11 +142,13 @@ struct alignas(16) PlacedWall {
     std::int32_t imaged;                             ///< 1: it has periodic images
     std::int32_t turned;                             ///< 1: its numbers are in its body frame
     std::int32_t turns;                              ///< 1: its material rotates
+    std::int32_t conveys;                            ///< 1: its surface moves along itself
     std::int32_t summed;                             ///< 1: its sums are needed; otherwise it is at rest
     double origin[3];                                ///< origin of the following members and of the numbers
     double middle[3], period[3], inverse_period[3];  ///< of images; 0 along axes without images
     double rows[3][3];                               ///< rotation from its body frame
     double velocity[3], spin[3], pivot[3];           ///< of its material
+    double surface[3];                               ///< velocity whose part along the surface it has besides
     double laws[constants_at_most];                  ///< of its surface, in contacts with the first kind
     const double* laws_of_kinds;                     ///< rows of constants_at_most, where there are several kinds
     unsigned char numbers[numbers_at_most];

@@ -146,7 +146,10 @@ void MixedEngine::append(std::span<const Sphere> spheres, std::span<const Body> 
         Residual residual{};
         const double radius = sphere.radius / s.length;
         r.radius = single_radius(sphere);
-        if (needs_.unequal) r.rest[3] = r.radius;
+        if (needs_.unequal) {
+            r.rest[3] = r.radius;
+            residual.position[3] = static_cast<float>(radius - static_cast<double>(r.radius));
+        }
         r.inverse_radius = 1 / r.radius;
         r.inverse_mass =
             sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius * relative_density(sphere))) : 0.0F;
@@ -171,9 +174,11 @@ void MixedEngine::append(std::span<const Sphere> spheres, std::span<const Body> 
         leave_over(field_, k, residual);
     }
     for (std::size_t b = 0; b < bodies.size(); ++b)
-        for (std::size_t k = 0; k < clumps_.shape_of(earlier + b).members.size(); ++k)
-            columns_.records[begin + bodies[b].first + k].inverse_mass =
-                static_cast<float>(s.mass / clumps_.mass[earlier + b]);
+        for (std::size_t k = 0; k < clumps_.shape_of(earlier + b).members.size(); ++k) {
+            const std::size_t member = begin + bodies[b].first + k;
+            columns_.records[member].inverse_mass = static_cast<float>(s.mass / clumps_.mass[earlier + b]);
+            if (needs_.unequal) columns_.residuals[member].position[3] = 0;
+        }
     place_fillers(field_);
 }
 

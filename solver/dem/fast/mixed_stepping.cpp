@@ -78,17 +78,12 @@ void MixedEngine::advance(std::int64_t steps, bool one_part) {
 /// Compares the length of a part with the longest stable step of the present contacts.
 void MixedEngine::check_network() {
     join_lists();
-    const auto gather = [this](bool slides) {
-        const std::vector<Velocities> before = slides ? motions(0) : std::vector<Velocities>{};
-        const ContactReader reader(laws_, space_, field_, columns_.id.data(), before, kernels_->width,
-                                   resting_.parked(), before, &clumps_);
-        reader.network(walls_, wall_time(), slides, network_);
-    };
-    gather(false);
+    const bool slides = control_.looks_again();
+    const std::vector<Velocities> before = slides ? motions(0) : std::vector<Velocities>{};
+    const ContactReader reader(laws_, space_, field_, columns_.id.data(), before, kernels_->width, resting_.parked(),
+                               before, &clumps_);
+    reader.network(walls_, wall_time(), slides, network_);
     if (!control_.look(network_, space_.scale.time, recent_overlap_)) return;
-    gather(true);
-    network_.keep(control_.lasting());
-    static_cast<void>(network_.bound(space_.scale.time));
     const StepShare found = network_.share(space_.scale.time);
     if (!control_.judge(found, network_)) return;
     std::vector<ContactForce> all;

@@ -81,16 +81,16 @@ GRAINSWEEP_LANES Vector<std::int32_t, 4> position_at(const Record* r, Place k) {
 GRAINSWEEP_LANES void load_positions(const Record* r, const Place* particle, I& x, I& y, I& z) {
     load_integers([&](int q) { return position_at(r, particle[q]); }, x, y, z);
 }
-/// Loads the parts of positions that are below a unit, in units. Fillers have finite ones.
-GRAINSWEEP_LANES void load_below_units(const Field& f, const Place* particle, F* xyz) {
+/// Loads the parts of positions that are below a unit, in units, and what single precision drops of the radii. Fillers
+/// have finite ones.
+GRAINSWEEP_LANES void load_below_units(const Field& f, const Place* particle, F* rows) {
     const bool apart = f.residuals != nullptr;
     const float* const first = apart ? f.residuals->position : f.records->rest;
     const std::uint64_t stride = (apart ? sizeof(Residual) : sizeof(Record)) / sizeof(float) / places_per_index;
     V a[4];
-    F rows[4];
     for (int e = 0; e < 4; ++e) a[e] = blocks([&](int q) { return hn::Load(four, first + particle[q] * stride); }, e);
     transpose_blocks(a, rows);
-    for (int k = 0; k < 3; ++k) xyz[k] = rows[k];
+    if (!apart) rows[3] = broadcast(0.0f);
 }
 /// Loads position of first minus position of second.
 GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y, I& z) {

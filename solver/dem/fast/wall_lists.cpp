@@ -87,6 +87,11 @@ Vec3 position_at_walls(const Field& f, std::int32_t particle, const Scale& scale
     return x;
 }
 
+double radius_at_walls(const Field& f, std::int32_t particle, const Scale& scale) {
+    const double dropped = f.residuals != nullptr ? double{f.residuals[particle].position[3]} : 0;
+    return (double{f.records[particle].radius} + dropped) * scale.length;
+}
+
 void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Walls& walls,
                         bool keep, const Parts& parts) {
     std::int32_t n = 0;

@@ -36,5 +36,7 @@ void for_each_near(const Field& f, const Walls& walls, std::size_t w, Visit&& vi
 [[nodiscard]] Vec3 position_of(const Record& record, const Scale& scale);
 /// Returns the position that the forces of walls use, m.
 [[nodiscard]] Vec3 position_at_walls(const Field& field, std::int32_t particle, const Scale& scale);
+/// Returns the radius that the forces of walls use, m.
+[[nodiscard]] double radius_at_walls(const Field& field, std::int32_t particle, const Scale& scale);
 
 }  // namespace grainsweep::dem::fast

@@ -28,14 +28,13 @@ GRAINSWEEP_LANES std::int32_t look_at(const Field& f, const PlacedWall& w, const
     }
     D numbers[count];
     for (int k = 0; k < count; ++k) numbers[k] = load(column[k]);
-    const D3 r = positions_at(f, w, lanes.particle);
+    const auto [r, radius] = before_wall(f, w, lanes.particle);
     const D3 body = w.turned != 0 ? to_body(w.rows, r) : r;
     const geometry::NearPiece<D> near = S::near_piece(numbers, body.x, body.y, body.z);
 
     const D zero = broadcast(0.0), one = broadcast(1.0);
     const D side = where_less(near.height, zero, zero - one, one), distance = side * near.height;
-    const D radius = exact(load_radii(f.records, lanes.particle)),
-            reach = radius + broadcast(double{f.constants.beyond_wall});
+    const D reach = radius + broadcast(double{f.constants.beyond_wall});
     const D beyond = max(zero, zero - near.inside), disc = fnma(distance, distance, reach * reach);
     D status = where_less(broadcast(list.margin), near.inside, one, where_less(beyond * beyond, disc, one + one, zero));
     status = where_less(distance, reach, status, zero);
@@ -45,8 +44,7 @@ GRAINSWEEP_LANES std::int32_t look_at(const Field& f, const PlacedWall& w, const
     const D3 plane{side * numbers[0], side * numbers[1], side * numbers[2]};
     const D3 normal = w.turned != 0 ? from_body(w.rows, plane) : plane;
     const D3 lever = fnma(distance, normal, r) - broadcast(w.pivot);
-    const D3 velocity = broadcast(w.velocity);
-    const V3 material = single(w.turns != 0 ? add_cross(velocity, broadcast(w.spin), lever) : velocity);
+    const V3 material = single(material_velocity(w, lever, normal));
     const V3 direction = single(normal), arm = single(lever);
     const F overlap = select(kind < broadcast(1.5f), single(radius - distance), broadcast(undecided));
     store(f.touch_particle + at, compress(load(lanes.particle), touched));

@@ -37,11 +37,15 @@ struct WallProgress {
     std::uint16_t touch[listed_vectors];  ///< touching lanes of each vector of the list
 };
 
-/// Returns the positions of particles relative to the origin of the wall's nearest image. Whole units would shift the
-/// overlap of a rolling sphere by up to 3e-3 of itself in a wide domain.
-GRAINSWEEP_LANES D3 positions_at(const Field& f, const PlacedWall& w, const Place* particle) {
+/// Particles before a wall: positions relative to the origin of its nearest image, and radii. Whole units would shift
+/// the overlap of a rolling sphere by up to 3e-3 of itself in a wide domain; radii of single precision by 1e-4.
+struct BeforeWall {
+    D3 position;
+    D radius;
+};
+GRAINSWEEP_LANES BeforeWall before_wall(const Field& f, const PlacedWall& w, const Place* particle) {
     I whole[3];
-    F below[3];
+    F below[4];
     load_positions(f.records, particle, whole[0], whole[1], whole[2]);
     load_below_units(f, particle, below);
     const auto along = [&](int a) { return (exact(whole[a]) + exact(below[a])) * broadcast(f.constants.unit[a]); };
@@ -53,7 +57,7 @@ GRAINSWEEP_LANES D3 positions_at(const Field& f, const PlacedWall& w, const Plac
         };
         r = {image(r.x, 0), image(r.y, 1), image(r.z, 2)};
     }
-    return r;
+    return {r, exact(load_radii(f.records, particle)) + exact(below[3])};
 }
 
 GRAINSWEEP_LANES D3 to_body(const double (&rows)[3][3], D3 a) {
@@ -90,9 +94,11 @@ struct Approach {
     F overlap;
 
     GRAINSWEEP_LANES Approach(const Field& f, const PlacedWall& w, const Place* particle)
-        : position(positions_at(f, w, particle)),
+        : Approach(w, before_wall(f, w, particle)) {}
+    GRAINSWEEP_LANES Approach(const PlacedWall& w, const BeforeWall& spheres)
+        : position(spheres.position),
           surface(nearest<S>(w, position)),
-          overlap(single(exact(load_radii(f.records, particle)) - surface.distance)) {}
+          overlap(single(spheres.radius - surface.distance)) {}
     /// Returns the lanes that touch, or whose contact may last beyond touch.
     GRAINSWEEP_LANES Chosen near(const Field& f) const { return Chosen(broadcast(-f.constants.beyond_wall) < overlap); }
 };
@@ -103,14 +109,23 @@ GRAINSWEEP_LANES void store(float (&rows)[3][wall_tile + 2 * width], int at, V3 
     store(rows[2] + at, compress(a.z, lanes));
 }
 
+/// Returns the velocity of the surface at a place, from its lever about the pivot and its normal.
+GRAINSWEEP_LANES D3 material_velocity(const PlacedWall& w, D3 lever, D3 normal) {
+    D3 velocity = broadcast(w.velocity);
+    if (w.turns != 0) velocity = add_cross(velocity, broadcast(w.spin), lever);
+    if (w.conveys == 0) return velocity;
+    const D3 surface = broadcast(w.surface);
+    return velocity + fnma(dot(surface, normal), normal, surface);
+}
+
 /// Packs these particles from p.slot to `end`, or until a tile is full.
 template <class S>
 GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int32_t end, WallTile& t, WallProgress& p) {
-    const D3 origin = broadcast(w.pivot), velocity = broadcast(w.velocity), spin = broadcast(w.spin);
+    const D3 origin = broadcast(w.pivot), velocity = broadcast(w.velocity);
     p.begin = p.slot;
     p.packed = 0;
     const V3 carried = single(velocity);
-    const bool turns = w.turns != 0, summed = w.summed != 0;
+    const bool uniform = w.turns == 0 && w.conveys == 0, summed = w.summed != 0;
     const int histories = f.histories;
     for (int b = 0; b < listed_vectors && p.slot < end && p.packed < wall_tile; ++b, p.slot += width) {
         const Place* particle = f.wall_particle + p.slot;
@@ -126,7 +141,7 @@ GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int3
         if (summed) {
             const D3 lever = fnma(surface.distance, normal, to_wall.position) - origin;
             store(t.lever, p.packed, single(lever), lanes);
-            store(t.velocity, p.packed, turns ? single(add_cross(velocity, spin, lever)) : carried, lanes);
+            store(t.velocity, p.packed, uniform ? carried : single(material_velocity(w, lever, normal)), lanes);
         }
         for (int a = 0; a < histories; ++a)
             store(t.memory[a] + p.packed, compress(load(f.wall_history[a] + p.slot), lanes));

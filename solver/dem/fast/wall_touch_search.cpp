@@ -151,7 +151,7 @@ std::int32_t WallTouches::ask_shape(const Search& s, Scratch& own, Place particl
     const Scale& scale = *s.scale;
     Columns& c = *s.columns;
     const auto i = static_cast<std::int32_t>(record_index(particle));
-    const double radius = radius_of(s.field->records[i], scale);
+    const double radius = radius_at_walls(*s.field, i, scale);
     const Vec3 x = wall.image().of(position_at_walls(*s.field, i, scale));
     const double reach = radius + double{s.field->constants.beyond_wall} * scale.length;
     const Twist& twist = wall.twist();
@@ -160,7 +160,7 @@ std::int32_t WallTouches::ask_shape(const Search& s, Scratch& own, Place particl
     for (const Closest& place : own.places) {
         const auto k = static_cast<std::size_t>(at++);
         const Vec3 normal = wall.pose().turned ? wall.pose().turn(place.normal) : place.normal;
-        const Vec3 on_wall = x - place.distance * normal, velocity = twist.at(on_wall), lever = on_wall - twist.pivot;
+        const Vec3 on_wall = x - place.distance * normal, velocity = twist.at(on_wall, normal), lever = on_wall - twist.pivot;
         c.touch_particle[k] = particle;
         c.touch_overlap[k] = static_cast<float>((radius - place.distance) / scale.length);
         for (std::size_t a = 0; a < 3; ++a) {

@@ -61,8 +61,10 @@ void write_pose(const MovingWall& wall, const Scale& scale, PlacedWall& w) {
 
 void write_twist(const Twist& twist, const Scale& scale, PlacedWall& w) {
     w.turns = twist.turns ? 1 : 0;
+    w.conveys = twist.conveys ? 1 : 0;
     for (std::size_t a = 0; a < 3; ++a) {
         w.velocity[a] = twist.velocity[a] / scale.speed();
+        w.surface[a] = twist.surface[a] / scale.speed();
         w.spin[a] = twist.spin[a] * scale.time;
         w.pivot[a] = (twist.pivot[a] - scale.centre[a]) / scale.length - w.origin[a];
     }

@@ -181,14 +181,15 @@ void MovingWall::require_possible(const geometry::Domain& domain) const {
             if (!turns(m) || (r != nullptr && parallel(r->axis, unit_vectors[k])) ||
                 (d != nullptr && parallel(d->axis, unit_vectors[k])))
                 continue;
-            throw std::invalid_argument("a wall that turns about an axis across a periodic one has no image");
+            throw std::invalid_argument(std::string("a wall that turns about an axis across the periodic axis ") +
+                                        "xyz"[k] + " has no image");
         }
         if (body_image_.period[k] == 0) continue;
         if (!std::isfinite(body_image_.middle[k]))
-            throw std::invalid_argument("a wall without end must not cut a periodic axis");
+            throw std::invalid_argument(std::string("a wall without end must not cut the periodic axis ") + "xyz"[k]);
         const Extent e = std::visit([k](const auto& s) { return s.extent(k); }, wall_.shape);
         if (e.high - e.low > (1 + rounding_of_length) * domain.length(k))
-            throw std::invalid_argument("a wall must not be longer than the period of its axis");
+            throw std::invalid_argument(std::string("a wall must not be longer than the period along ") + "xyz"[k]);
     }
 }
 

@@ -2,6 +2,9 @@
 #include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
 
+#include <numeric>
+#include <vector>
+
 namespace grainsweep::machine::probes {
 namespace {
 
@@ -12,17 +15,35 @@ class AmountProbe final : public machine::Probe {
 public:
     explicit AmountProbe(const Options& options) : selection_(options) {
         if (options.has("slower_than")) slower_than_ = options.number("slower_than");
+        latest_ = options.word("filling", "any") == "latest";
+        keeps_ = options.word("gone", "leave") == "stay";
     }
+    void restart() override { amount_.clear(); }
     double look(const Frame& frame) override {
         double sum = 0;
-        selection_.each(frame, [&](std::size_t i) {
-            if (slower_than_ && !(geometry::norm(frame.state.velocity[i]) < *slower_than_)) return;
-            sum += of == Amount::count ? 1 : of == Amount::mass ? frame.mass(i) : frame.volume(i);
-        });
-        return sum;
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            const bool counts = (!latest_ || frame.id(i) >= frame.newest) && selection_.holds(frame, i) &&
+                                (!slower_than_ || geometry::norm(frame.state.velocity[i]) < *slower_than_);
+            const double one = !counts               ? 0
+                               : of == Amount::count ? 1
+                               : of == Amount::mass  ? frame.mass(i)
+                                                     : frame.volume(i);
+            sum += one;
+            if (keeps_) keep(frame.id(i), one);
+        }
+        return keeps_ ? std::accumulate(amount_.begin(), amount_.end(), 0.0) : sum;
     }
+    void save(ByteWriter& out) const override { out.put(amount_); }
+    void restore(ByteReader& in) override { in.get(amount_); }
 
 private:
+    void keep(std::size_t id, double amount) {
+        if (id >= amount_.size()) amount_.resize(id + 1, 0.0);
+        amount_[id] = amount;
+    }
+
+    bool latest_ = false, keeps_ = false;
+    std::vector<double> amount_;  // by id, when last seen
     Selection selection_;
     std::optional<double> slower_than_;
 };
@@ -44,9 +65,16 @@ private:
 };
 
 constexpr std::array mean_diameter_options = {of_option, in_option};
-constexpr std::array amount_options = {of_option, in_option,
-                                       option("slower_than", Field::Kind::quantity, "m/s",
-                                              "only particles slower than this; default: all", false, positive_number)};
+constexpr std::array<std::string_view, 2> filling_words = {"any", "latest"}, gone_words = {"leave", "stay"};
+constexpr std::array amount_options = {
+    of_option, in_option,
+    option("slower_than", Field::Kind::quantity, "m/s", "only particles slower than this; default: all", false,
+           positive_number),
+    option("filling", Field::Kind::word, "", "'latest': only particles of the latest filling; default: any", false, {},
+           filling_words),
+    option("gone", Field::Kind::word, "",
+           "'stay': those that have left the domain count where they were last seen; default: leave", false, {},
+           gone_words)};
 
 template <Amount of>
 std::unique_ptr<machine::Probe> make_amount(const Options& given) {

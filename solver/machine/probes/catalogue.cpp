@@ -13,12 +13,13 @@ ProbeInfo amount_count(), amount_mass(), amount_volume(), bed_angle(), bed_fract
     cover_area(), cover_outline(), discharged_diameters(), discharged_mass(), discharged_number(), discharged_share(),
     fabric(), fastest(), flow_mass(), flow_number(), granular_temperature(), heap_angle(), heap_height(),
     heap_outline(), heap_residual(), heap_run_out(), height_of_share(), impact_energy(), impact_energy_spectrum(),
-    impact_number(), impact_number_spectrum(), kinetic_energy(), lacey(), largest_contact_force(), mass_share(),
-    mean_diameter(), mean_height(), momentum(), nematic_order(), orientation(), overlap(), particle_force(),
-    particle_torque(), point_fraction(), profile(), radius(), residence_time(), residence_time_density(),
-    residence_time_sd(), rms_speed(), rolling_torque(), rotational_energy(), solid_fraction(), spin(), stress(),
-    stress_profile(), velocity(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(), wall_position(),
-    wall_pressure(), wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
+    impact_number(), impact_number_spectrum(), kinetic_energy(), lacey(), largest_contact_force(), layer_bare_share(),
+    layer_fraction(), layer_roughness(), layer_unevenness(), mass_share(), mean_diameter(), mean_height(), momentum(),
+    nematic_order(), orientation(), overlap(), particle_force(), particle_torque(), point_fraction(), profile(),
+    radius(), residence_time(), residence_time_density(), residence_time_sd(), rms_speed(), rolling_torque(),
+    rotational_energy(), solid_fraction(), spin(), stress(), stress_profile(), velocity(), velocity_above(),
+    velocity_bend(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(), wall_position(), wall_pressure(),
+    wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
 
 }  // namespace probes
 
@@ -68,6 +69,10 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 kinetic_energy,
                                 lacey,
                                 largest_contact_force,
+                                layer_bare_share,
+                                layer_fraction,
+                                layer_roughness,
+                                layer_unevenness,
                                 mass_share,
                                 mean_diameter,
                                 mean_height,
@@ -91,6 +96,8 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 stress,
                                 stress_profile,
                                 velocity,
+                                velocity_above,
+                                velocity_bend,
                                 wall_angle,
                                 wall_energy,
                                 wall_force,

@@ -53,28 +53,27 @@ constexpr std::array discharge_options = {
     option("from", Field::Kind::region, "", "the region that they left, by centres; default: the domain")};
 
 template <Discharge of>
-std::unique_ptr<machine::Probe> make_discharge(const Options& given) {
-    return std::make_unique<DischargeProbe<of>>(given);
+ProbeInfo discharged(std::string_view name, std::string_view unit, std::string_view meaning) {
+    ProbeInfo row{name, unit, meaning, discharge_options, make_probe<DischargeProbe<of>>};
+    row.so_far = true;
+    return row;
 }
 
 }  // namespace
 
 ProbeInfo discharged_mass() {
-    return {"discharged_mass", "kg", "mass that has left a region or the domain", discharge_options,
-            make_discharge<Discharge::mass>};
+    return discharged<Discharge::mass>("discharged_mass", "kg", "mass that has left a region or the domain");
 }
 ProbeInfo discharged_number() {
-    return {"discharged_number", "1", "particles that have left a region or the domain", discharge_options,
-            make_discharge<Discharge::number>};
+    return discharged<Discharge::number>("discharged_number", "1", "particles that have left a region or the domain");
 }
 ProbeInfo discharged_diameters() {
-    return {"discharged_diameters", "m", "sum of the diameters of the particles that have left a region or the domain",
-            discharge_options, make_discharge<Discharge::diameters>};
+    return discharged<Discharge::diameters>(
+        "discharged_diameters", "m", "sum of the diameters of the particles that have left a region or the domain");
 }
 ProbeInfo discharged_share() {
-    return {"discharged_share", "1",
-            "mass that has left a region or the domain divided by that of all particles so far", discharge_options,
-            make_discharge<Discharge::share>};
+    return discharged<Discharge::share>(
+        "discharged_share", "1", "mass that has left a region or the domain divided by that of all particles so far");
 }
 
 }  // namespace grainsweep::machine::probes

@@ -51,7 +51,8 @@ ProbeInfo flow_mass() {
             false,
             {},
             nullptr,
-            Source::passages};
+            Source::passages,
+            true};
 }
 ProbeInfo flow_number() {
     return {"passed_number",
@@ -62,7 +63,8 @@ ProbeInfo flow_number() {
             false,
             {},
             nullptr,
-            Source::passages};
+            Source::passages,
+            true};
 }
 
 }  // namespace grainsweep::machine::probes

@@ -143,13 +143,15 @@ std::unique_ptr<machine::Probe> make_impacts(const Options& given) {
 ProbeInfo impact_energy() {
     return {"impact_energy",
             "J",
-            "energy that contacts have dissipated in the phases that count",
+            "energy that contacts have dissipated in the phases that count; of lasting ones also what they store "
+            "(contact_energy)",
             impact_options,
             make_impacts<false>,
             false,
             {},
             nullptr,
-            Source::steps};
+            Source::steps,
+            true};
 }
 ProbeInfo impact_energy_spectrum() {
     return {"impact_energy_spectrum",
@@ -160,12 +162,13 @@ ProbeInfo impact_energy_spectrum() {
             false,
             "energy of a contact, J",
             flaw_of_bins_along,
-            Source::steps};
+            Source::steps,
+            true};
 }
 ProbeInfo impact_number() {
     return {
-        "impact_number", "1",          "contacts that have ended", impact_number_options, make_impacts<true>, false, {},
-        nullptr,         Source::steps};
+        "impact_number", "1", "contacts that have ended", impact_number_options, make_impacts<true>, false, {}, nullptr,
+        Source::steps,   true};
 }
 ProbeInfo impact_number_spectrum() {
     return {"impact_number_spectrum",
@@ -176,7 +179,8 @@ ProbeInfo impact_number_spectrum() {
             false,
             "energy of a contact, J",
             flaw_of_bins_along,
-            Source::steps};
+            Source::steps,
+            true};
 }
 
 }  // namespace grainsweep::machine::probes

@@ -3,6 +3,7 @@
 #include "solver/machine/binning.hpp"
 #include "solver/machine/probe.hpp"
 #include "solver/machine/selection.hpp"
+#include "solver/observables/layer.hpp"
 
 namespace grainsweep::machine::probes {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using geometry::dot;
 using geometry::operator-;
 
-enum class ProfileOf { solid_volume, velocity, share, count };
+enum class ProfileOf { solid_volume, velocity, share, count, cut_volume };
 
 class Profile final : public machine::Probe {
 public:
@@ -21,10 +22,12 @@ public:
           bins_(bins_along(options)),
           velocity_along_(options.vector("velocity_along", {1, 0, 0})) {
         const auto word = options.word("quantity", "solid_volume");
-        of_ = word == "velocity" ? ProfileOf::velocity
-              : word == "share"  ? ProfileOf::share
-              : word == "count"  ? ProfileOf::count
-                                 : ProfileOf::solid_volume;
+        of_ = word == "velocity"     ? ProfileOf::velocity
+              : word == "share"      ? ProfileOf::share
+              : word == "count"      ? ProfileOf::count
+              : word == "cut_volume" ? ProfileOf::cut_volume
+                                     : ProfileOf::solid_volume;
+        if (options.word("bin", "centre") == "top") shown_ = 0.5;
     }
     double look(const Frame&) override { return undefined; }
     void profile(const Frame& frame, std::vector<Sample>& into) override {
@@ -35,6 +38,10 @@ public:
             const bool counts =
                 of_species_.empty() || std::ranges::find(of_species_, frame.species_of(i)) != of_species_.end();
             if (of_ != ProfileOf::share && !counts) continue;
+            if (of_ == ProfileOf::cut_volume) {
+                cut(dot(frame.state.position[i], along_), frame.state.radius[i], weight);
+                continue;
+            }
             const std::size_t bin = bins_.at(dot(frame.state.position[i], along_));
             if (bin == bins_.count) continue;
             const double volume = of_ == ProfileOf::count ? 1 : frame.volume(i);
@@ -44,12 +51,22 @@ public:
         }
         for (std::size_t bin = 0; bin < bins_.count; ++bin) {
             const double mean = weight[bin] > 0 ? sum[bin] / weight[bin] : undefined;
-            into.push_back({.bin = bins_.centre(bin),
-                            .value = of_ == ProfileOf::solid_volume || of_ == ProfileOf::count ? weight[bin] : mean});
+            const bool sums = of_ != ProfileOf::velocity && of_ != ProfileOf::share;
+            into.push_back({.bin = bins_.centre(bin) + shown_ * bins_.width(), .value = sums ? weight[bin] : mean});
         }
     }
 
 private:
+    /// Adds the parts of a sphere to the bins in which they lie.
+    void cut(double centre, double radius, std::vector<double>& into) const {
+        for (std::size_t bin = 0; bin < bins_.count; ++bin) {
+            const double low = bins_.low + static_cast<double>(bin) * bins_.width();
+            into[bin] += observables::sphere_below(low + bins_.width() - centre, radius) -
+                         observables::sphere_below(low - centre, radius);
+        }
+    }
+
+    double shown_ = 0;  // of a bin: place over its centre, bins
     std::optional<Region> in_;
     std::vector<std::size_t> of_species_;
     Vec3 along_;
@@ -58,7 +75,8 @@ private:
     ProfileOf of_ = ProfileOf::solid_volume;
 };
 
-constexpr std::array<std::string_view, 4> quantities = {"solid_volume", "velocity", "share", "count"};
+constexpr std::array<std::string_view, 5> quantities = {"solid_volume", "velocity", "share", "count", "cut_volume"};
+constexpr std::array<std::string_view, 2> bin_places = {"centre", "top"};
 constexpr std::array profile_options = {
     species_option,
     in_option,
@@ -67,8 +85,11 @@ constexpr std::array profile_options = {
     option("to", Field::Kind::quantity, "m", "where the last bin ends", true),
     bins_option,
     option("quantity", Field::Kind::word, "",
-           "'solid_volume' (m3), 'velocity' (m/s), 'share' of the species by volume, or 'count'; default: solid_volume",
+           "'solid_volume' (m3), 'velocity' (m/s), 'share' of the species by volume, 'count', or 'cut_volume' (m3): "
+           "spheres are cut at the ends of bins; default: solid_volume",
            false, {}, quantities),
+    option("bin", Field::Kind::word, "", "what is shown of a bin: its 'centre' or 'top'; default: centre", false, {},
+           bin_places),
     option("velocity_along", Field::Kind::direction, "", "the component of the velocity; default: x")};
 
 }  // namespace

@@ -111,7 +111,8 @@ ProbeInfo residence_time() {
             false,
             {},
             flaw_of_residence_time,
-            Source::passages};
+            Source::passages,
+            true};
 }
 ProbeInfo residence_time_sd() {
     return {"residence_time_sd",
@@ -122,7 +123,8 @@ ProbeInfo residence_time_sd() {
             false,
             {},
             flaw_of_residence_time,
-            Source::passages};
+            Source::passages,
+            true};
 }
 
 ProbeInfo residence_time_density() {
@@ -134,7 +136,8 @@ ProbeInfo residence_time_density() {
             false,
             "residence time, s",
             flaw_of_residence_time,
-            Source::passages};
+            Source::passages,
+            true};
 }
 
 }  // namespace grainsweep::machine::probes

@@ -124,8 +124,8 @@ private:
                 if (Held* const held = holding(x + frame.domain.wrapping(x))) held->contacts.add(force, piece);
             }
         };
-        add_way(contact.first, 1);
-        if (contact.second >= 0) add_way(contact.second, -1);
+        add_way(contact.first, -1);
+        if (contact.second >= 0) add_way(contact.second, 1);
     }
     [[nodiscard]] Held* holding(const Vec3& x) {
         if (in_ && !in_->contains(x)) return nullptr;

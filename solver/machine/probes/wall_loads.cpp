@@ -139,7 +139,8 @@ ProbeInfo wall_work() {
             false,
             {},
             nullptr,
-            Source::sums};
+            Source::sums,
+            true};
 }
 
 }  // namespace grainsweep::machine::probes

@@ -95,7 +95,8 @@ ProbeInfo wall_wear() {
             false,
             {},
             nullptr,
-            Source::steps};
+            Source::steps,
+            true};
 }
 ProbeInfo wall_wear_profile() {
     return {"wall_wear_profile",
@@ -106,7 +107,8 @@ ProbeInfo wall_wear_profile() {
             false,
             "centre of the bin, m",
             flaw_of_bins_along,
-            Source::steps};
+            Source::steps,
+            true};
 }
 
 }  // namespace grainsweep::machine::probes

@@ -1,13 +1,8 @@
 #include "solver/scenes/kit/powder.hpp"
 
 #include "solver/dem/material.hpp"
-#include "solver/dem/time_step.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <stdexcept>
 
 namespace grainsweep::kit {
 namespace {
@@ -43,47 +38,6 @@ dem::Material Powder::material(const Inputs& inputs) const {
     return material;
 }
 
-particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files& files) const {
-    using particles::SizeDistribution;
-    switch (size_distribution(inputs)) {
-        case SizeLaw::weibull_wide:
-            return SizeDistribution::weibull_classes(0.15);
-        case SizeLaw::weibull_narrow:
-            return SizeDistribution::weibull_classes(0.1);
-        case SizeLaw::lognormal:
-            return SizeDistribution::lognormal(size_spread(inputs));
-        case SizeLaw::uniform:
-            return SizeDistribution::uniform(size_spread(inputs));
-        case SizeLaw::file:
-            break;
-        case SizeLaw::monodisperse:
-            return {};
-    }
-    if (!size_file(inputs))
-        throw std::invalid_argument("size_distribution is 'file': name the file of the sizes in size_file");
-    const auto table = particles::SizeTable::read(size_file.contents(inputs, files)).over(diameter(inputs));
-    if (!(table.smallest() <= 1 && table.largest() >= 1)) {
-        char sentence[200];
-        std::snprintf(sentence, sizeof sentence,
-                      "diameter is %.4g m, and the sizes in size_file are %.4g to %.4g m: give one among them as the "
-                      "unit of lengths",
-                      diameter(inputs), table.smallest() * diameter(inputs), table.largest() * diameter(inputs));
-        throw std::invalid_argument(sentence);
-    }
-    return SizeDistribution::table(table);
-}
-
-double Powder::step(const Inputs& inputs, double radius, double speed) const {
-    if (const double given = time_step(inputs); given > 0) return given;
-    const dem::Material of = material(inputs);
-    return time_step_fraction(inputs) * dem::shortest_time(of, radius, speed);
-}
-
-std::optional<double> Powder::step_share(const Inputs& inputs) const {
-    if (time_step(inputs) > 0) return std::nullopt;
-    return dem::step_share(time_step_fraction(inputs));
-}
-
 dem::Method Powder::method(const Inputs& inputs) const {
     dem::Method method;
     method.precision = precision(inputs);
@@ -101,12 +55,6 @@ double pull_off_force(const dem::Material& material, double diameter) {
     const double a = material.cohesion * area_factor(material.cohesion_law) * radius;
     const double modulus = dem::effective_modulus(material);
     return a * a * a / (6 * modulus * modulus * radius);
-}
-
-void record_bond_number(Observations& into, const dem::Material& material, double diameter, double gravity) {
-    if (!(material.cohesion > 0 || material.surface_energy > 0)) return;
-    const double weight = dem::sphere_mass(diameter / 2, material.density) * gravity;
-    bond_number.record(into, pull_off_force(material, diameter) / weight);
 }
 
 }  // namespace grainsweep::kit

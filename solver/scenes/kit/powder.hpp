@@ -9,10 +9,7 @@
 #include "solver/dem/engine.hpp"
 #include "solver/particles/size_distribution.hpp"
 #include "solver/particles/size_table.hpp"
-#include "solver/scenes/kit/observable.hpp"
 #include "solver/scenes/kit/parameter.hpp"
-
-#include <optional>
 
 namespace grainsweep::kit {
 
@@ -108,28 +105,10 @@ struct Powder {
 
     /// Returns the material from all parameters from density to cohesion_law.
     [[nodiscard]] dem::Material material(const Inputs& inputs) const;
-    /// Returns the distribution of d/D. Throws std::invalid_argument with one sentence if the file is missing or D is
-    /// outside its range.
-    [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files& files) const;
-    /// Returns time_step, or time_step_fraction times the limit for particles of at least `radius` that collide at most
-    /// at `speed`.
-    [[nodiscard]] double step(const Inputs& inputs, double radius, double speed) const;
-    /// Returns the largest share of the longest stable step (dem::Setup::step_share); empty if time_step is given.
-    [[nodiscard]] std::optional<double> step_share(const Inputs& inputs) const;
     [[nodiscard]] dem::Method method(const Inputs& inputs) const;
 };
 
-/// Bond number, recorded if the powder is cohesive.
-inline constexpr Scalar bond_number{
-    "bond_number", "1",
-    "largest attraction of two particles of diameter D at rest over their weight: with cohesion energy density k, "
-    "contact area c R d (c = pi, 2 pi, pi/4 for sjkr, sjkr2, paper) and Hertz's repulsion, (c k R)^3/(6 E*^2 R m g); "
-    "with surface energy w 3/4 pi w R/(m g) for jkr, pi w R/(m g) for dmt, whatever the stiffness",
-    "the powder has no cohesion"};
-
 /// Returns the largest attraction of two equal spheres at rest, N; for cohesion by area, to first order in the overlap.
 [[nodiscard]] double pull_off_force(const dem::Material& material, double diameter);
-/// Records the bond number if there is cohesion.
-void record_bond_number(Observations& into, const dem::Material& material, double diameter, double gravity);
 
 }  // namespace grainsweep::kit

@@ -119,7 +119,7 @@ function failedRows(model) {
 }
 
 // The response against one factor: cases and binned mean, crosses where cases failed.
-function scatter(model, factor, bins, response) {
+function scatter(model, factor, means, response) {
   const across = quantity(factor), values = named(model, response.name), up = quantity(values);
   return figure(`${response.name} against ${factor.name}`, "", () => {
     const rows = randomRows(keptRows({ rows: model.campaign.settled }).filter((row) => Number.isFinite(values.values[row])), 1500);
@@ -128,7 +128,7 @@ function scatter(model, factor, bins, response) {
       type: "scatter",
       plugins: [crossesAt(failedRows(model).map((row) => ({ x: across.of(factor.values[row]) + spread(factor, row) })))],
       data: { datasets: [
-        { data: bins.map(([x, y]) => ({ x: across.of(x), y: y === null ? null : up.of(y) })), type: "line", showLine: factor.levels.length === 0, borderColor: colour("two"),
+        { data: means.map(([x, y]) => ({ x: across.of(x), y: y === null ? null : up.of(y) })), type: "line", showLine: factor.levels.length === 0, borderColor: colour("two"),
           backgroundColor: colour("two"), borderWidth: 2, pointRadius: factor.levels.length > 0 ? 5 : 0, pointStyle: "rectRot" },
         { data: points, backgroundColor: colour("dot"), borderWidth: 0, pointRadius: dotSize(points.length), clip: 6 }] },
       options: { scales: { x: variableAxis(factor), y: values.log ? variableAxis(values) : axis(up.title, aroundOne(rows.map((row) => values.values[row]), up.of)) },
@@ -136,6 +136,48 @@ function scatter(model, factor, bins, response) {
         plugins: { tooltip: { callbacks: { label: (item) => `${show(item.raw.x)}: ${show(item.raw.y)}` } } } },
     };
   }).node;
+}
+
+// Crosses, black on white to stand out on every colour.
+function drawCrosses(ctx, places) {
+  for (const [width, tone] of [[4, "#ffffff"], [1.8, "#000000"]]) {
+    ctx.lineWidth = width;
+    ctx.strokeStyle = tone;
+    ctx.beginPath();
+    for (const [x, y] of places) for (const up of [-1, 1]) { ctx.moveTo(x - 4, y - 4 * up); ctx.lineTo(x + 4, y + 4 * up); }
+    ctx.stroke();
+  }
+}
+
+// A plugin of a chart: crosses at `places`, each { x } or { x, y } in units of the axes; without y at the lower edge.
+function crossesAt(places) {
+  return { id: "crosses", afterDatasetsDraw({ ctx, scales, chartArea }) {
+    ctx.save();
+    drawCrosses(ctx, places.map(({ x, y }) => [scales.x.getPixelForValue(x), y === undefined ? chartArea.bottom : scales.y.getPixelForValue(y)]));
+    ctx.restore();
+  } };
+}
+
+// A chart of cells { x0, x1, y0, y1, value, ... } in units of the axes `x` and `y`; cells without a value stay empty.
+// `gap`: pixels between them. `over` draws on them; `label` returns the lines of a cell's tooltip.
+function cellChart({ x, y, cells, tones, gap, over, label }) {
+  const squares = { id: "squares", beforeDatasetsDraw({ ctx, scales }) {
+    const boxes = cells.map((cell) => ({ cell, left: scales.x.getPixelForValue(cell.x0), right: scales.x.getPixelForValue(cell.x1),
+      bottom: scales.y.getPixelForValue(cell.y0), top: scales.y.getPixelForValue(cell.y1) }));
+    ctx.save();
+    for (const { cell, left, right, bottom, top } of boxes) {
+      if (cell.value === null) continue;
+      ctx.fillStyle = tones.of(cell.value);
+      ctx.fillRect(left + gap / 2, top + gap / 2, right - left - gap, bottom - top - gap);
+    }
+    over(ctx, boxes, scales);
+    ctx.restore();
+  } };
+  const points = cells.map((cell) => ({ x: (cell.x0 + cell.x1) / 2, y: (cell.y0 + cell.y1) / 2, cell }));
+  return { type: "scatter", data: { datasets: [{ data: points, pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 40 }] },
+    options: { layout: { padding: { right: 74, top: 20 } }, interaction: { mode: "nearest", intersect: false }, scales: { x, y },
+      plugins: { colourBar: cells.some((cell) => cell.value !== null) ? { tones } : {}, tooltip: { callbacks: { label: (item) => label(item.raw.cell) } } } },
+    plugins: [squares] };
 }
 
 // ---- maps over two factors

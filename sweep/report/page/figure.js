@@ -1,54 +1,4 @@
-// Figures, drawn by Chart.js when they come into view and saved as SVG or PNG.
-const whiskers = {
-  id: "whiskers",
-  afterDatasetsDraw(chart) {
-    const { ctx } = chart, across = chart.options.indexAxis === "y", cap = across ? 4 : 3;
-    const scale = across ? chart.scales.x : chart.scales.y;
-    chart.data.datasets.forEach((set, index) => {
-      if (!set.errors || !chart.isDatasetVisible(index)) return;
-      ctx.save();
-      ctx.strokeStyle = set.errorColour || colour("ink");
-      ctx.lineWidth = 1.2;
-      chart.getDatasetMeta(index).data.forEach((element, i) => {
-        const at = set.data[i], value = at !== null && typeof at === "object" ? at.y : at, error = set.errors[i];
-        if (value === null || error === null || error === undefined) return;
-        const inside = (pixel) => (across ? Math.max(chart.chartArea.left, Math.min(chart.chartArea.right, pixel)) : pixel);  // names stand at the left
-        const low = inside(scale.getPixelForValue(value - error)), high = inside(scale.getPixelForValue(value + error));
-        const middle = across ? element.y : element.x;
-        ctx.beginPath();
-        for (const [from, a, to, b] of [[low, middle, high, middle], [low, middle - cap, low, middle + cap], [high, middle - cap, high, middle + cap]]) {
-          ctx.moveTo(...(across ? [from, a] : [a, from]));
-          ctx.lineTo(...(across ? [to, b] : [b, to]));
-        }
-        ctx.stroke();
-      });
-      ctx.restore();
-    });
-  },
-};
-
-// A dashed line at an abscissa.
-const marker = {
-  id: "marker",
-  afterDatasetsDraw(chart, _, options) {
-    if (options.at === null || options.at === undefined) return;
-    const x = chart.scales.x.getPixelForValue(options.at);
-    const { ctx, chartArea } = chart;
-    ctx.save();
-    ctx.strokeStyle = ctx.fillStyle = colour("three");
-    ctx.setLineDash([5, 4]);
-    ctx.beginPath();
-    ctx.moveTo(x, chartArea.top);
-    ctx.lineTo(x, chartArea.bottom);
-    ctx.stroke();
-    ctx.font = "11px system-ui, sans-serif";
-    const right = x > (chartArea.left + chartArea.right) / 2;
-    ctx.textAlign = right ? "right" : "left";
-    ctx.fillText(options.label, x + (right ? -5 : 5), chartArea.top + 11);
-    ctx.restore();
-  },
-};
-
+// Figures in which readers act, drawn by Chart.js when they come into view and saved as SVG or PNG.
 // The scale of colours, at the right of the figure.
 const colourBar = {
   id: "colourBar",
@@ -154,11 +104,9 @@ function configured(build) {
   const config = build();
   config.options = Object.assign({ responsive: true, maintainAspectRatio: false, animation: false }, config.options);
   config.options.plugins = Object.assign({ legend: { display: false } }, config.options.plugins);
-  config.plugins = [whiskers, marker, colourBar, ring].concat(config.plugins || []);
+  config.plugins = [colourBar, ring].concat(config.plugins || []);
   return config;
 }
-
-let figures = [];
 
 // Draws the figures out of view one by one while the browser is idle.
 const whenIdle = window.requestIdleCallback || ((work) => setTimeout(work, 50));
@@ -195,10 +143,7 @@ function figure(title, says, build, more) {
       else { inView.unobserve(box); inView.observe(box); drawTheRest(); }
     },
     drop() { inView.unobserve(box); if (self.chart) self.chart.destroy(); self.chart = null; } };
-  const saver = (kind, work) => button(kind, () => work(self, build), { class: "save", title: `Save this figure as ${kind}` });
-  self.node = el("figure", { class: "card" },
-    el("div", { class: "caption" }, el("h3", {}, title), el("span", { class: "savers" }, saver("SVG", saveSvg), saver("PNG", savePng))),
-    says ? el("p", { class: "says" }, says) : null, controls || null, box, below || null);
+  self.node = figureCard(title, says, [() => saveSvg(self, build), () => savePng(self, build)], controls || null, box, below || null);
   box.figure = self;
   figures.push(self);
   inView.observe(box);
@@ -221,13 +166,11 @@ function redrawn(self, build, ratio, use) {
   });
 }
 
-function savedAs(self, extension) { return `${fileName(data.campaigns[chosen.campaign].name, self.title)}.${extension}`; }
-
 function saveSvg(self, build) {
   redrawn(self, build, 1, (canvas, chart) => {
     const svg = svgRecorder(chart.ctx);
     chart.draw();
-    save(savedAs(self, "svg"), new Blob([svg(self.title, canvas.width, canvas.height)], { type: "image/svg+xml" }));
+    saveText(self.title, svg(self.title, canvas.width, canvas.height));
   });
 }
 
@@ -237,26 +180,10 @@ function savePng(self, build) {
     ctx.fillStyle = "#ffffff";
     ctx.resetTransform();
     ctx.fillRect(0, 0, canvas.width, canvas.height);
-    canvas.toBlob((blob) => save(savedAs(self, "png"), blob), "image/png");
+    canvas.toBlob((blob) => save(savedAs(self.title, "png"), blob), "image/png");
   });
-}
-
-// Replaces the page by the parts that `build` makes, and lists its sections in the navigation.
-function showPage(build) {
-  Chart.defaults.font.family = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
-  document.getElementById("database").textContent = data.databases.join(", ");
-  figures.forEach((one) => one.drop());
-  figures = [];
-  const page = document.getElementById("page");
-  page.replaceChildren(...build().filter(Boolean));
-  const sections = [...page.querySelectorAll("section[id]")], title = (one) => one.querySelector("h2").textContent;
-  const list = choice("Go to", [["", "…"], ...sections.map((one) => [one.id, title(one)])], "", (id) => {
-    sections.find((one) => one.id === id)?.scrollIntoView({ behavior: "smooth" });
-    list.control.value = "";
-  });
-  document.getElementById("sections").replaceChildren(list, ...sections.map((one) =>
-    el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, title(one))));
-  setTimeout(drawTheRest, 600);  // after the figures in view
 }
 
 window.addEventListener("beforeprint", () => figures.forEach((one) => one.draw()));
+Chart.defaults.font.family = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
+pageShown.push(() => setTimeout(drawTheRest, 600));  // after the figures in view

@@ -185,7 +185,7 @@ async function refresh() {
   refreshing = true;
   live.stale = false;
   try {
-    const fresh = await ask("data"), covered = numberOf(fresh.event);
+    const fresh = await unpacked(await ask("data")), covered = numberOf(fresh.event);
     replaceData(fresh);
     live.listDatabases();
     sinceData = sinceData.filter((told) => told.number > covered);

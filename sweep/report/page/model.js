@@ -10,24 +10,10 @@ function modelSection(campaign, response) {
   const model = campaign.models.find((one) => one.observable === response.name);
   if (!model) return null;
   if (model.refused) return section("model", "Response model", `Not available: ${model.refused}.`);
-  const factors = model.factors.map((f) => Object.assign({ meaning: "", values: [f.low, f.high] }, f)), { map, middle } = model;
-  const variable = { name: model.observable, unit: model.unit, levels: [] };
-  const settingText = (j) => { const f = factors[j]; return `${f.name} ${middle.setting[j] === null ? middle.texts[j] : shownOf(f).says(middle.setting[j])}`; };
-  const curves = model.order.map((j) => {
-    const curve = model.curves[j], value = quantity(variable, curve.mean.concat(curve.averaged).filter((x) => x !== null));
-    return bandCurve(factors[j], curve.at, curve, { title: `${model.observable} against ${factors[j].name}`, value, failed: model.failed.map((one) => one.setting[j]) });
-  });
-  const maps = [];
-  if (map) {
-    const [a, b] = [factors[map.across].name, factors[map.up].name];
-    const rest = factors.map((_, j) => j).filter((j) => j !== map.across && j !== map.up);
-    const drawn = (values, says) => {
-      const numbers = values.filter((x) => x !== null);
-      return numbers.length === 0 ? null : cellMap(map, factors, values, { title: `${model.observable} against ${a} and ${b}`, says, variable, failed: model.failed, tones: () => colouring(variable, numbers) });
-    };
-    maps.push(drawn(map.averaged, rest.length > 0 ? "Average over the other factors." : "Mean response."));
-    if (rest.length > 0) maps.push(drawn(map.slice, `Other factors at mid-range: ${rest.map(settingText).join(", ")}.`));
-  }
-  return section("model", "Response model", "Predictions between the computed cases. Blue: other factors at mid-range, with the 95 % bands of the mean (shaded) and of a single run (dashed); at levels a bar and whiskers. Orange: average over the other factors." + failedSays(model.failed),
-    el("div", { class: "grid" }, curves), el("div", { class: "grid wide" }, maps.filter(Boolean)), modelShares(model.influence), el("div", { class: "card" }, model.says.trim().split("\n").map((text) => el("p", { class: "notes" }, text))));
+  const [a, b] = model.over, cards = (figure, caption) => paintedCards(campaign, response.name, figure, caption);
+  const curves = cards("model", (name) => [`${model.observable} against ${name}`, ""]);
+  const maps = cards("model-map", (panel) => [`${model.observable} against ${a} and ${b}`,
+    panel === "mid-range" ? `Other factors at mid-range: ${model.others}.` : model.others ? "Average over the other factors." : "Mean response."]);
+  return section("model", "Response model", "Predictions between the computed cases. Blue: other factors at mid-range, with the 95 % bands of the mean (shaded) and of a single run (dashed); at words a dot and whiskers. Orange: average over the other factors." + failedSays(model.failed),
+    el("div", { class: "grid" }, curves), el("div", { class: "grid wide" }, maps), modelShares(model.influence), el("div", { class: "card" }, model.says.trim().split("\n").map((text) => el("p", { class: "notes" }, text))));
 }

@@ -5,6 +5,12 @@ function bytesOf(text) {
   return bytes;
 }
 
+// Bytes that zlib packed.
+function inflated(bytes) {
+  const stream = new Response(bytes).body.pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer().then((buffer) => new Uint8Array(buffer));
+}
+
 const superscript = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 function raised(digits) { return digits.replace("-", "⁻").replace(/\d/g, (d) => superscript[d]); }
 function power(exponent) { return "10" + raised(String(exponent)); }

@@ -34,6 +34,31 @@ function heading(model) {
         el("p", { class: "says" }, "Design: ", el("code", {}, campaign.design_text))))];
 }
 
+const statistics = [
+  ["mean", "mean"], ["sd", "standard deviation (divisor N)"], ["skewness", "skewness (Pearson, 3 (mean − median)/sd)"],
+  ["g1", "moment skewness g1"], ["kurtosis", "kurtosis (3 for a normal distribution)"]];
+
+// How a statistic of a response is shown: mean and standard deviation in its unit, the others are numbers.
+function statisticOf(response, name) {
+  const { factor, unit } = ["mean", "sd"].includes(name) ? quantityOf(response) : { factor: 1, unit: "" };
+  return { factor, unit, says: (text) => scaledText(text, factor) + (unit ? ` ${unit}` : "") };
+}
+
+// The panels of a painted figure: [name, SVG]; one alone has no name.
+function painted(campaign, response, figure) {
+  return Object.entries(campaign.figures[response] || {}).filter(([name]) => name === figure || name.startsWith(figure + ":"))
+    .map(([name, svg]) => [name.slice(figure.length + 1), svg]);
+}
+
+// A card for each panel, with [title, text] by `captions`; below it the same panel of the campaign to compare with.
+function paintedCards(campaign, response, figure, captions, other) {
+  const second = new Map(other ? painted(other.model.campaign, response, figure) : []);
+  return painted(campaign, response, figure).map(([panel, svg]) => picture(...captions(panel),
+    second.has(panel) ? [[campaignTitle(campaign), svg], [campaignTitle(other.model.campaign), second.get(panel)]] : [["", svg]]));
+}
+
+function captionOfFactor(model) { return (name) => [name, model.factors.find((factor) => factor.name === name).meaning]; }
+
 // Figures over all finished cases of an unfinished campaign, marked as provisional.
 function provisionalMark(history) {
   if (!history.provisional) return null;
@@ -47,16 +72,17 @@ function verdict(history) {
   return el("div", { class: kind }, history.verdict, history.notes.map((note) => el("div", { class: "warning" }, note)));
 }
 
-function distributionSection(response, sample, other) {
+function distributionSection(campaign, response, other) {
   const { provisional } = response.history;
   const columns = [["statistic"], ["value", "number"]].concat(provisional ? [["provisional", "number provisional"]] : [], other ? [[campaignTitle(other.model.campaign), "number"]] : []);
-  const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text].concat(provisional ? [provisional.statistics[name]] : [], other ? [other.response.history.statistics[name].text] : [])
+  const rows = statistics.map(([name, title]) => [title, response.history.statistics[name]].concat(provisional ? [provisional.statistics[name]] : [], other ? [other.response.history.statistics[name]] : [])
     .map((text, k) => (k === 0 ? text : statisticOf(response, name).says(text))));
   const levels = response.history.levels.map(({ title, has_unit, text }) => [title, has_unit ? statisticOf(response, "mean").says(text) : text]);
   const { title: named } = quantityOf(response), says = response.meaning ? `${named}: ${response.meaning}` : named;
-  return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, response.histogram.counts.length > 0 ? histogram(response, other && other.response) : null,
+  const { count, zero_share: zeros } = response.history, values = plural(count, "value") + (zeros > 0 ? `, ${Number((100 * zeros).toPrecision(2))} % zero` : "");
+  return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, paintedCards(campaign, response.name, "distribution", () => ["Distribution", values], other),
     el("div", { class: "card" }, el("h3", {}, "Moments"),
-      el("p", { class: "says" }, (response.history.count > 0 ? plural(response.history.count, "value") + (sample ? " with 95 % errors." : ".") : "No value counts yet.") +
+      el("p", { class: "says" }, (response.history.count > 0 ? plural(response.history.count, "value") + (campaign.sample ? " with 95 % errors." : ".") : "No value counts yet.") +
         (response.history.excluded > 0 ? ` ${plural(response.history.excluded, "case")} without a value excluded.` : "")),
       table(columns, rows)),
     response.history.count > 0 ? el("div", { class: "card" }, el("h3", {}, "Quantiles"), table([["level"], ["value", "number"]], levels)) : null));
@@ -71,33 +97,32 @@ function bracketsSection(campaign) {
 }
 
 function momentsSection(campaign, response, other) {
-  if (!campaign.sample || response.history.points.length === 0) return null;
+  const caption = (name) => [statistics.find(([one]) => one === name)[1], statisticOf(response, name).says(response.history.statistics[name])];
+  const cards = paintedCards(campaign, response.name, "convergence", caption, other);
+  if (cards.length === 0) return null;
   return section("convergence", "Convergence", "Moments against the number of design points, with 95 % errors. The verdict uses complete blocks of the " +
-    "prefix of the design. It does not depend on the order in which cases finish.",
-  el("div", { class: "grid" }, statistics.map((statistic) => moment(campaign, response, other && other.response.history, statistic))));
+    "prefix of the design. It does not depend on the order in which cases finish.", el("div", { class: "grid" }, cards));
 }
 
 // A calibration gathers its cases where its targets are met: means over bins compare unlike settings.
 function effectsSection(model, response, other) {
   if (model.campaign.calibration) return null;
-  const others = model.factors.map((factor) => effectOf(other, factor));
-  const range = effectRange(response.effects.concat(others.filter(Boolean)));
   return section("effects", "Main effects", "Mean response in 16 bins of equal count, or fewer for few cases. Each level is a bin. All factors share one scale. " +
-    `Whiskers: ${response.whiskers}.`,
-  el("div", { class: "grid" }, model.factors.map((factor, j) => effect(factor, response.effects[j], response, range, others[j]))));
+    `Whiskers: ${response.whiskers}.`, el("div", { class: "grid" }, paintedCards(model.campaign, response.name, "effects", captionOfFactor(model), other)));
 }
 
 const trendSigns = { rises: "↗ rises", falls: "↘ falls", bends: "∼ bends" };
 
-function influenceSection(response) {
+function influenceSection(campaign, response) {
   const { influence } = response, n = "number";
-  const { factor, unit } = influenceOf(response), titleOf = (column) => column + (unit ? ` (${unit})` : "");
+  const { factor, unit } = influence.shares ? { factor: 1, unit: "" } : quantityOf(response), titleOf = (column) => column + (unit ? ` (${unit})` : "");
   const columns = [["factor"], ...influence.shows.map((one) => [titleOf(one.column), n]), ["trend", "sign"], ["rank correlation", n]];
   const rows = influence.factors.map((f) => [f.name, ...influence.shows.map((one) => scaledText(f[one.text], factor)), trendSigns[f.trend] || "", scaledText(f.rank_text, 1)]);
-  return section("sensitivity", "Sensitivity", influence.says, el("div", { class: "grid wide" }, influenceFigure(response),
-    el("div", { class: "card" }, table(columns, rows), varianceBar(influence.variance),
+  const cards = (figure, title) => paintedCards(campaign, response.name, figure, () => [title, ""]);
+  return section("sensitivity", "Sensitivity", influence.says, el("div", { class: "grid wide" }, cards("sensitivity", influence.shares ? "Share of the variance" : "Elementary effects"),
+    el("div", { class: "card" }, table(columns, rows),
       influence.unexplained ? el("p", { class: "says" }, capital(influence.unexplained) + ".") : null,
-      influence.notes.map((note) => el("p", { class: "says" }, note)))));
+      influence.notes.map((note) => el("p", { class: "says" }, note))), cards("variance", "Parts of the variance")));
 }
 
 function curvesSection(model) {
@@ -144,9 +169,7 @@ function provenanceSection(campaign) {
 
 // The first view: the response against its most influential factor, coloured by the second.
 function firstView(model, response) {
-  const weight = (f) => f.mu_star || f.total || f.first || 0;
-  const order = [...response.influence.factors].sort((a, b) => weight(b) - weight(a)).map((f) => f.name);
-  const [a, b] = [order[0] || model.variables[0].name, order[1] || ""];
+  const [a, b] = [response.order[0] || model.variables[0].name, response.order[1] || ""];
   chosen.view = { x: a, y: response.name, by: b };
   chosen.map = { a, b: b || a, shows: "mean" };
   chosen.curvesBy = a;
@@ -155,7 +178,7 @@ function firstView(model, response) {
 function againstSection(model, response) {
   const { settled } = model.campaign;
   return section("against", "Against each factor", settled > 1500 ? `1500 of ${settled} cases, chosen at random. Lines: binned means of all cases.` : "All cases, and their binned mean.",
-    el("div", { class: "grid" }, model.factors.map((factor, j) => scatter(model, factor, response.effects[j], response))));
+    el("div", { class: "grid" }, model.factors.map((factor, j) => scatter(model, factor, response.means[j], response))));
 }
 
 function plainCases(model) {
@@ -202,7 +225,7 @@ function compared(response) {
 function comparedLine(campaign, response, other) {
   if (chosen.other === "") return null;
   const name = campaignTitle(data.campaigns[Number(chosen.other)]);
-  return el("p", { class: "overlaid" }, other ? ["Blue: ", el("b", {}, campaignTitle(campaign)), "; orange: ", el("b", { class: "second" }, name)]
+  return el("p", { class: "overlaid" }, other ? ["Blue: ", el("b", {}, campaignTitle(campaign)), "; orange: ", el("b", { class: "second" }, name), ". Painted figures stand one below the other."]
     : `${name} has no values of ${response ? response.name : "this response"}.`);
 }
 
@@ -221,8 +244,8 @@ function render() {
     ({ cases } = explore);
     return [...heading(model), comparedLine(campaign, response, other),
       answered ? null : el("p", { class: "says" }, campaign.observables.length === 0 ? "The scene measures series and profiles only." : "No case has a result yet."),
-      settled ? bracketsSection(campaign) : null, calibrationSection(campaign), answered ? distributionSection(response, campaign.sample, other) : null,
-      ...(settled ? [momentsSection(campaign, response, other), effectsSection(model, response, other), influenceSection(response), modelSection(campaign, response)] : []),
+      settled ? bracketsSection(campaign) : null, calibrationSection(campaign), answered ? distributionSection(campaign, response, other) : null,
+      ...(settled ? [momentsSection(campaign, response, other), effectsSection(model, response, other), influenceSection(campaign, response), modelSection(campaign, response)] : []),
       answered ? filmsSection(model) : null, ...explore.sections, settled ? againstSection(model, response) : null, curvesSection(model),
       settled ? extremesSection(model, response) : null, failuresSection(model), provenanceSection(campaign)];
   });
@@ -309,11 +332,13 @@ function start() {
   const others = document.getElementById("other");
   others.addEventListener("change", () => { chosen.other = others.value; render(); });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", render);
-  if (data.campaigns.length === 0) return;
-  fillObservables();
-  fillOthers();
-  render();
-  showAsked();
+  unpacked(data).then(() => {
+    if (data.campaigns.length === 0) return;
+    fillObservables();
+    fillOthers();
+    render();
+    showAsked();
+  });
 }
 
 // #case=ID behind the page's address shows that case; the beginning of its id is enough.

@@ -1,17 +1,17 @@
 // The page of a process window: the setting, its predictions, the map over the two most influential factors, and every
 // response against every factor through the setting.
 const chosen = { campaign: 0 };
-const factors = data.factors.map((f) => Object.assign({ meaning: "", values: [f.low, f.high] }, f));
-const responses = data.responses.map((r) => Object.assign({ levels: [] }, r));
+const { factors, responses } = data;
 const wanted = data.where || "no condition";
 const sure = `${Number((100 * (1 - data.risk)).toPrecision(4))} %`;
 
 function settingText(one, j) {
   if (one.setting[j] === null) return one.texts[j];
-  const factor = factors[j], { factor: scale, unit } = quantity(factor);
-  return factor.levels.length > 0 ? shownOf(factor).says(one.setting[j]) : `${show(one.setting[j] * scale, 6)}${unit ? " " + unit : ""}`;
+  const factor = factors[j], shown = quantity(factor);
+  if (factor.levels.length > 0) return shown.says(factor.numbers.length > 0 ? factor.numbers.indexOf(one.setting[j]) : one.setting[j]);
+  return `${show(shown.of(one.setting[j]), 6)}${shown.unit ? " " + shown.unit : ""}`;
 }
-function responseScale(k) { return quantity(responses[k], data.curves.flatMap((curve) => curve.responses.map((r) => r[k].mean)).filter((x) => x !== null)); }
+function responseScale(k) { return quantity(responses[k]); }
 function withWidth(k, mean, width) { const s = responseScale(k); return withError(s.of(mean), s.of(width)) + (s.unit ? ` ${s.unit}` : ""); }
 
 function settingSection() {
@@ -29,43 +29,17 @@ function settingSection() {
     el("div", { class: "grid wide" }, el("div", { class: "card" }, el("h3", {}, "Setting"), set), responses.length > 0 ? el("div", { class: "card" }, el("h3", {}, "Prediction"), gives) : null));
 }
 
-// Cells of a map, the edge of the window, and the best setting.
-function windowMap(values, title, says, variable, tones) {
-  const { map, best } = data;
-  return cellMap(map, factors, values, { title, says, variable, tones, setting: best.setting, failed: data.failed,
-    inside: (k) => map.probability[k] !== null && map.probability[k] >= 1 - data.risk,
-    more: (k) => [`probability ${show(map.probability[k], 3)}`] });
-}
+function drawn(list) { return list.map(({ title, says, svg }) => picture(title, says, [["", svg]])); }
 
-function mapSection() {
-  const { map } = data;
-  if (!map) return null;
-  const [a, b] = [factors[map.across], factors[map.up]];
-  const rest = factors.map((f, j) => [f, j]).filter(([, j]) => j !== map.across && j !== map.up).map(([f, j]) => `${f.name} ${settingText(data.best, j)}`);
+function mapSection({ maps }) {
+  if (maps.length === 0) return null;
+  const rest = data.others.map((j) => `${factors[j].name} ${settingText(data.best, j)}`);
   const says = `Through the setting, against the two factors that decide most whether the condition holds.${rest.length > 0 ? ` Other factors: ${rest.join(", ")}.` : ""} Inside the line the condition holds with probability ${sure} or more. The ring marks the setting.` + failedSays(data.failed);
-  const probability = { name: "probability", unit: "1", levels: [] };
-  const whole = () => Object.assign(colouring(probability, [0, 1]), { title: "probability" });
-  const maps = [windowMap(map.probability, `Process window: ${wanted}`, `Probability of the condition against ${a.name} and ${b.name}.`, probability, whole)];
-  if (map.objective) {
-    const numbers = map.objective.filter((x) => x !== null);
-    if (numbers.length > 0) maps.push(windowMap(map.objective, `${data.objective} against ${a.name} and ${b.name}`, "Predicted mean.", responses[0], () => colouring(responses[0], numbers)));
-  }
-  return section("map", "Process window", says, el("div", { class: "grid wide" }, maps));
+  return section("map", "Process window", says, el("div", { class: "grid wide" }, drawn(maps)));
 }
 
-function curveFigure(j, k) {
-  const curve = data.curves[j], one = k === null ? null : curve.responses.map((r) => r[k]);
-  const title = `${k === null ? "probability of the condition" : responses[k].name} against ${factors[j].name}`;
-  const lines = k === null ? { mean: curve.probability } : { mean: one.map((r) => r.mean), mean_half_width: one.map((r) => r.mean_half_width), run_half_width: one.map((r) => r.run_half_width) };
-  return bandCurve(factors[j], curve.at, lines, { title, value: k === null ? { of: (x) => x, title: "probability" } : responseScale(k),
-    limits: k === null ? { min: 0, max: 1 } : {}, marker: data.best.setting[j] === null ? null : { at: data.best.setting[j], label: "setting" }, failed: data.failed.map((one) => one.setting[j]) });
-}
-
-function curvesSection() {
-  const order = data.order;
-  const figuresOf = (k) => order.map((j) => curveFigure(j, k));
-  const all = responses.flatMap((_, k) => figuresOf(k)).concat(data.where ? figuresOf(null) : []);
-  return section("curves", "Along each factor", "Predictions through the setting; the other factors keep their values there. Shaded: 95 % band of the mean. Dashed: 95 % band of a single run." + failedSays(data.failed), el("div", { class: "grid" }, all));
+function curvesSection({ curves }) {
+  return section("curves", "Along each factor", "Predictions through the setting; the other factors keep their values there. Shaded: 95 % band of the mean. Dashed: 95 % band of a single run." + failedSays(data.failed), el("div", { class: "grid" }, drawn(curves)));
 }
 
 function listSection(id, title, says, list) {
@@ -78,11 +52,10 @@ function listSection(id, title, says, list) {
 function start() {
   document.title = `${data.campaign}: process window`;
   for (const id of ["campaign-choice", "other-choice", "observable-choice"]) document.getElementById(id).hidden = true;
-  showPage(() => [el("h1", {}, `${data.campaign}: process window`), el("p", { class: "says" }, `${data.scene} · ${wanted}`), settingSection(), mapSection(), curvesSection(),
+  showPage(() => [el("h1", {}, `${data.campaign}: process window`), el("p", { class: "says" }, `${data.scene} · ${wanted}`), settingSection(), mapSection(data.campaigns[0].figures), curvesSection(data.campaigns[0].figures),
     listSection("front", "Trade-off", `Settings where ${data.objective} cannot improve unless ${data.against} worsens. ${data.volume ? `Here: ${data.volume}.` : "The condition need not hold."}`, data.front),
     listSection("next", "To run next", "The most promising cases.", data.next),
     section("basis", "Basis", null, el("div", { class: "card" }, data.models.concat(data.notes).map((text) => el("p", { class: "notes" }, text))))]);
 }
 
-window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", start);
-start();
+unpacked(data).then(start);

@@ -1,9 +1,4 @@
-// Reads a film: a header, and deflated columns of whole numbers (sweep/report/film_codec.hpp).
-function inflated(bytes) {
-  const stream = new Response(bytes).body.pipeThrough(new DecompressionStream("deflate"));
-  return new Response(stream).arrayBuffer().then((buffer) => new Uint8Array(buffer));
-}
-
+// Reads a film: a header, and deflated columns of whole numbers (sweep/report/packed_column.hpp).
 function unfiltered(bytes, items) {
   const values = new Uint16Array(bytes.length / 2), n = values.length;
   for (let i = 0; i < n; ++i) {
@@ -29,6 +24,7 @@ async function readFilm(text) {
     film.mobile = header.mobile === undefined ? new Uint8Array(film.spheres).fill(1) : Uint8Array.from(column(header.mobile, film.spheres));
   }
   film.walls = header.walls.map((wall) => readWall(film, wall));
+  film.forces = header.forces === undefined ? null : readForces(film, header.forces);
   return film;
 }
 
@@ -57,6 +53,14 @@ function readWall(film, wall) {
         corners[3 * (f * n + i) + a] = wall.low[a] + wall.step[a] * places[(3 * f + a) * n + i];
   return { name: wall.name, first: wall.first, frames: wall.frames, moves: wall.moves, count: n, corners,
     triangles: film.column(wall.triangles, 3), edges: film.column(wall.edges, 2) };
+}
+
+// Contacts of two spheres: those of frame f are the numbers begins[f] to begins[f + 1].
+function readForces(film, forces) {
+  const begins = [0];
+  forces.counts.forEach((count, f) => begins.push(begins[f] + count));
+  const all = Math.max(1, begins[begins.length - 1]), first = film.column(forces.first, all), between = film.column(forces.between, all);
+  return { begins, first, second: first.map((i, k) => i + between[k]), shades: film.column(forces.shades, all), low: forces.low, high: forces.high };
 }
 
 // Where sphere i is in a frame, in the film's unit; null: not there.

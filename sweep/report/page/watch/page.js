@@ -9,7 +9,7 @@ function value([name, number, unit]) {
 }
 
 const keys = [["space", "play or pause"], ["← →", "previous or next frame"], ["Home End", "first or last frame"], ["+ −", "zoom"], ["c", "next colour"],
-  ["w", "walls"], ["f", "frozen spheres"], ["1 2 3 4", "views"]];
+  ["w", "walls"], ["f", "frozen spheres"], ["n", "forces"], ["1 2 3 4", "views"]];
 
 function facts(film) {
   const { about, spheres, particles, left_out: left } = film.header;

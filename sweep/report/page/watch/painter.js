@@ -18,8 +18,9 @@ class Painter {
     this.gl = gl;
     this.programs = programs(gl);
     this.extent = extent;
-    this.show = { frozen: true, walls: true, hidden: new Set(), slice: -1, plane: 1, size: 1, cut: null, chosen: -1, colours: [0, 1] };
+    this.show = { frozen: true, walls: true, forces: false, hidden: new Set(), slice: -1, plane: 1, size: 1, cut: null, chosen: -1, colours: [0, 1] };
     if (film.spheres > 0) this.prepareSpheres();
+    if (film.forces) this.forces = { corners: this.buffer(new Float32Array([0, -1, 1, -1, 0, 1, 1, 1])), lines: gl.createBuffer() };
     this.prepareWalls();
     this.prepareSlices();
     this.setPalette("spheres", "spheres");
@@ -156,6 +157,7 @@ class Painter {
     const frame = Math.min(this.film.frames - 1, Math.floor(moment)), next = Math.min(this.film.frames - 1, frame + 1);
     const between = moment - frame, matrices = camera.matrices(canvas.width, canvas.height);
     if (this.film.spheres > 0) this.paintSpheres(frame, next, between, matrices);
+    if (this.film.forces && this.show.forces) this.paintForces(frame, next, between, matrices);
     if (this.show.slice >= 0) this.paintSlice(frame, next, between, matrices);
     if (this.show.walls) this.paintWalls(frame, next, between, matrices, ground);
     return matrices;
@@ -169,7 +171,7 @@ class Painter {
     gl.uniform3fv(at.scale, step.map((s) => s / size));
     gl.uniform3fv(at.period, film.header.periods.map((p) => p / size));
     gl.uniform1f(at.between, between);
-    gl.uniform1f(at.radius, this.radius() * show.size);
+    gl.uniform1f(at.radius, this.radius() * show.size * (show.forces ? 0.3 : 1));  // forces lie inside of the spheres
     gl.uniform1f(at.least, 2.2 * matrices.tangent / this.canvas.height);
     gl.uniform1f(at.showFrozen, show.frozen ? 1 : 0);
     gl.uniform4fv(at.cut, show.cut ? show.cut : [0, 0, 0, 1]);
@@ -189,6 +191,44 @@ class Painter {
     gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
     gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
+  }
+
+  // Lines between the centres of touching spheres, of the contacts of the frame before the moment. The widest is as
+  // wide as half of the largest sphere.
+  paintForces(frame, next, between, matrices) {
+    const { gl, film } = this, { in: input, at } = this.programs.forces, { begins, first, second, shades, low, high } = film.forces;
+    const begin = begins[frame], count = begins[frame + 1] - begin, largest = Math.max(Math.abs(low), Math.abs(high));
+    if (count === 0 || !(largest > 0)) return;
+    const { low: from, step } = film.header.positions, { periods } = film.header, n = film.spheres;
+    const place = (i, a) => {
+      const now = 4 * (n * frame + i), then = 4 * (n * next + i);
+      let way = film.places[then + 3] ? step[a] * (film.places[then + a] - film.places[now + a]) : 0;
+      if (periods[a] > 0) way -= periods[a] * Math.round(way / periods[a]);
+      return from[a] + step[a] * film.places[now + a] + between * way;
+    };
+    const lines = new Float32Array(8 * count);
+    for (let k = 0; k < count; ++k) {
+      const i = first[begin + k], j = second[begin + k], force = low + (shades[begin + k] - 1) / 254 * (high - low);
+      for (let a = 0; a < 3; ++a) {
+        const x = place(i, a);
+        let way = place(j, a) - x;
+        if (periods[a] > 0) way -= periods[a] * Math.round(way / periods[a]);
+        lines[8 * k + a] = (x - this.extent.middle[a]) / this.extent.size;
+        lines[8 * k + 3 + a] = lines[8 * k + a] + way / this.extent.size;
+      }
+      lines[8 * k + 6] = 0.25 * this.radius() * this.show.size * Math.min(1, Math.abs(force) / largest);
+      lines[8 * k + 7] = force < 0 ? 1 : 0;
+    }
+    this.begin(this.programs.forces, matrices);
+    gl.uniform4fv(at.cut, this.show.cut ? this.show.cut : [0, 0, 0, 1]);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.forces.lines);
+    gl.bufferData(gl.ARRAY_BUFFER, lines, gl.DYNAMIC_DRAW);
+    this.attribute(input.corner, this.forces.corners, 2, gl.FLOAT, false, 0, 0, 0);
+    this.attribute(input.from, this.forces.lines, 3, gl.FLOAT, false, 32, 0, 1);
+    this.attribute(input.to, this.forces.lines, 3, gl.FLOAT, false, 32, 12, 1);
+    this.attribute(input.width, this.forces.lines, 1, gl.FLOAT, false, 32, 24, 1);
+    this.attribute(input.attracts, this.forces.lines, 1, gl.FLOAT, false, 32, 28, 1);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
   }
 
   // Of the largest sphere, in the picture's unit; where the scene names none, a small share of what is seen.

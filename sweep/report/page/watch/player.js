@@ -75,6 +75,10 @@ class Player {
       const named = this.wallsByName();
       if (named) shown.push(named);
     }
+    if (film.forces) {
+      this.forceTick = tick("forces", false, (on) => { painter.show.forces = on; this.drawLegends(); this.draw(); });
+      shown.push(this.forceTick);
+    }
     if (film.spheres > 0 && film.mobile.includes(0)) {
       this.frozenTick = tick("frozen spheres", true, (on) => { painter.show.frozen = on; this.draw(); });
       shown.push(this.frozenTick);
@@ -185,6 +189,10 @@ class Player {
     }
     const slice = this.film.header.slices[this.painter.show.slice];
     if (slice) shown.push(legend(`flow: ${sliceLabel(slice)}`, slice.unit, slice.low, slice.high, [slice.clipped && slice.low < 0, slice.clipped], slice.low < 0 ? "signed" : "slices"));
+    if (this.film.forces && this.painter.show.forces) {
+      const { low, high } = this.film.forces;
+      shown.push(el("div", { class: "watch-legend" }, `widest line: ${measured(Math.max(Math.abs(low), Math.abs(high)), "N", 3)} between particles`));
+    }
     this.legends.replaceChildren(...shown);
   }
 
@@ -331,7 +339,7 @@ class Player {
     const does = {
       " ": () => this.toggle(), Home: () => { this.pause(); this.show(0); }, End: () => { this.pause(); this.show(this.film.frames - 1); },
       "+": () => { this.camera.closer(1 / 1.15); this.draw(); }, "-": () => { this.camera.closer(1.15); this.draw(); },
-      c: cycle, w: () => flip(this.wallTick), f: () => flip(this.frozenTick),
+      c: cycle, w: () => flip(this.wallTick), f: () => flip(this.frozenTick), n: () => flip(this.forceTick),
       1: () => this.look("oblique"), 2: () => this.look("front"), 3: () => this.look("side"), 4: () => this.look("top"), r: () => this.look("oblique"),
     };
     if (!onSlider) Object.assign(does, { ArrowLeft: () => step(-1), ArrowRight: () => step(1) });

@@ -126,6 +126,36 @@ void main() {
   pixel = vec4(texture(palette, vec2((level - 1.0) / 254.0 * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb, opacity);
 }`;
 
+// A line between two places is a strip towards the eye, as wide as its force.
+const forceVertex = `#version 300 es
+precision highp float;
+in vec2 corner;   // along from 0 to 1, across from -1 to 1
+in vec3 from, to;
+in float width, attracts;
+uniform mat4 view, projection;
+uniform vec4 cut;
+out float across, sign_;
+void main() {
+  across = corner.y;
+  sign_ = attracts;
+  if (dot(cut.xyz, from) > cut.w || dot(cut.xyz, to) > cut.w) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+  vec3 a = (view * vec4(from, 1.0)).xyz, b = (view * vec4(to, 1.0)).xyz;
+  vec3 side = cross(b - a, a);
+  float length_ = length(side);
+  vec3 place = mix(a, b, corner.x) + (length_ > 0.0 ? width * corner.y / length_ : 0.0) * side;
+  gl_Position = projection * vec4(place, 1.0);
+}`;
+
+const forceFragment = `#version 300 es
+precision highp float;
+in float across, sign_;
+out vec4 pixel;
+void main() {
+  float round_ = sqrt(max(0.0, 1.0 - across * across));
+  vec3 colour = sign_ > 0.5 ? vec3(0.1, 0.45, 0.85) : vec3(0.84, 0.37, 0.0);
+  pixel = vec4(colour * (0.55 + 0.45 * round_), 1.0);
+}`;
+
 function compiled(gl, kind, text) {
   const shader = gl.createShader(kind);
   gl.shaderSource(shader, text);
@@ -159,4 +189,5 @@ const programs = (gl) => ({
   spheres: program(gl, sphereVertex, sphereFragment),
   walls: program(gl, wallVertex, wallFragment),
   slices: program(gl, sliceVertex, sliceFragment),
+  forces: program(gl, forceVertex, forceFragment),
 });
