@@ -143,15 +143,15 @@ std::size_t size_column(const ExportGrid& grid, const Headings& headings, const 
     };
     constexpr auto low = std::to_array<std::string_view>({"from", "von", "xu", "min"});
     constexpr auto high = std::to_array<std::string_view>({" to", "bis", "xo", "max"});
-    if (sizes.size() == 2 && (says(sizes[0], lower_edge_words) || says(sizes[0], low)) &&
-        (says(sizes[1], upper_edge_words) || says(sizes[1], high))) {
-        upper = sizes[1];
-        return sizes[0];
-    }
-    if (sizes.size() == 2 && says(sizes[1], low) && says(sizes[0], high)) {
-        upper = sizes[0];
-        return sizes[1];
-    }
+    const auto are_lower_and_upper = [&](std::size_t lower, std::size_t above) {
+        return (says(lower, lower_edge_words) || says(lower, low)) &&
+               (says(above, upper_edge_words) || says(above, high));
+    };
+    for (const auto& [lower, above] : {std::pair<std::size_t, std::size_t>(0, 1), {1, 0}})
+        if (sizes.size() == 2 && are_lower_and_upper(sizes[lower], sizes[above])) {
+            upper = sizes[above];
+            return sizes[lower];
+        }
     if (choices.shares && sizes.size() > 1) {
         const auto share = chosen_column(grid, "--shares", *choices.shares);
         const auto behind = std::ranges::lower_bound(sizes, share);
