@@ -150,6 +150,7 @@ TEST(Programs, APartOfANumberIsNoResult) {
                                                           {"y = -1.5 Pa", "(-[0-9.]+) Pa"},
                                                           {"10,5.25", "([0-9.]+)$"},
                                                           {"50 %\ry = 5\r", "^y = (.*)"},
+                                                          {"7\r", "^(.*)$"},
                                                           {"y2 = 5", "= ([0-9]+)"},
                                                           {"1.5,2.5", "^([0-9.]+)"}})
         expect_has(found(line, pattern), "completed");
