@@ -50,7 +50,7 @@ bool is_quantity(std::string_view text) {
 void MachineScope::require_unit(const Cursor& place, const std::string& name, std::string_view unit) const {
     const auto of = units_.find(name);
     if (of == units_.end() || unit == "1" || of->second == unit) return;
-    if (std::holds_alternative<double>(in_si("1 " + of->second, unit))) return;
+    if (is_convertible(of->second, unit)) return;
     const bool turns = (of->second == "Hz" || of->second == "1/s") && unit == "rad/s";
     place.refuse(fmt::format("'{}' is in {}, and this is in {}{}", name, of->second, unit,
                              turns ? fmt::format(": write 2*pi*{}, or give it the unit rpm", name) : ""));

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <numbers>
@@ -121,13 +122,24 @@ public:
         radian_.reset(ut_get_unit_by_name(system_, "radian"));
         second_.reset(ut_get_unit_by_name(system_, "second"));
         kelvin_.reset(ut_get_unit_by_name(system_, "kelvin"));
-        radian_per_second_ = parsed("rad/s");
+        radian_per_second_.reset(ut_parse(system_, "rad/s", UT_UTF8));
     }
 
     [[nodiscard]] bool found() const { return radian_ && second_ && kelvin_ && radian_per_second_; }
 
-    [[nodiscard]] Unit parsed(std::string_view text) const {
-        return Unit(ut_parse(system_, std::string(text).c_str(), UT_UTF8));
+    /// Returns a unit; none: the text is none. Remembers it until `make_room`, because every case converts the same
+    /// few.
+    [[nodiscard]] const ut_unit* parsed(std::string_view text) {
+        const auto known = units_.find(text);
+        if (known != units_.end()) return known->second.get();
+        std::string name(text);
+        Unit unit(ut_parse(system_, name.c_str(), UT_UTF8));
+        return units_.emplace(std::move(name), std::move(unit)).first->second.get();
+    }
+
+    void make_room() {
+        constexpr std::size_t most = 1000;
+        if (units_.size() > most) units_.clear();
     }
 
     /// None: a quantity in `from` is none in `to`.
@@ -152,7 +164,7 @@ public:
 
 private:
     void name(const char* word, const char* meaning) const {
-        if (Unit unit = parsed(meaning)) ut_map_name_to_unit(word, UT_UTF8, unit.get());
+        if (const Unit unit{ut_parse(system_, meaning, UT_UTF8)}) ut_map_name_to_unit(word, UT_UTF8, unit.get());
     }
 
     [[nodiscard]] std::optional<Powers> powers_of(const ut_unit* unit) const {
@@ -165,6 +177,7 @@ private:
 
     ut_system* system_ = nullptr;  // lives as long as the process
     Unit radian_, second_, kelvin_, radian_per_second_;
+    std::map<std::string, Unit, std::less<>> units_;
 };
 
 /// digits * 10^exponent.
@@ -271,11 +284,11 @@ bool sound_unit(std::string_view unit) {
 
 /// Returns ", the nearest that fits is 'um'" if a usual unit of this dimension has a similar name, else some usual
 /// units of this dimension.
-std::string advice(const UnitDatabase& database, std::string_view unit, const ut_unit* place) {
+std::string advice(UnitDatabase& database, std::string_view unit, const ut_unit* place) {
     std::vector<std::string_view> fitting;
     for (const auto usual : usual_units) {
-        const Unit parsed = database.parsed(usual);
-        if (parsed && database.conversion(parsed.get(), place)) fitting.push_back(usual);
+        const auto* parsed = database.parsed(usual);
+        if (parsed != nullptr && database.conversion(parsed, place)) fitting.push_back(usual);
     }
     if (fitting.empty()) return {};
     // Every letter is near to every other.
@@ -287,37 +300,38 @@ std::string advice(const UnitDatabase& database, std::string_view unit, const ut
 
 struct LockedUnits {
     std::unique_lock<std::mutex> lock;
-    const UnitDatabase& database;
+    UnitDatabase& database;
 };
 
 LockedUnits locked_units() {
     static std::mutex one_at_a_time;
     std::unique_lock lock(one_at_a_time);
-    static const UnitDatabase database;
+    static UnitDatabase database;
+    database.make_room();
     return {std::move(lock), database};
 }
 
 std::variant<double, std::string> with_unit(std::string_view number, double x, std::string_view given,
                                             std::string_view unit) {
     const auto units = locked_units();
-    const auto& database = units.database;
+    auto& database = units.database;
     if (!database.found())
         return "no unit can be read without the file udunits2.xml (package libudunits2-data; UDUNITS2_XML_PATH can "
                "name the file)";
-    const Unit place = unit.empty() ? nullptr : database.parsed(unit);
-    if (!place || !sound_unit(unit)) {
+    const auto* place = unit.empty() ? nullptr : database.parsed(unit);
+    if (place == nullptr || !sound_unit(unit)) {
         return unit.empty() ? fmt::format("the parameter has no unit, and '{}' is one", given)
                             : fmt::format("'{}' cannot be converted to '{}'", given, unit);
     }
-    const Unit parsed = sound_unit(given) ? database.parsed(given) : nullptr;
-    if (!parsed) {
+    const auto* parsed = sound_unit(given) ? database.parsed(given) : nullptr;
+    if (parsed == nullptr) {
         const bool comma = given.starts_with(',');
         return comma ? "the decimal sign is a point"
-                     : fmt::format("'{}' is no unit{}", given, advice(database, given, place.get()));
+                     : fmt::format("'{}' is no unit{}", given, advice(database, given, place));
     }
-    const auto conversion = database.conversion(parsed.get(), place.get());
+    const auto conversion = database.conversion(parsed, place);
     if (!conversion) {
-        return fmt::format("'{}' does not fit '{}'{}", given, unit, advice(database, given, place.get()));
+        return fmt::format("'{}' does not fit '{}'{}", given, unit, advice(database, given, place));
     }
     if (const auto value = converted(number, x, *conversion)) return *value == 0 ? 0.0 : *value;
     return fmt::format("the number in '{}' is beyond double precision", unit);
@@ -358,6 +372,16 @@ std::variant<double, std::string> in_si(std::string_view text, std::string_view 
     if (written.error != std::errc()) return "the number is beyond double precision";
     if (written.unit.empty() || written.unit == unit) return written.value == 0 ? 0.0 : written.value;
     return with_unit(written.digits, written.value, written.unit, unit);
+}
+
+bool is_convertible(std::string_view from, std::string_view to) {
+    from = without_blanks(from);
+    if (from.empty() || from == to) return true;
+    if (from.size() > longest_quantity || !sound_unit(from) || !sound_unit(to)) return false;
+    const auto units = locked_units();
+    if (!units.database.found()) return false;
+    const auto *given = units.database.parsed(from), *wanted = units.database.parsed(to);
+    return given != nullptr && wanted != nullptr && units.database.conversion(given, wanted);
 }
 
 std::string with_decimal_point(std::string_view text) {
@@ -402,9 +426,9 @@ bool resembles_united_number(std::string_view text) {
 bool is_si_unit(std::string_view unit) {
     if (unit.empty() || unit == "1" || !sound_unit(unit)) return true;
     const auto units = locked_units();
-    const Unit parsed = units.database.found() ? units.database.parsed(unit) : nullptr;
+    const auto* parsed = units.database.found() ? units.database.parsed(unit) : nullptr;
     bool plain = true;
-    return !parsed || (ut_accept_visitor(parsed.get(), &scale_visitor(), &plain) == UT_SUCCESS && plain);
+    return parsed == nullptr || (ut_accept_visitor(parsed, &scale_visitor(), &plain) == UT_SUCCESS && plain);
 }
 
 }  // namespace grainsweep::campaign

@@ -17,6 +17,9 @@ namespace grainsweep::campaign {
 /// - Units: UDUNITS-2, whose database is read at the first unit, and deg, rev and the permille sign.
 [[nodiscard]] std::variant<double, std::string> in_si(std::string_view text, std::string_view unit);
 
+/// Returns whether in_si converts numbers in `from` to `to`; it makes no sentence where not.
+[[nodiscard]] bool is_convertible(std::string_view from, std::string_view to);
+
 /// Returns the text with a point where a decimal comma stands, for "30,5 mm"; empty: no comma stands between digits, or
 /// brackets do, whose commas separate.
 [[nodiscard]] std::string with_decimal_point(std::string_view text);
