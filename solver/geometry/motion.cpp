@@ -49,6 +49,9 @@ constexpr std::array press_fields = {
     needed(fields::quantity<&Press::mass>("mass", "kg", "of the wall", positive_number)),
     needed(fields::quantity<&Press::fastest>("speed_at_most", "m/s",
                                              "it never moves faster; the time step follows from it", positive_number)),
+    fields::quantity<&Press::stiffness>(
+        "stiffness", "N/m", "of a spring that pulls the wall back to where the motion began", no_negative_number),
+    fields::quantity<&Press::damping>("damping", "N s/m", "of a damper of its speed", no_negative_number),
 };
 constexpr std::array drive_fields = {
     needed(fields::direction<&Drive::axis>("axis", "direction")),
@@ -63,6 +66,9 @@ constexpr std::array drive_fields = {
                                              positive_number)),
     needed(fields::quantity<&Drive::fastest>("speed_at_most", "rad/s",
                                              "it never turns faster; the time step follows from it", positive_number)),
+    fields::quantity<&Drive::stiffness>(
+        "stiffness", "N m/rad", "of a spring that turns the wall back to where the motion began", no_negative_number),
+    fields::quantity<&Drive::damping>("damping", "N m s/rad", "of a damper of its speed", no_negative_number),
 };
 constexpr std::array flight_fields = {
     needed(fields::quantity<&Flight::mass>("mass", "kg", "of the wall; its weight acts on it", positive_number)),
@@ -282,6 +288,16 @@ double largest_load(double constant, const LoadCourse& course) {
     return most;
 }
 
+double longest_step(const Motion& motion) {
+    const auto of = [](const auto& m, double inertia) {
+        const double damper = m.damping / inertia;
+        return 0.1 / (damper + std::sqrt(damper * damper + 0.1 * m.stiffness / inertia));
+    };
+    if (const auto* m = std::get_if<Press>(&motion)) return of(*m, m->mass);
+    if (const auto* m = std::get_if<Drive>(&motion)) return of(*m, m->inertia);
+    return std::numeric_limits<double>::infinity();
+}
+
 Vec3 spin_of(const Flight& m) {
     const Pose pose = turned_pose(m);
     Vec3 spin{};
@@ -318,9 +334,9 @@ double load_at(double constant, const LoadCourse& course, double time) {
     return a.value + (time - a.time) / (b.time - a.time) * (b.value - a.value);
 }
 
-/// Of a press or a drive: `load` and `own` are forces along its way, or moments about its axis.
-void kick_along(auto& m, double inertia, double load, double own, double time, double span, BodyEnergy& energy) {
-    const double before = m.speed;
+/// Of a press or a drive: `load` and `driving` are forces along its way, or moments about its axis.
+void kick_along(auto& m, double inertia, double load, double driving, double time, double span, BodyEnergy& energy) {
+    const double before = m.speed, own = driving - m.stiffness * m.way - m.damping * before;
     if (!runs(m, time)) {
         m.speed = 0;
         energy.bounds -= inertia / 2 * before * before;
@@ -436,6 +452,10 @@ bool is_sound(const LoadCourse& course) {
            std::ranges::adjacent_find(*course, std::greater_equal<>(), &LoadAt::time) == course->end();
 }
 
+bool has_sound_spring(const auto& m) {
+    return m.stiffness >= 0 && m.damping >= 0 && std::isfinite(m.stiffness) && std::isfinite(m.damping);
+}
+
 std::string flaw_of(const Translation& m) {
     return finite(m.velocity) ? "" : "a motion must be finite";
 }
@@ -454,6 +474,7 @@ std::string flaw_of(const Press& m) {
         return "a motion must be finite";
     if (!is_unit(m.along)) return "the direction of a press must have unit length";
     if (!is_positive(m.mass)) return "the mass of a pressed wall must be above 0";
+    if (!has_sound_spring(m)) return "the spring of a pressed wall must be finite and not negative";
     if (!is_sound(m.course)) return "the times of a load must rise, and its values be finite";
     return is_positive(m.fastest) ? "" : "the speed of a pressed wall must have a bound above 0";
 }
@@ -463,6 +484,7 @@ std::string flaw_of(const Drive& m) {
         return "a motion must be finite";
     if (!is_unit(m.axis)) return "the axis of a drive must have unit length";
     if (!is_positive(m.inertia)) return "the inertia of a driven wall must be above 0";
+    if (!has_sound_spring(m)) return "the spring of a driven wall must be finite and not negative";
     if (!is_sound(m.course)) return "the times of a load must rise, and its values be finite";
     return is_positive(m.fastest) ? "" : "the speed of a driven wall must have a bound above 0";
 }

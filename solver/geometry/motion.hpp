@@ -7,7 +7,8 @@
 //     rotation      by the angle w s, right hand, about an axis through a point
 //     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
 //     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
-//                                          F and M are constant, or a course: straight lines between values at times
+//                                          F and M are constant, or a course: straight lines between values at times;
+//                                          a spring and a damper add - k way - c v, or - k way - c w
 //     flight        d = way, turned by q   m dv/dt = F + load, dL/dt = M + moment of the load about the centre of mass
 //
 // A list of motions is combined: displacements are added to D, rotations follow one another, and all points of
@@ -91,10 +92,11 @@ struct Press {
     double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< m, m/s
     LoadCourse course{};                                              ///< of the force, instead of `force`
+    double stiffness = 0, damping = 0;                                ///< of a spring and a damper, N/m, N s/m
 
     static void fields(auto& m, auto&& visit) {
         visit(m.along), visit(m.force), visit(m.mass), visit(m.fastest), visit(m.start), visit(m.end), visit(m.number);
-        visit(m.way), visit(m.speed), visit_course(m.course, visit);
+        visit(m.way), visit(m.speed), visit_course(m.course, visit), visit(m.stiffness), visit(m.damping);
     }
 };
 
@@ -109,10 +111,12 @@ struct Drive {
     double number = 0;                                                ///< unique among free motions of the body
     double way = 0, speed = 0;                                        ///< rad, rad/s
     LoadCourse course{};                                              ///< of the moment, instead of `moment`
+    double stiffness = 0, damping = 0;                                ///< of a spring and a damper, N m/rad, N m s/rad
 
     static void fields(auto& m, auto&& visit) {
         visit(m.point), visit(m.axis), visit(m.moment), visit(m.inertia), visit(m.fastest), visit(m.start);
         visit(m.end), visit(m.number), visit(m.way), visit(m.speed), visit_course(m.course, visit);
+        visit(m.stiffness), visit(m.damping);
     }
 };
 
@@ -145,6 +149,9 @@ using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flig
 [[nodiscard]] bool turns(const Motion& motion);
 /// Returns the largest absolute value of a load: constant, or of its course.
 [[nodiscard]] double largest_load(double constant, const LoadCourse& course);
+/// Returns the longest time step that the spring and the damper of a motion allow, s; infinite without them. With
+/// dt^2 k/m + 2 dt c/m = 0.1 they take 0.1 of the 4 at which explicit stepping is unstable (solver/dem/network.hpp).
+[[nodiscard]] double longest_step(const Motion& motion);
 /// Returns the angular velocity of a flight, rad/s.
 [[nodiscard]] Vec3 spin_of(const Flight& flight);
 
@@ -153,7 +160,7 @@ using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flig
 struct BodyEnergy {
     double start = 0;     ///< kinetic energy when the walls were set
     double contacts = 0;  ///< work of the load
-    double own = 0;       ///< work of the force and moment of the motions themselves: press, drive, weight
+    double own = 0;       ///< work of what the motions state themselves: force, moment, weight, spring, damper
     double bounds = 0;    ///< work of limits of the speed, of holding the body, and of a change of its motions
     double turning = 0;   ///< error of the integrator: a free turn keeps the energy to second order in the time step
 

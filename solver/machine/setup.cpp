@@ -260,6 +260,9 @@ double time_step_of(const Spec& spec, double fraction, double speed) {
             shortest = std::min(shortest, dem::impact_limit(pair, a.finest() / 2, speed));
         }
     }
+    for (const MachineWall& wall : spec.walls)
+        for (const WallMotion& motion : wall.motions)
+            shortest = std::min(shortest, geometry::longest_step(motion.motion));
     return fraction * shortest;
 }
 

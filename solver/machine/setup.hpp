@@ -34,7 +34,7 @@ void each_region(Spec& spec, const std::function<void(Region&)>& visit);
 /// Returns the setup at the start, in the first phase.
 [[nodiscard]] dem::Setup setup_of(const Spec& spec, const Filled& filled);
 /// Returns the time step: a fraction of the shortest Rayleigh time and of the shortest Hertz contact time of any two
-/// particles that meet at `speed`, s.
+/// particles that meet at `speed`, and of what the springs of walls allow, s.
 [[nodiscard]] double time_step_of(const Spec& spec, double fraction, double speed);
 /// Sets the time step to a fraction of the longest one, s, and lets it follow the load (dem::Setup::step_share).
 void take_own_step(Spec& spec, double fraction, double longest);

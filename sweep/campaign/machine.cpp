@@ -143,7 +143,7 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::vector<
     if (spec.time_step > longest)
         throw input_error("time_step", fmt::format("{:.4g}", spec.time_step),
                           fmt::format("must be at most {:.4g} s, the shortest Rayleigh time or contact time of these "
-                                      "particles",
+                                      "particles, or what the spring of a wall allows",
                                       longest));
     if (!(spec.time_step > 0)) machine::take_own_step(spec, input_number(inputs, "time_step_fraction"), longest);
     for (std::size_t p = 0; p < spec.phases.size(); ++p)

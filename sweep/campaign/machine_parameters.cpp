@@ -31,9 +31,9 @@ namespace {
 constexpr std::size_t longest_machine_name = 64;
 
 /// Units in which machines calculate; the first that fits is the one of a parameter in expressions.
-constexpr std::array<std::string_view, 25> si_units = {
+constexpr std::array<std::string_view, 26> si_units = {
     "1",  "m",    "s",     "kg",   "m/s", "rad", "rad/s", "Hz",  "m2",        "m3",   "m/s2", "N",    "N m",
-    "Pa", "J/m2", "kg/m3", "kg/s", "1/s", "J",   "W",     "N/m", "kg/(m2 s)", "m3/s", "Pa s", "kg m2"};
+    "Pa", "J/m2", "kg/m3", "kg/s", "1/s", "J",   "W",     "N/m", "kg/(m2 s)", "m3/s", "Pa s", "kg m2", "N m s"};
 
 /// Returns the unit that a machine calculates in for a given one; none: the reason is in `why`. Remembers it, because
 /// every case converts every parameter.
@@ -44,11 +44,10 @@ std::optional<std::string_view> calculating_unit(const std::string& unit, std::s
     const std::lock_guard lock(mutex);
     if (const auto found = known.find(unit); found != known.end()) return found->second;
     if (const auto found = unknown.find(unit); found != unknown.end()) return why = found->second, std::nullopt;
-    for (const auto si : si_units) {
-        const auto converted = in_si(fmt::format("1 {}", unit), si);
-        if (std::holds_alternative<double>(converted)) return known.emplace(unit, si).first->second;
-        if (why.empty()) why = std::get<std::string>(converted);
-    }
+    const auto fitting = std::ranges::find_if(si_units, [&](auto si) { return is_convertible(unit, si); });
+    if (fitting != si_units.end()) return known.emplace(unit, *fitting).first->second;
+    const auto refused = in_si("1 " + unit, si_units.front());
+    why = std::get<std::string>(refused);
     unknown.emplace(unit, why);
     return std::nullopt;
 }

@@ -99,12 +99,45 @@ TEST(MachineLoads, ADriveFollowsTheCourseOfItsTorque) {
             << precision;
 }
 
+/// Way of a damped oscillator that a constant load moves from rest: load/k (1 - e^-at (cos wt + a/w sin wt)).
+double sprung_way(double load, double stiffness, double damping, double inertia, double t) {
+    const double a = damping / (2 * inertia), w = std::sqrt(stiffness / inertia - a * a);
+    return load / stiffness * (1 - std::exp(-a * t) * (std::cos(w * t) + a / w * std::sin(w * t)));
+}
+
+TEST(MachineLoads, SpringsAndDampersOscillateAsInTheory) {
+    for (const char* precision : {"double", "mixed"}) {
+        EXPECT_NEAR(seen_in(R"json({"press": {"along": [0, 0, 1], "force": "20 mN", "mass": 0.1, "speed_at_most": 1,
+                        "stiffness": "10 N/m", "damping": "0.4 N s/m"}, "from": "push"})json",
+                            "way", precision) /
+                        sprung_way(0.02, 10, 0.4, 0.1, 0.4),
+                    1, 1e-3)
+            << precision;
+        EXPECT_NEAR(seen_in(R"json({"drive": {"axis": [0, 0, 1], "torque": 1e-3, "inertia": 1e-5, "speed_at_most": 100,
+                        "stiffness": "4 N mm/rad", "damping": 1e-4}, "from": "push"})json",
+                            "turned", precision) /
+                        (sprung_way(1e-3, 4e-3, 1e-4, 1e-5, 0.4) * 180 / std::numbers::pi),
+                    1, 1e-3)
+            << precision;
+    }
+}
+
+TEST(MachineLoads, TheTimeStepFollowsStiffSprings) {
+    const auto longest = [](const char* spring) {
+        json machine =
+            lone_plate(R"json({"press": {"along": [0, 0, 1], "force": 0.02, "mass": 0.1, "speed_at_most": 1}})json");
+        machine["walls"]["plate"]["motion"][0]["press"].update(json::parse(spring));
+        return machine::time_step_of(spec_of(machine), 1, 1);
+    };
+    EXPECT_EQ(longest("{}"), longest(R"({"stiffness": 1e4, "damping": 1})"));
+    EXPECT_NEAR(longest(R"({"stiffness": "1 GN/m"})"), std::sqrt(0.1 * 0.1 / 1e9), 1e-12);
+    EXPECT_NEAR(longest(R"({"damping": 1e5})"), 0.05 * 0.1 / 1e5, 1e-15);
+}
+
 TEST(MachineLoads, ACheckpointKeepsTheCourse) {
     const json machine =
         lone_plate(R"json({"press": {"along": [0, 0, 1], "force": "0.05*sin(20*t)", "every": 0.01, "until": 0.5,
-        "mass": 0.1, "speed_at_most": 1
-}
-})json");
+        "mass": 0.1, "speed_at_most": 1, "stiffness": 2, "damping": 0.1}})json");
     expect_same_resumed(machine, 0.2);
 }
 
