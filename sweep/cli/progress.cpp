@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 constexpr auto terminal_interval = 100ms;
 constexpr auto log_interval = 5s;
 constexpr std::size_t bar_width = 30;
-constexpr std::size_t shown_notes = 20;
+constexpr std::size_t most_notes = 20, most_alike = 2;
 constexpr std::size_t note_bytes = 500;
 
 std::size_t terminal_width() {
@@ -58,6 +58,18 @@ std::string one_line(std::string text) {
     return cut ? text + " ..." : text;
 }
 
+/// Returns a text without the words that have digits.
+std::string without_numbers(std::string_view text) {
+    std::string words;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto end = std::min(text.find(' ', at), text.size());
+        const auto word = text.substr(at, end - at);
+        if (word.find_first_of("0123456789") == std::string_view::npos) words.append(word) += ' ';
+        at = end + 1;
+    }
+    return words;
+}
+
 }  // namespace
 
 std::string duration(double seconds) {
@@ -84,8 +96,9 @@ ProgressLine::ProgressLine(bool quiet, std::size_t cores, std::string end)
 
 ProgressLine::~ProgressLine() {
     if (line_open_) show("\n");
-    if (notes_ > shown_notes)
-        show(fmt::format("... and {} more notes; the database has every attempt\n", notes_ - shown_notes));
+    if (unshown_notes_ > 0)
+        show(fmt::format("... and {} more notes{}; the database has every attempt\n", unshown_notes_,
+                         shown_notes_ < most_notes ? " like these" : ""));
 }
 
 void ProgressLine::update(const schedule::Progress& progress) {
@@ -111,7 +124,11 @@ void ProgressLine::update(const schedule::Progress& progress) {
 }
 
 void ProgressLine::note(const std::string& text) {
-    if (++notes_ > shown_notes) return;
+    if (shown_notes_ == most_notes || ++notes_[without_numbers(text)] > most_alike) {
+        ++unshown_notes_;
+        return;
+    }
+    ++shown_notes_;
     erase();
     show(one_line(text) + '\n');
     last_.clear();

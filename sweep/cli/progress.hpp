@@ -4,6 +4,8 @@
 #include "sweep/schedule/scheduler.hpp"
 
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <string>
 
 namespace grainsweep::cli {
@@ -18,7 +20,8 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void update(const schedule::Progress& progress);
-    /// Prints a line above the bar. The first few notes are printed, the others are counted; `explain` shows all.
+    /// Prints a line above the bar. Of notes that differ in words with digits only, such as one remark on many cases,
+    /// the first two are printed, of all notes the first few; the others are counted, and `explain` shows all.
     void note(const std::string& text);
 
 private:
@@ -33,7 +36,8 @@ private:
     std::string end_;
     Clock::time_point shown_{};
     bool line_open_ = false;
-    std::size_t notes_ = 0;
+    std::map<std::string, std::size_t> notes_;  ///< by their words without digits
+    std::size_t shown_notes_ = 0, unshown_notes_ = 0;
     std::string last_;
 };
 
