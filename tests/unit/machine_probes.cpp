@@ -42,6 +42,31 @@ TEST(MachineProbes, AmountsAreSumsOverSpeciesAndRegion) {
     EXPECT_NE(flaw(with("in", Region{Region::Half{}})), "");
 }
 
+TEST(MachineProbes, TheShareOfASizeCountsParticlesWhereTheyWereLastSeen) {
+    Bed bed;
+    for (int k = 0; k < 3; ++k) bed.add({0, 0, -0.01}, 0);
+    bed.add({0.5, 0, 0}, 0), bed.add({0, 0, 0.1}, 0), bed.add({0.5, 0, 0}, 1);
+    const auto curve = [&](machine::Options options) {
+        options.set("in", box({-1, -1, -1}, {0.4, 1, 0})), options.set("from", 0.001), options.set("to", 0.007);
+        options.set("bins", 3.0);
+        const auto probe = machine::find_probe("size_share")->make(options);
+        std::vector<Sample> samples;
+        probe->profile(bed.frame(), samples);
+        Bed empty;
+        empty.add({0, 0, 0.1}, 1);
+        samples.clear();
+        probe->profile(empty.frame(), samples);  // its particle takes the place of the first one
+        std::vector<double> shares;
+        for (const auto& one : samples) shares.push_back(one.value);
+        return shares;
+    };
+    const auto of_two = curve(with("beside", box({0.4, -1, -1}, {1, 1, 1})));
+    EXPECT_DOUBLE_EQ(of_two[0], 2. / 3) << "the one above is in neither";
+    EXPECT_EQ(of_two[1], 0);
+    EXPECT_TRUE(std::isnan(of_two[2]));
+    EXPECT_DOUBLE_EQ(curve({})[0], 2. / 4);
+}
+
 TEST(MachineProbes, VelocitiesAreWeightedByMass) {
     Bed bed;
     bed.add({0, 0, 0}, 0, {1, 0, 2}), bed.add({0.01, 0, 0}, 1, {-1, 3, 0});

@@ -17,9 +17,9 @@ ProbeInfo amount_count(), amount_mass(), amount_volume(), bed_angle(), bed_fract
     layer_fraction(), layer_roughness(), layer_unevenness(), mass_share(), mean_diameter(), mean_height(), momentum(),
     nematic_order(), orientation(), overlap(), particle_force(), particle_torque(), point_fraction(), profile(),
     radius(), residence_time(), residence_time_density(), residence_time_sd(), rms_speed(), rolling_torque(),
-    rotational_energy(), solid_fraction(), spin(), stress(), stress_profile(), velocity(), velocity_above(),
-    velocity_bend(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(), wall_position(), wall_pressure(),
-    wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
+    rotational_energy(), size_share(), solid_fraction(), spin(), stress(), stress_profile(), velocity(),
+    velocity_above(), velocity_bend(), wall_angle(), wall_energy(), wall_force(), wall_layer_speed(), wall_position(),
+    wall_pressure(), wall_torque(), wall_wear(), wall_wear_profile(), wall_work();
 
 }  // namespace probes
 
@@ -91,6 +91,7 @@ std::span<const ProbeInfo> probe_catalogue() {
                                 rms_speed,
                                 rolling_torque,
                                 rotational_energy,
+                                size_share,
                                 solid_fraction,
                                 spin,
                                 stress,

@@ -1,0 +1,82 @@
+// Share of a region in the mass of each size, of what lies in it and in a second one: the partition curve of a screen.
+#include "solver/machine/binning.hpp"
+#include "solver/machine/probe.hpp"
+#include "solver/machine/selection.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace grainsweep::machine::probes {
+namespace {
+
+class SizeShare final : public machine::Probe {
+public:
+    explicit SizeShare(const Options& options)
+        : selection_(options), beside_(options.region("beside")), bins_(bins_along(options)) {}
+    void restart() override { seen_.clear(); }
+    double look(const Frame&) override { return undefined; }
+    void profile(const Frame& frame, std::vector<Sample>& into) override {
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            if (frame.state.mobile[i] == 0 || !selection_.is_of(frame, frame.id(i))) continue;
+            const Vec3& x = frame.state.position[i];
+            const bool in = selection_.region()->contains(x);
+            if (in || !beside_ || beside_->contains(x))
+                keep(frame.id(i), {2 * frame.state.radius[i], frame.mass(i), in ? 1.0 : 0.0});
+            else
+                keep(frame.id(i), {});
+        }
+        std::vector<double> inside(bins_.count, 0), all(bins_.count, 0);
+        for (const Seen& one : seen_) {
+            const std::size_t bin = bins_.at(one.diameter);
+            if (bin == bins_.count) continue;
+            inside[bin] += one.mass * one.share;
+            all[bin] += one.mass;
+        }
+        for (std::size_t bin = 0; bin < bins_.count; ++bin)
+            into.push_back({.bin = bins_.centre(bin), .value = all[bin] > 0 ? inside[bin] / all[bin] : undefined});
+    }
+    void save(ByteWriter& out) const override { out.put(seen_); }
+    void restore(ByteReader& in) override { in.get(seen_); }
+
+private:
+    /// Particle where it was last seen.
+    struct Seen {
+        double diameter = 0, mass = 0;  ///< m, kg; 0: in neither region
+        double share = 0;               ///< 1: in the first region
+    };
+    void keep(std::size_t id, const Seen& one) {
+        if (id >= seen_.size()) seen_.resize(id + 1);
+        seen_[id] = one;
+    }
+
+    Selection selection_;
+    std::optional<Region> beside_;
+    Bins bins_;
+    std::vector<Seen> seen_;  // by id
+};
+
+constexpr std::array size_share_options = {
+    of_option,
+    option("in", Field::Kind::region, "", "the region whose share is shown, such as all below a deck", true),
+    option("beside", Field::Kind::region, "",
+           "the other region of the whole, such as all behind the end of the deck; default: everywhere else"),
+    option("from", Field::Kind::quantity, "m", "the diameter where the first bin begins", true),
+    option("to", Field::Kind::quantity, "m", "the diameter where the last bin ends", true),
+    bins_option};
+
+}  // namespace
+
+ProbeInfo size_share() {
+    return {"size_share",
+            "1",
+            "share of a region in the mass of each diameter, of particles where they were last seen: a partition curve",
+            size_share_options,
+            make_probe<SizeShare>,
+            false,
+            "diameter, m",
+            flaw_of_bins_along,
+            Source::frames,
+            true};
+}
+
+}  // namespace grainsweep::machine::probes
