@@ -170,7 +170,6 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     add_species_numbers(top, reading.spec, reading.scope);
     read_checks(top, reading);
     read_contacts(top, reading);
-    refuse_rolling_shapes(top, reading);
     read_walls(top, reading);
     read_fills(top, reading);
     read_removals(top, reading);

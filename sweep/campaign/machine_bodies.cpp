@@ -126,6 +126,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
             if (reading.elasticities[a] != reading.elasticities[b]) contact.partner = reading.elasticities[b];
             reading.contacts[a][b] = contact;
         }
+    settle_rolling_of_shapes(top, reading);
     auto& spec = reading.spec;
     for (std::size_t b = 0; b < reading.of_particles.size(); ++b)
         for (std::size_t a = 0; a <= b; ++a)

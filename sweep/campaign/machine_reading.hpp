@@ -89,8 +89,9 @@ inline constexpr double longest_row = 20;  ///< aspect ratio
 
 /// Reads the "shape" of a species with material and, unless its spheres have one, diameter.
 void read_grain_shape(const Cursor& place, const MachineReading& reading, machine::Species& species);
-/// Refuses rolling friction of species with a shape.
-void refuse_rolling_shapes(const Section& top, const MachineReading& reading);
+/// Shapes resist rolling themselves. Refuses a rolling friction of species with a shape of their own; sets that of
+/// species which the parameter aspect_ratio makes elongated to 0, with a warning.
+void settle_rolling_of_shapes(const Section& top, MachineReading& reading);
 [[nodiscard]] geometry::Shape read_shape(const Section& wall, const MachineReading& reading);
 /// Reads a motion of a wall, which has its shape and earlier motions, and appends it: one for each run of successive
 /// phases. A motion that does not act in this case, or moves nothing, is left out.

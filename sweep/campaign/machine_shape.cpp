@@ -142,17 +142,30 @@ void read_grain_shape(const Cursor& place, const MachineReading& reading, machin
     species.shape = std::move(shape->clump);
 }
 
-void refuse_rolling_shapes(const Section& top, const MachineReading& reading) {
+void settle_rolling_of_shapes(const Section& top, MachineReading& reading) {
+    double left_out = 0;
     for (const machine::Species& species : reading.spec.species) {
         if (!species.shape) continue;
+        const bool of_its_own = top.at("species")[species.name].json().contains("shape");
         const std::size_t own = reading.of_particles[species.material];
-        for (std::size_t other = 0; other < reading.materials.size(); ++other)
-            if (reading.contacts[own][other].rolling_friction > 0)
+        for (std::size_t other = 0; other < reading.materials.size(); ++other) {
+            double& rolling = reading.contacts[own][other].rolling_friction;
+            if (of_its_own && rolling > 0)
                 throw input_error(
                     top.find("contacts")->path(), "",
                     fmt::format("'rolling_friction' between {} and {} must be 0: {} has a shape, which resists rolling",
                                 reading.materials[own], reading.materials[other], species.name));
+            left_out = std::max(left_out, rolling);
+            rolling = reading.contacts[other][own].rolling_friction = 0;
+        }
+        if (reading.spec.glued.rolling_friction) reading.spec.glued.rolling_friction = 0;
     }
+    if (left_out > 0)
+        reading.spec.warnings.push_back(
+            {"elongated grains without rolling friction",
+             fmt::format("at an aspect ratio of {:.4g} the shape resists rolling, so the rolling friction of {:.4g} is "
+                         "left out",
+                         reading.aspect_ratio, left_out)});
 }
 
 }  // namespace grainsweep::campaign

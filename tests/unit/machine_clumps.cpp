@@ -262,6 +262,15 @@ TEST(MachineClumps, EveryMachineGivesItsPowderAnAspectRatio) {
     plain["species"]["rice"].erase("shape");
     for (json* one : {&machine, &plain}) (*one)["fill"][0]["in"]["box"]["high"] = {0.04, 0.04, "rice_largest + 0.08"};
     EXPECT_EQ(text_of(answer_of(spec_of(plain, {{"aspect_ratio", 1.7}}))), text_of(answer_of(spec_of(machine))));
+    // Shapes resist rolling, and what is left out is said.
+    json rolls = plain;
+    rolls["contacts"]["rolling_friction"] = 0.1;
+    const auto long_grains = spec_of(rolls, {{"aspect_ratio", 1.7}});
+    EXPECT_EQ(text_of(answer_of(long_grains)), text_of(answer_of(spec_of(machine))));
+    ASSERT_EQ(long_grains.warnings.size(), 1u);
+    EXPECT_EQ(long_grains.warnings[0].sentence,
+              "at an aspect ratio of 1.7 the shape resists rolling, so the rolling friction of 0.1 is left out");
+    EXPECT_TRUE(spec_of(rolls).warnings.empty());
     // Single and glued particles, and species with a shape, stay as they are.
     plain["species"]["ball"] = {{"material", "grain"}, {"diameter", "5 mm"}};
     plain["species"]["rod"] = {{"material", "grain"}, {"diameter", "5 mm"}, {"shape", {{"aspect_ratio", 3}}}};
