@@ -23,7 +23,7 @@ using geometry::norm;
 using geometry::operator*;
 
 constexpr std::uint64_t start_stream = std::uint64_t{1} << 41U;        // behind those of fillings
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0007ULL;  // "grnsmc", version 7
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0008ULL;  // "grnsmc", version 8
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
@@ -72,6 +72,10 @@ Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
       seed_(spec_.start.seed ? stats::bits_at(0, start_stream, static_cast<std::uint64_t>(*spec_.start.seed)) : seed),
       artefacts_(artefacts),
       records_(spec_.measures.size()) {
+    for (const MachineWall& wall : spec_.walls)
+        has_free_walls_ = has_free_walls_ || std::ranges::any_of(wall.motions, [](const WallMotion& motion) {
+                              return std::holds_alternative<geometry::Flight>(motion.motion);
+                          });
     for (std::size_t w = 0; w < spec_.walls.size(); ++w)
         if (const Vec3 most = spec_.walls[w].scattered; norm(most) > 0)  // before the start it moves to its place
             spec_.walls[w].motions.push_back(
@@ -354,6 +358,7 @@ void Run::take_frame() {
         if (frame_ % measure.every != 0 && frame_ < phase().frames && step_ < phase_begin_ + phase_steps()) continue;
         take(m, frame);
     }
+    if (fault_.empty()) judge_free_walls();
     if (tight_ && fault_.empty() && peak_overlap() > *tight_)
         fault_ = kit::sentence(
             "two particles overlapped by %.3g of a diameter before %.4g s: more than the %.3g up to which the glued "
@@ -540,8 +545,8 @@ void Run::fields(State& run, Visit&& visit) {
         visit(run.bed_.position), visit(run.bed_.velocity), visit(run.bed_.radius), visit(run.phase_),
         visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
     visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.peak_wall_overlap_),
-        visit(run.judged_overlap_), visit(run.judged_wall_overlap_), visit(run.fault_), visit(run.lost_first_),
-        visit(run.taken_), visit(run.times_.begin);
+        visit(run.judged_overlap_), visit(run.judged_wall_overlap_), visit(run.fault_), visit(run.places_),
+        visit(run.lost_first_), visit(run.taken_), visit(run.times_.begin);
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     if (run.has_clumps()) visit(run.particle_);
     for (auto& record : run.records_)

@@ -69,6 +69,8 @@ private:
     [[nodiscard]] std::int64_t next_stop() const;
     void begin_phase();
     void judge_walls_that_appear();
+    /// Ends the run if a free wall has passed through another one since the last frame.
+    void judge_free_walls();
     void change_walls();
     /// Takes the state at the end of the start from another case, or stores it for others.
     void take_start(const dem::Setup& setup);
@@ -137,6 +139,11 @@ private:
     std::string start_key_;               // empty: the start is not shared
     double borrowed_particle_steps_ = 0;  // work of another case on the start
     double wall_zero_ = 0;                // time at which the walls were set, s
+    /// Pose of a wall, for checkpoints.
+    struct WallPlace {
+        std::array<Vec3, 3> rows;
+        Vec3 shift;
+    };
     struct Follower {
         std::size_t wall;
         std::optional<Vec3> along;
@@ -171,7 +178,9 @@ private:
     double peak_wall_overlap_ = 0;              // likewise
     double judged_overlap_ = 0;                 // of the earlier phases that are measured: pouring harms no answer
     double judged_wall_overlap_ = 0;            // likewise
-    std::string fault_;                         // of a wall that appears in particles
+    bool has_free_walls_ = false;
+    std::vector<WallPlace> places_;  // of the walls at the last frame, if one of them is free
+    std::string fault_;              // of walls where none may be
     std::int64_t glued_ = 0;
     std::map<std::string, std::int64_t> counts_;  // of Filled
     std::optional<double> tight_;                 // least of the cuts

@@ -155,4 +155,36 @@ TEST(MachineFreeWalls, HaveOneSentenceWhereTheyAreWrong) {
               std::string::npos);
 }
 
+// A block fell through the floor, and the case was complete.
+TEST(MachineFreeWalls, ABodyThatPassesThroughAWallIsRefused) {
+    const auto fault_on = [](const char* floor, int frames) {
+        json document = json::parse(R"json({
+          "name": "block",
+          "domain": {"low": [-0.05, -0.05, -0.05], "high": [0.05, 0.05, 0.1]},
+          "materials": {"rock": {"density": 2500, "youngs_modulus": "5 MPa", "poisson_ratio": 0.25}},
+          "species": {"sand": {"diameter": "3 mm"}},
+          "walls": {"block": {"box": {"low": [-0.01, -0.01, 0.01], "high": [0.01, 0.01, 0.03]},
+            "motion": [{"free": {"mass": 0.05, "speed_at_most": 2}}]}},
+          "fill": [{"species": "sand", "spheres": [{"at": [0.04, 0.04, 0.06]}]}],
+          "phases": [{"name": "fall", "for": 0.08}],
+          "measure": {"z": {"wall_position": {"wall": "block", "along": [0, 0, 1]}, "as": "last"}}})json");
+        document["walls"]["floor"] = json::parse(floor);
+        document["phases"][0]["frames"] = frames;
+        machine::Run run(spec_of(document), 1);
+        run.advance(1e9);
+        return run.health().reason;
+    };
+    const std::string passed = "free wall 'block' has passed through wall 'floor' before 0.064 s, at (";
+    EXPECT_EQ(fault_on(R"({"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}})", 10).substr(0, passed.size()), passed);
+    EXPECT_EQ(
+        fault_on(R"({"rectangle": {"corner": [-0.02, -0.02, 0], "along": [0.04, 0, 0], "across": [0, 0.04, 0]}})", 10)
+            .substr(0, passed.size()),
+        passed);
+    EXPECT_NE(fault_on(R"({"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}})", 1), "");
+    EXPECT_EQ(fault_on(R"({"plane": {"point": [0, 0, -0.02], "normal": [0, 0, 1]}})", 10), "");
+    EXPECT_EQ(
+        fault_on(R"({"rectangle": {"corner": [0.011, -0.02, 0], "along": [0.02, 0, 0], "across": [0, 0.04, 0]}})", 10),
+        "");
+}
+
 }  // namespace grainsweep::tests::machine_free_walls_test

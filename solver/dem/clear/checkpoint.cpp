@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000eULL;  // "grnscl", version 14
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'000fULL;  // "grnscl", version 15
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(ids(), particles::gone);
