@@ -22,6 +22,21 @@ nlohmann::json query(const Folder& folder, const std::string& sql) {
     return nlohmann::json::parse(ended.out);
 }
 
+TEST(Outcomes, OfNotesThatDifferInNumbersTwoArePrinted) {
+    const Folder folder;
+    folder.write("c.json", config("\"crash\""));
+    const auto printed = run_program({"run", "c.json", "-j", "1", "--quiet"}, folder.path()).err;
+    const auto count = [&](std::string_view word) {
+        int found = 0;
+        for (auto at = printed.find(word); at != std::string::npos; at = printed.find(word, at + 1)) ++found;
+        return found;
+    };
+    EXPECT_EQ(count("trying again"), 2) << printed;
+    EXPECT_EQ(count("giving up"), 2) << printed;
+    // Each of the four crashing cases is tried three times.
+    EXPECT_EQ(count("... and 8 more notes like these; the database has every attempt"), 1) << printed;
+}
+
 TEST(Outcomes, ACrashingCaseIsTriedThreeTimesAndTheRestIsComputed) {
     const Folder folder;
     folder.write("c.json", config("\"crash\""));
