@@ -6,8 +6,9 @@
 //
 // 95 % half-width of the hypervolume: of how far it moves if the mean of one objective lies everywhere at the same end
 // of its interval, in quadrature over the objectives. The front of the box has the computed settings and all settings
-// that were searched, and may have points between them. Its upper end has a third part: settings that meet the
-// condition if the mean of one model, or the probability of an answer, lies at the end of its interval.
+// that were searched, and may have points between them. Its upper end is that of all settings at once, at 3 standard
+// errors of both objectives, with settings that meet the condition if the mean of one model, or the probability of an
+// answer, lies at the end of its interval.
 #pragma once
 
 #include "stats/hypervolume.hpp"
@@ -41,9 +42,9 @@ struct ComputedSetting {
 /// Hypervolume of the front of computed settings.
 struct FrontVolume {
     double value = 0;
-    double error = 0;  ///< 95 % half-width
-    double further =
-        0;  ///< by how much more the front of the box may dominate, at most by the models; too small where they err
+    double error = 0;    ///< 95 % half-width
+    double further = 0;  ///< by how much more the front of the box may dominate, at most by the models; too small where
+                         ///< they see none
 };
 
 /// Returns what the settings dominate. They need both objectives.
