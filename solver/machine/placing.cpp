@@ -15,6 +15,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace grainsweep::machine {
 namespace {
@@ -49,6 +50,10 @@ std::string name_of(const Spec& spec, const Mix& mix) {
     std::string names;
     for (const auto& [species, share] : mix) names += (names.empty() ? "" : " and ") + spec.species[species].name;
     return names;
+}
+
+bool has_shapes(const Spec& spec, const Fill& fill) {
+    return std::ranges::any_of(fill.mix, [&](const auto& part) { return spec.species[part.first].shape.has_value(); });
 }
 
 /// The region as far as it is in the domain.
@@ -121,8 +126,8 @@ bool lies_within(const Bounds& bounds, const Vec3& centre, double radius) {
     return true;
 }
 
-std::vector<Vec3> on_lattice(const Spec& spec, const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
-    const Pitch pitch(spec, fill.mix);
+/// Returns the places of a lattice in the region, at most as many as are wanted.
+std::vector<Vec3> sites_in(const Spec& spec, const Fill& fill, const Pitch& pitch, const Obstacles& obstacles) {
     const double room = pitch.largest / 2 + std::numbers::sqrt3 * pitch.jitter;
     const Bounds bounds = bounds_in(spec, fill.in);
     const Lattice lattice(bounds, periodic_in(spec, bounds), pitch.distance, room);
@@ -135,11 +140,18 @@ std::vector<Vec3> on_lattice(const Spec& spec, const Fill& fill, const Draws& dr
         if (fits(spec, obstacles, fill.in, site, room * (1 - rounding))) centres.push_back(site);
         return true;
     });
-    require(centres.size() == wanted,
+    return centres;
+}
+
+void require_all(const Spec& spec, const Fill& fill, std::size_t sites) {
+    require(sites == static_cast<std::size_t>(fill.count),
             name_of(spec, fill.mix) +
                 sentence(": %.0f of %.0f particles fit into the region on a lattice of 1.15 diameters: make the "
                          "region larger or the number smaller",
-                         static_cast<double>(centres.size()), static_cast<double>(wanted)));
+                         static_cast<double>(sites), static_cast<double>(fill.count)));
+}
+
+std::vector<Vec3> on_lattice(const Pitch& pitch, const Draws& draws, std::vector<Vec3> centres) {
     for (std::size_t n = 0; n < centres.size(); ++n)
         for (std::size_t k = 0; k < 3; ++k)
             centres[n][k] += pitch.jitter * (2 * draws.uniform(place_draw, 3 * n + k) - 1);
@@ -323,8 +335,7 @@ std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws,
 
 std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& draws,
                             const std::vector<Draws::Particle>& given, const Obstacles& obstacles) {
-    const bool shaped =
-        std::ranges::any_of(fill.mix, [&](const auto& part) { return spec.species[part.first].shape.has_value(); });
+    const bool shaped = has_shapes(spec, fill);
     if (shaped && fill.as == Fill::As::random) return at_random_by_members(spec, fill, draws, given, obstacles);
     auto particles = given;  // the spheres around them
     for (auto& particle : particles) particle.radius *= spec.species[particle.species].girth();
@@ -336,20 +347,26 @@ std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& dra
         case Fill::As::packed:
             return packed(spec, fill, draws, obstacles);
         case Fill::As::cells:
+            return in_cells(spec, fill, draws, obstacles);
         case Fill::As::lattice:
             break;
     }
-    return fill.as == Fill::As::cells ? in_cells(spec, fill, draws, obstacles)
-                                      : on_lattice(spec, fill, draws, obstacles);
+    const Pitch pitch(spec, fill.mix);
+    auto sites = sites_in(spec, fill, pitch, obstacles);
+    // Grains of any direction need a lattice as wide as they are long; at random they lie closer.
+    if (shaped && sites.size() < particles.size()) return at_random_by_members(spec, fill, draws, given, obstacles);
+    require_all(spec, fill, sites.size());
+    return on_lattice(pitch, draws, std::move(sites));
 }
 
 void require_places(const Spec& spec) {
     for (const auto& filling : spec.fills) {
         const auto* fill = std::get_if<Fill>(&filling);
         if (fill == nullptr || fill->as != Fill::As::lattice || fill->count > most_tried || fill->at > 0) continue;
+        if (has_shapes(spec, *fill)) continue;  // they may find a place at random
         const Obstacles obstacles(spec, fill->mix, walls_in(spec, 0, {{0.0}, {}}), widest_in(spec, fill->mix), 0,
                                   dem::MovingWall::Searches::few);
-        (void)on_lattice(spec, *fill, Draws(spec, fill->mix, 1, 0), obstacles);
+        require_all(spec, *fill, sites_in(spec, *fill, Pitch(spec, fill->mix), obstacles).size());
     }
 }
 

@@ -286,6 +286,18 @@ TEST(MachineClumps, EveryMachineGivesItsPowderAnAspectRatio) {
     EXPECT_EQ(members("rod"), 5u);
 }
 
+// A lattice is as wide as grains are long, and machines whose spheres fit were refused.
+TEST(MachineClumps, LieAtRandomWhereALatticeHasTooFewPlaces) {
+    json machine = pour({{"aspect_ratio", 2}});
+    machine["fill"][0]["count"] = 250;  // of 144 places
+    machine["phases"][0]["for"] = 0;
+    machine["measure"]["overlap"] = {{"overlap", json::object()}};
+    const auto answer = answer_of(spec_of(machine)).scalars;
+    EXPECT_EQ(answer.at("count"), 250);
+    EXPECT_EQ(answer.at("max_overlap"), 0);
+    EXPECT_NEAR(answer.at("orientation"), 1. / 3, 0.06);
+}
+
 TEST(MachineClumps, AMachineMayHaveAnAspectRatioOfItsOwn) {
     json machine = pour({{"aspect_ratio", 1}});
     machine["species"]["rice"].erase("shape");
