@@ -226,7 +226,8 @@ walltime)
 mpi)
     # Three nodes of two cores: a host on each, which runs one case of two ranks at a time. mpirun inside a step must
     # not look for the allocation: it starts its ranks on its own node.
-    command -v mpicc mpirun >/dev/null || skip "there is no MPI (mpicc, mpirun)"
+    { command -v mpicc mpirun >/dev/null && mpicc -E -include mpi.h -x c /dev/null >/dev/null 2>&1; } ||
+        skip "there is no MPI (mpicc with its headers, mpirun)"
     mpicc -o ranks "$sources/ranks.c"
     cat >c.json <<JSON
 {"campaign": "c", "scene": "program",
