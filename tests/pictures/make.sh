@@ -34,9 +34,9 @@ shoot() {
 
 # The campaign of the README, on its report page: three of its sections.
 report() {
-    awk '/^```json trial.json/ {inside = 1; next} /^```/ {inside = 0} inside' "$here/README.md" >trial.json
-    "$program" run trial.json --quiet
-    "$program" report trial.db -o whole.html
+    awk '/^```json powder.json/ {inside = 1; next} /^```/ {inside = 0} inside' "$here/README.md" >powder.json
+    "$program" run powder.json --quiet
+    "$program" report powder.db -o whole.html
     sed 's#</head>#<style>main > section[id]:not(\#response):not(\#effects):not(\#explore), details {display: none}</style></head>#' \
         whole.html >report.html
     shoot report.html report 1300 1930 0.6

@@ -307,7 +307,8 @@ class Painter {
 }
 
 // What the camera looks at: where the spheres of the first frame are and those of the others but for a few that fly,
-// or the flow's box; of walls those that end near there. A machine that is drawn is seen as a whole.
+// or the flow's box; of walls those that end near there. A machine that is drawn is seen as a whole, unless its particles
+// would be lost in it.
 function extentOf(film) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   const take = (a, x) => { low[a] = Math.min(low[a], x); high[a] = Math.max(high[a], x); };
@@ -329,13 +330,16 @@ function extentOf(film) {
   for (const slice of film.header.slices)
     slice.faces.forEach((faces, a) => { take(a, faces[0]); take(a, faces[faces.length - 1]); });
   const size = Math.max(...high.map((h, a) => h - low[a]), 1e-12);
-  const whole = film.header.about.drawing || film.spheres === 0 && film.header.slices.length === 0;
-  for (const wall of film.walls) {
-    const ends = [0, 1, 2].map((a) => {
-      let least = Infinity, most = -Infinity;
-      for (let i = a; i < wall.corners.length; i += 3) { least = Math.min(least, wall.corners[i]); most = Math.max(most, wall.corners[i]); }
-      return [least, most];
-    });
+  const nothing = film.spheres === 0 && film.header.slices.length === 0, mostTimes = 8;
+  const walls = film.walls.map((wall) => [0, 1, 2].map((a) => {
+    let least = Infinity, most = -Infinity;
+    for (let i = a; i < wall.corners.length; i += 3) { least = Math.min(least, wall.corners[i]); most = Math.max(most, wall.corners[i]); }
+    return [least, most];
+  }));
+  const across = (a) => Math.max(...walls.map((ends) => ends[a][1])) - Math.min(...walls.map((ends) => ends[a][0]));
+  const lost = film.spheres > 0 && Math.max(...[0, 1, 2].map(across)) > mostTimes * size;
+  const whole = nothing || film.header.about.drawing && !lost;
+  for (const ends of walls) {
     if (whole || ends.every(([least, most], a) => least > low[a] - 0.25 * size && most < high[a] + 0.25 * size))
       ends.forEach(([least, most], a) => { take(a, least); take(a, most); });
   }
