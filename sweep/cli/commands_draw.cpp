@@ -1,8 +1,8 @@
 // draw: a machine in three dimensions before it runs.
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/campaign/installed_machines.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_drawing.hpp"
-#include "sweep/campaign/reader.hpp"
+#include "sweep/cli/asked_case.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/report/file_size.hpp"
@@ -23,33 +23,20 @@ using report::Json;
 constexpr std::int64_t usual_pictures = 121;
 
 struct DrawRequest {
-    std::string machine, page;
+    std::string config, page;
     std::vector<std::string> settings;  ///< NAME=VALUE
     std::int64_t frames = usual_pictures;
 };
 
-/// Returns the defaults, changed by `settings`.
-Inputs inputs_of(const SceneInfo& scene, const std::vector<std::string>& settings) {
-    Inputs inputs = scene.defaults();
-    for (const auto& setting : settings) {
-        const auto equals = setting.find('=');
-        if (equals == std::string::npos) throw campaign::input_error("--set", setting, "must be NAME=VALUE");
-        const std::string name = setting.substr(0, equals);
-        const auto* parameter = scene.find_parameter(name);
-        if (parameter == nullptr)
-            throw campaign::input_error("--set " + name, "",
-                                        fmt::format("machine '{}' has no parameter of this name", scene.shown()),
-                                        campaign::nearest_word(name, campaign::names_of(scene.parameters)));
-        inputs[name] = campaign::parse_value(*parameter, setting.substr(equals + 1), {}, "--set " + name);
-    }
-    return inputs;
-}
-
 int draw(const DrawRequest& request, report::Format format) {
     check_page_file("-o", request.page, "");
-    const auto machine = campaign::machine_named("MACHINE", request.machine);
-    const auto scene = campaign::enter_machine(machine);
-    const Inputs inputs = inputs_of(*scene, request.settings);
+    const auto question = asked_case(request.config, request.settings, {}).question;
+    const auto scene = find_scene(question.scene);
+    const auto machine = campaign::known_machine(question.scene);
+    if (machine == nullptr)
+        throw campaign::input_error("CONFIG", request.config,
+                                    fmt::format("scene '{}' is no machine: only machines are drawn", scene->shown()));
+    const Inputs& inputs = question.inputs;
     report::Film film;
     std::string empty = campaign::draw_machine(
         *machine, inputs, request.frames, [&film](const Snapshot& picture, double time) { film.add(picture, time); });
@@ -73,10 +60,12 @@ int draw(const DrawRequest& request, report::Format format) {
 
 std::vector<Command> draw_commands() {
     const auto arguments = [](Parser& parser, DrawRequest& request) {
-        parser.add_option("MACHINE", request.machine, "machine file, or the name of an installed machine");
+        parser.add_option("CONFIG", request.config, "campaign file, machine file, or the name of an installed machine");
         parser
-            .add_option("--set NAME=VALUE", request.settings,
-                        "value of a parameter, a number with or without a unit, or a word")
+            .add_option(
+                "--set NAME=VALUE", request.settings,
+                "value of a parameter, a number with or without a unit, or a word; other factors of a campaign take "
+                "the middle of their range")
             ->allow_extra_args(false);
         parser.add_option("-o,--output FILE.html", request.page, "HTML page to write")->required();
         parser.add_option("--frames N", request.frames, fmt::format("number of pictures; default: {}", usual_pictures))

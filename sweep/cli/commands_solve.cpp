@@ -1,24 +1,17 @@
 // solve: one case of a campaign in this process, without a database.
 #include "solver/scenes/scene.hpp"
-#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/reader.hpp"
-#include "sweep/campaign/relevance.hpp"
-#include "sweep/campaign/simplex.hpp"
+#include "sweep/cli/asked_case.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/compute_options.hpp"
 #include "sweep/cli/pictures.hpp"
-#include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/program_case.hpp"
 #include "sweep/report/main_observables.hpp"
 #include "sweep/report/next_command.hpp"
 #include "sweep/report/print_axes.hpp"
-#include "sweep/store/expression.hpp"
-#include "sweep/study/features.hpp"
 #include "sweep/workers/compute.hpp"
 #include "sweep/workers/memory_room.hpp"
 
@@ -139,65 +132,6 @@ struct SolveRequest {
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
 };
 
-/// Replaces values of the file by NAME=VALUE, under the rules of the file.
-void apply(const std::vector<std::string>& settings, Campaign& campaign, const std::filesystem::path& folder) {
-    const auto& scene = campaign.scene();
-    std::vector<std::string> names;
-    for (const auto& parameter : scene.parameters) names.push_back(parameter.name);
-    std::set<std::string> set;
-    for (const auto& setting : settings) {
-        const auto equals = setting.find('=');
-        const std::string name = setting.substr(0, equals);
-        const std::string where = "--set " + name;
-        if (equals == std::string::npos) throw campaign::input_error("--set", setting, "must be NAME=VALUE");
-        const auto* parameter = scene.find_parameter(name);
-        if (parameter == nullptr) {
-            throw campaign::input_error(where, "",
-                                        fmt::format("scene '{}' has no parameter of this name", scene.shown()),
-                                        campaign::nearest_word(name, names));
-        }
-        if (!set.insert(name).second) throw campaign::input_error(where, "", "this parameter is set twice");
-        const Value value = campaign::parse_value(*parameter, setting.substr(equals + 1), folder, where);
-        campaign::hold(campaign.space, name, value, campaign.accuracy);
-    }
-    for (const auto& name : set) {
-        if (const auto reason = campaign::no_effect(campaign.space, *scene.find_parameter(name))) {
-            throw campaign::input_error("--set " + name, "", *reason);
-        }
-    }
-}
-
-/// Factors that are not set: the middle of their range, the first of their levels; shares are equal above their lows.
-Inputs middle_of(const campaign::ParameterSpace& space) {
-    auto left = static_cast<double>(std::ranges::count_if(space.factors, &campaign::Factor::share));
-    std::vector<double> u;
-    for (const auto& factor : space.factors) {
-        u.push_back(std::holds_alternative<campaign::Levels>(factor.range) ? 0.0 : 0.5);
-        if (!factor.share) continue;
-        left -= 1;
-        u.back() = 1 - std::pow(left / (left + 1), left);  // where the stick breaks into a part and `left` equal ones
-    }
-    return space.at(std::span<const double>(u));
-}
-
-/// Some shares without the others would not add to one.
-void check_shares(const campaign::ParameterSpace& declared, const campaign::ParameterSpace& held) {
-    std::vector<std::string> names;
-    std::vector<double> set;
-    for (const auto& factor : declared.factors) {
-        if (!factor.share) continue;
-        names.push_back(factor.name);
-        if (const auto value = held.fixed.find(factor.name); value != held.fixed.end())
-            set.push_back(std::get<double>(value->second));
-    }
-    if (set.empty()) return;
-    if (set.size() < names.size())
-        throw campaign::input_error("--set", "",
-                                    fmt::format("{} add to one: set all of them or none", campaign::listed(names)));
-    if (!campaign::add_to_one(set))
-        throw campaign::input_error("--set", "", fmt::format("{} do not add to one", campaign::listed(names)));
-}
-
 /// Shows the progress in percent if standard error is a terminal.
 bool show_progress(const Scene& scene) {
     static const bool terminal = ::isatty(STDERR_FILENO) == 1;
@@ -205,51 +139,7 @@ bool show_progress(const Scene& scene) {
     return true;
 }
 
-struct Asked {
-    campaign::Case question;
-    std::optional<double> limit_seconds;
-    std::vector<std::string> shown_inputs;  ///< names of the factors and of what --set gives
-    std::string campaign;                   ///< name; empty: of a machine alone
-};
-
-/// A campaign file; or a machine, which is a campaign without factors.
-Campaign campaign_of(const std::string& config) {
-    if (auto machine = campaign::machine_if_any(config)) {
-        Campaign campaign;
-        campaign.name = machine->name;
-        campaign.space.scene = campaign::enter_machine(std::move(machine));
-        return campaign;
-    }
-    Campaign campaign = read_with_program(config);
-    campaign::asked_in(config, [&] { campaign::check_design(campaign); });
-    campaign::asked_in(config, [&] { study::check_features(campaign); });
-    return campaign;
-}
-
-Asked question_of(const SolveRequest& request) {
-    Campaign campaign = campaign_of(request.config);
-    const auto declared = campaign.space;
-    apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
-    check_shares(declared, campaign.space);
-    const Inputs inputs = middle_of(campaign.space);
-    campaign::asked_in(request.config, [&] { campaign::check_expressions(campaign.space, inputs); });
-    const auto filter = campaign::asked_in(
-        request.config, [&] { return store::make_filter(campaign.where, campaign::filter_names(campaign)); });
-    if (!filter(inputs))
-        std::cerr << "grainsweep: the campaign excludes this point by its 'where': " << campaign.where << '\n';
-    if (!campaign.powder_lacks.empty()) std::cerr << "warning: " << campaign.powder_lacks << '\n';
-    const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
-    Asked asked{campaign::make_case(campaign.scene(), inputs, seed), campaign.limits.wall_seconds, {}, {}};
-    for (const auto& factor : declared.factors) asked.shown_inputs.push_back(factor.name);
-    for (const auto& setting : request.settings) {
-        const auto name = setting.substr(0, setting.find('='));
-        if (std::ranges::find(asked.shown_inputs, name) == asked.shown_inputs.end()) asked.shown_inputs.push_back(name);
-    }
-    if (!declared.factors.empty()) asked.campaign = campaign.name;
-    return asked;
-}
-
-CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& pictures) {
+CaseResult answer_of(const AskedCase& asked, const SolveRequest& request, Pictures& pictures) {
     if (auto program = campaign::known_program(asked.question.scene))
         return answer_by_program(std::move(program), asked.question, 1, asked.limit_seconds, request.keep,
                                  request.pictures);
@@ -313,7 +203,7 @@ Json answer_json(const campaign::Case& question, const CaseResult& result) {
 }
 
 /// Prints the case: what most users need, or with --all everything.
-void print_case(const Asked& asked, const SolveRequest& request, const CaseResult& result) {
+void print_case(const AskedCase& asked, const SolveRequest& request, const CaseResult& result) {
     if (request.all)
         write_whole_case(std::cout, asked.question, result);
     else
@@ -321,7 +211,7 @@ void print_case(const Asked& asked, const SolveRequest& request, const CaseResul
 }
 
 /// Suggests the next command.
-void say_next(const Asked& asked, const SolveRequest& request, const CaseResult& result) {
+void say_next(const AskedCase& asked, const SolveRequest& request, const CaseResult& result) {
     const auto config = report::shell_word(request.config);
     const bool answered = result.outcome == Outcome::completed || result.outcome == Outcome::skipped;
     if (answered)
@@ -362,7 +252,7 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
 int solve(const SolveRequest& request, Format format) {
     use_path(request.path);
     use_threads(request.threads);
-    const Asked asked = question_of(request);
+    const AskedCase asked = asked_case(request.config, request.settings, request.seed);
     const auto& question = asked.question;
     const auto predicted = campaign::predict(*find_scene(question.scene), question.inputs);
     campaign::asked_in(request.config,
