@@ -170,6 +170,20 @@ TEST(Pictures, AMachineIsDrawnWhoseFillingDoesNotFit) {
     EXPECT_TRUE(std::filesystem::exists(folder / "full.html"));
 }
 
+TEST(Pictures, OfTheMachineOfACampaignHaveItsSettings) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "c", "scene": "hopper", "fixed": {"particles": 500}, "factors": [
+      {"name": "diameter", "between": ["4 mm", "6 mm"]}], "design": {"kind": "halton", "points": 2}})");
+    const auto drawn = run_program({"draw", "c.json", "-o", "c.html", "--format", "json"}, folder.path());
+    EXPECT_EQ(drawn.code, 0) << drawn.err;
+    EXPECT_EQ(json::parse(drawn.out)["particles"], 500);
+    folder.write("r.json", R"({"campaign": "r", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "halton", "points": 2}})");
+    const auto refused = run_program({"draw", "r.json", "-o", "r.html"}, folder.path());
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("scene 'rehearsal' is no machine"), std::string::npos) << refused.err;
+}
+
 TEST(Pictures, OfNothingAreRefused) {
     const Folder folder;
     folder.write("c.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
