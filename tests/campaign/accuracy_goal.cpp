@@ -112,7 +112,7 @@ json scattering_strip() {
     auto file = narrow_strip(0.05);
     file["accuracy"]["setting"] = "survey";
     file["fixed"]["layer_area"] = 5e-5;
-    file["seed"] = 6;  // of seeds 1 to 4 few pairs are enough
+    file["seed"] = 3;  // of seeds 1, 2, 4 and 5 few pairs are enough
     return file;
 }
 
