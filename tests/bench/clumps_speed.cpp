@@ -312,7 +312,7 @@ void compare(const Options& o, const std::string& scene, std::size_t spheres) {
             bed.least = std::min(bed.least, spent);
         }
     for (const Bed& bed : beds) {
-        const bool same = o.peer && scene == "bed" && spheres == 4000 && bed.shape != "stone_12";
+        const bool same = o.peer && scene == "bed" && bed.shape != "stone_12";
         print(scene, bed, beds.front(), o.rounds, same ? liggghts(shape_named(bed.shape), spheres) : std::nullopt);
     }
 }
