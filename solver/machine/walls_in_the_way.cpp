@@ -22,8 +22,8 @@ const geometry::Flight* flight_of(const dem::Wall& wall) {
     return nullptr;
 }
 
-/// Whether the centre of mass of a body of this size has got through a wall, from one place in the wall's frame to another. A
-/// way longer than the body is no straight line, which matters for thin walls only.
+/// Whether the centre of mass of a body of this size has got through a wall, from one place in the wall's frame to
+/// another. A way longer than the body is no straight line, which matters for thin walls only.
 bool has_passed(const geometry::Shape& wall, const Vec3& from, const Vec3& to, double size) {
     return std::visit(
         [&](const auto& shape) {

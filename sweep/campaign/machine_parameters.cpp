@@ -32,7 +32,7 @@ constexpr std::size_t longest_machine_name = 64;
 
 /// Units in which machines calculate; the first that fits is the one of a parameter in expressions.
 constexpr std::array<std::string_view, 26> si_units = {
-    "1",  "m",    "s",     "kg",   "m/s", "rad", "rad/s", "Hz",  "m2",        "m3",   "m/s2", "N",    "N m",
+    "1",  "m",    "s",     "kg",   "m/s", "rad", "rad/s", "Hz",  "m2",        "m3",   "m/s2", "N",     "N m",
     "Pa", "J/m2", "kg/m3", "kg/s", "1/s", "J",   "W",     "N/m", "kg/(m2 s)", "m3/s", "Pa s", "kg m2", "N m s"};
 
 /// Returns the unit that a machine calculates in for a given one; none: the reason is in `why`. Remembers it, because
