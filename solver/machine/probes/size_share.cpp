@@ -19,18 +19,15 @@ public:
         for (std::size_t i = 0; i < frame.size(); ++i) {
             if (frame.state.mobile[i] == 0 || !selection_.is_of(frame, frame.id(i))) continue;
             const Vec3& x = frame.state.position[i];
-            const bool in = selection_.region()->contains(x);
-            if (in || !beside_ || beside_->contains(x))
-                keep(frame.id(i), {2 * frame.state.radius[i], frame.mass(i), in ? 1.0 : 0.0});
-            else
-                keep(frame.id(i), {});
+            const bool in = selection_.region()->contains(x), beside = !in && (!beside_ || beside_->contains(x));
+            keep(frame.id(i), {2 * frame.state.radius[i], in ? frame.mass(i) : 0, beside ? frame.mass(i) : 0});
         }
         std::vector<double> inside(bins_.count, 0), all(bins_.count, 0);
         for (const Seen& one : seen_) {
             const std::size_t bin = bins_.at(one.diameter);
             if (bin == bins_.count) continue;
-            inside[bin] += one.mass * one.share;
-            all[bin] += one.mass;
+            inside[bin] += one.in;
+            all[bin] += one.in + one.beside;
         }
         for (std::size_t bin = 0; bin < bins_.count; ++bin)
             into.push_back({.bin = bins_.centre(bin), .value = all[bin] > 0 ? inside[bin] / all[bin] : undefined});
@@ -41,8 +38,8 @@ public:
 private:
     /// Particle where it was last seen.
     struct Seen {
-        double diameter = 0, mass = 0;  ///< m, kg; 0: in neither region
-        double share = 0;               ///< 1: in the first region
+        double diameter = 0;        ///< m
+        double in = 0, beside = 0;  ///< mass in each of the two regions, kg
     };
     void keep(std::size_t id, const Seen& one) {
         if (id >= seen_.size()) seen_.resize(id + 1);
