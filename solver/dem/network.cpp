@@ -65,7 +65,8 @@ std::vector<Freedom> freedoms_of(const MovingWall& wall, double time) {
     return all;
 }
 
-void Network::clear() {
+void Network::clear(std::vector<std::uint64_t> lasting) {
+    lasting_ = std::move(lasting);
     inverse_mass_.clear(), inverse_inertia_.clear(), freedoms_.clear(), bonds_.clear(), columns_.clear();
     bodies_.clear(), carriers_.clear();
     wall_begin_ = 0;
@@ -94,21 +95,19 @@ std::vector<std::uint64_t> Network::keys() const {
     return all;
 }
 
-void Network::keep(const std::vector<std::uint64_t>& keys) {
-    std::erase_if(bonds_, [&](const Bond& bond) { return !std::ranges::binary_search(keys, bond.key); });
-}
-
+template <bool clumped>
 Network::Moved Network::motion_of(std::int32_t sphere, const double* speeds) const {
-    const double* const x = speeds + 6 * node_of(sphere);
-    const Carrier* const by = carrier(sphere);
+    const Carrier* const by = clumped ? carrier(sphere) : nullptr;
+    const double* const x = speeds + 6 * (clumped ? node_of(sphere) : static_cast<std::size_t>(sphere));
     if (by == nullptr) return {at(x), at(x + 3)};
     const Vec3 turning = in_space(bodies_[static_cast<std::size_t>(by->body)].axes, at(x + 3));
     return {at(x) + cross(turning, by->lever), turning};
 }
 
+template <bool clumped>
 void Network::push(std::int32_t sphere, const Vec3& force, const Vec3& moment, double* forces) const {
-    double* const x = forces + 6 * node_of(sphere);
-    const Carrier* const by = carrier(sphere);
+    const Carrier* const by = clumped ? carrier(sphere) : nullptr;
+    double* const x = forces + 6 * (clumped ? node_of(sphere) : static_cast<std::size_t>(sphere));
     add_to(x, force);
     if (by == nullptr) return add_to(x + 3, moment);
     const Axes& axes = bodies_[static_cast<std::size_t>(by->body)].axes;
@@ -166,14 +165,15 @@ double Network::bound(double time_step) const {
     return largest;
 }
 
+template <bool clumped>
 void Network::apply(double of_springs, double of_dampers, const double* speeds, double* force) const {
     const std::size_t walls = 6 * nodes();
     for (const Bond& bond : bonds_) {
         const auto [normal, tangential, rolling] = Weighted(bond.springs, of_springs, of_dampers);
-        auto [velocity, turning] = motion_of(bond.first, speeds);
+        auto [velocity, turning] = motion_of<clumped>(bond.first, speeds);
         Vec3 surface = bond.lever_first * turning;
         if (bond.second >= 0) {
-            const Moved other = motion_of(bond.second, speeds);
+            const Moved other = motion_of<clumped>(bond.second, speeds);
             velocity = velocity - other.velocity;
             turning = turning - other.turning;
             surface += bond.lever_second * other.turning;
@@ -188,8 +188,8 @@ void Network::apply(double of_springs, double of_dampers, const double* speeds, 
         const Vec3 f = normal * along * n + drag;
         const Vec3 turn = cross(drag, n);  // -(n x drag)
         const Vec3 roll = rolling * (turning - dot(turning, n) * n);
-        push(bond.first, f, bond.lever_first * turn + roll, force);
-        if (bond.second >= 0) push(bond.second, -f, bond.lever_second * turn - roll, force);
+        push<clumped>(bond.first, f, bond.lever_first * turn + roll, force);
+        if (bond.second >= 0) push<clumped>(bond.second, -f, bond.lever_second * turn - roll, force);
         for (std::int32_t c = bond.columns; c < bond.columns_end; ++c) {
             const Column& column = columns_[static_cast<std::size_t>(c)];
             force[walls + static_cast<std::size_t>(column.freedom)] -= dot(f, column.velocity);
@@ -228,7 +228,10 @@ StepShare Network::share(double time_step) const {
     const auto applied = [&](double springs, double dampers, const Eigen::VectorXd& x) {
         const Eigen::VectorXd speeds = scale.cwiseProduct(x);
         Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
-        apply(springs, dampers, speeds.data(), force.data());
+        if (bodies_.empty())
+            apply<false>(springs, dampers, speeds.data(), force.data());
+        else
+            apply<true>(springs, dampers, speeds.data(), force.data());
         return Eigen::VectorXd(scale.cwiseProduct(force));
     };
 
@@ -236,25 +239,29 @@ StepShare Network::share(double time_step) const {
     std::vector<Eigen::VectorXd> basis{start / start.norm()};
     std::vector<double> diagonal, beside;
     double largest = 0;
-    Eigen::VectorXd weights;
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
+    const auto solve_small = [&](int wanted) {
+        const auto count = static_cast<Eigen::Index>(diagonal.size());
+        small.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), count),
+                                     Eigen::Map<Eigen::VectorXd>(beside.data(), count - 1), wanted);
+    };
     for (int k = 0; k < most_iterations; ++k) {
         Eigen::VectorXd next = applied(of_springs, of_dampers, basis.back());
         diagonal.push_back(next.dot(basis.back()));
         next -= diagonal.back() * basis.back();
         if (k > 0) next -= beside.back() * basis[static_cast<std::size_t>(k - 1)];
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
-        const auto count = static_cast<Eigen::Index>(diagonal.size());
-        small.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), count),
-                                     Eigen::Map<Eigen::VectorXd>(beside.data(), count - 1));
-        const double now = small.eigenvalues()[count - 1];
-        weights = small.eigenvectors().col(count - 1);
+        solve_small(Eigen::EigenvaluesOnly);
+        const double now = small.eigenvalues()[k];
         const double grown = now - largest;
         largest = now;
         const double left = next.norm();
         if ((k >= least_iterations && grown < converged * largest) || !(left > 1e-12 * largest)) break;
+        if (k + 1 == most_iterations) break;
         beside.push_back(left);
         basis.push_back(next / left);
     }
+    solve_small(Eigen::ComputeEigenvectors);
+    const Eigen::VectorXd weights = small.eigenvectors().col(static_cast<Eigen::Index>(diagonal.size()) - 1);
     Eigen::VectorXd mode = Eigen::VectorXd::Zero(n);
     for (Eigen::Index k = 0; k < weights.size(); ++k) mode += weights[k] * basis[static_cast<std::size_t>(k)];
     mode /= mode.norm();

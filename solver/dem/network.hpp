@@ -16,6 +16,7 @@
 #include "solver/dem/laws/touch.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,8 +59,9 @@ struct StepShare {
 
 class Network {
 public:
-    /// Restarts the network, without contacts, for spheres that add_sphere() gives.
-    void clear();
+    /// Restarts the network, without contacts, for spheres that add_sphere() gives. It takes only contacts whose keys
+    /// are in the ascending list `lasting`, unless that is empty.
+    void clear(std::vector<std::uint64_t> lasting = {});
     /// Adds a sphere; its number is the count of those before. `inverse_mass` 0: it does not move.
     void add_sphere(double inverse_mass, double radius) {
         inverse_mass_.push_back(inverse_mass);
@@ -80,6 +82,10 @@ public:
     }
     /// Adds the degrees of freedom of a wall; returns the first one's number.
     void add_wall(const std::vector<Freedom>& freedoms);
+    /// Returns whether contacts with this key may be added.
+    [[nodiscard]] bool takes(std::uint64_t key) const {
+        return lasting_.empty() || std::ranges::binary_search(lasting_, key);
+    }
     /// Adds a contact with a sphere, or with what does not move (second -1).
     void add(const Bond& bond) { bonds_.push_back(bond); }
     /// Adds a contact at a point with the wall added last.
@@ -87,8 +93,6 @@ public:
 
     /// Returns the keys of all contacts, ascending.
     [[nodiscard]] std::vector<std::uint64_t> keys() const;
-    /// Removes the contacts whose keys are not in an ascending list.
-    void keep(const std::vector<std::uint64_t>& keys);
 
     /// Returns an upper bound of the largest eigenvalue for a time step, s: that of the single contacts with the masses
     /// of their partners shared out among all their contacts (Fried 1972, Comput. Struct. 2, 125).
@@ -131,12 +135,15 @@ private:
         return by == nullptr ? static_cast<std::size_t>(sphere)
                              : inverse_mass_.size() + static_cast<std::size_t>(by->body);
     }
+    template <bool clumped>
     [[nodiscard]] Moved motion_of(std::int32_t sphere, const double* speeds) const;
+    template <bool clumped>
     void push(std::int32_t sphere, const Vec3& force, const Vec3& moment, double* forces) const;
     /// Returns the load of a contact on a node, for bound(): `strength` divided by its mass for a sphere.
     [[nodiscard]] double load_of(const Bond& bond, std::int32_t sphere, double strength, double normal,
                                  double tangential, double rolling) const;
-    /// Adds A u to `force`, A = `of_springs` K + `of_dampers` C.
+    /// Adds A u to `force`, A = `of_springs` K + `of_dampers` C. Without clumps a node is a sphere.
+    template <bool clumped>
     void apply(double of_springs, double of_dampers, const double* speeds, double* force) const;
 
     std::vector<double> inverse_mass_, inverse_inertia_;
@@ -145,6 +152,7 @@ private:
     std::vector<BodyNode> bodies_;
     std::vector<Carrier> carriers_;  ///< by sphere, if there are clumps
     std::vector<Bond> bonds_;
+    std::vector<std::uint64_t> lasting_;
     std::vector<Column> columns_;
     mutable std::vector<double> load_;  ///< of each sphere, scratch of bound(): strengths of its contacts
 };

@@ -39,10 +39,9 @@ bool StepControl::due(std::int64_t steps, double overlap, std::size_t spheres) c
     return steps % early_interval == 0 && (!seen_.empty() || overlap > grown_overlap * state_.overlap);
 }
 
-bool StepControl::look(Network& network, double part, double overlap) {
+bool StepControl::look(const Network& network, double part, double overlap) {
     state_.overlap = overlap;
     const bool again = looks_again();
-    if (again) network.keep(seen_);
     const double bound = network.bound(part);
     const double most = std::sqrt(bound) / 2;  // without dampers the eigenvalue is 4 share^2, with dampers it is larger
     if (most <= (state_.halvings > 0 ? well_below * allowed_ / 2 : allowed_)) {

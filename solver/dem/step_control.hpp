@@ -40,10 +40,11 @@ public:
     [[nodiscard]] bool due(std::int64_t steps, double overlap, std::size_t spheres) const;
     /// Returns whether the next look is at contacts that have lasted since the one before; it needs their slides.
     [[nodiscard]] bool looks_again() const { return !seen_.empty(); }
-    /// Looks at the network, for parts of `part` s; at a second look keeps only its lasting contacts. Returns whether
+    /// Looks at the network, for parts of `part` s; at a second look it has only lasting() contacts. Returns whether
     /// their share must be computed.
-    [[nodiscard]] bool look(Network& network, double part, double overlap);
-    /// Returns the keys of the contacts of the last look, for checkpoints.
+    [[nodiscard]] bool look(const Network& network, double part, double overlap);
+    /// Returns the keys of the contacts of the last look that have lasted since the first one; empty: no second look is
+    /// due.
     [[nodiscard]] const std::vector<std::uint64_t>& lasting() const { return seen_; }
     /// Decides on the parts of the next steps by the share of the present parts. Returns whether these are beyond the
     /// limit and may not be halved.

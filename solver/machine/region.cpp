@@ -326,20 +326,21 @@ double LevelSetRegion::opening() const {
     return edge * found->second;
 }
 
-bool Region::contains(const Vec3& x) const {
-    const Region* region = this;
-    Vec3 at = x;
-    while (const auto* moving = std::get_if<Moving>(&region->is)) {
-        at = at - moved_by(*moving);
-        region = &moving->of.front();
+RegionNow::RegionNow(const Region& region) : still_(&region) {
+    for (Vec3& moved : moved_) {
+        const auto* moving = std::get_if<MovingRegion>(&still_->is);
+        if (moving == nullptr) break;
+        moved = moved_by(*moving);
+        still_ = &moving->of.front();
     }
-    if (const auto* half = std::get_if<Half>(&region->is)) return depth_in(*half, at) >= 0;
-    if (const auto* all = std::get_if<All>(&region->is))
-        return std::ranges::all_of(all->of, [&](const Region& one) { return one.contains(at); });
-    const auto* box = std::get_if<Box>(&region->is);
-    if (box == nullptr) return region->depth(at) >= 0;
-    const auto along = [&](std::size_t k) { return at[k] >= box->low[k] && at[k] <= box->high[k]; };
-    return along(0) && along(1) && along(2);
+    box_ = std::get_if<BoxRegion>(&still_->is);
+    half_ = std::get_if<HalfRegion>(&still_->is);
+}
+
+bool Region::contains(const Vec3& x) const {
+    if (const auto* all = std::get_if<All>(&is))
+        return std::ranges::all_of(all->of, [&](const Region& one) { return one.contains(x); });
+    return RegionNow(*this).contains(x);
 }
 
 double Region::depth(const Vec3& x) const {

@@ -9,6 +9,7 @@
 #include "solver/geometry/tpms.hpp"
 #include "solver/geometry/vector.hpp"
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -95,7 +96,7 @@ struct Region {
 
     /// Returns the depth of a point, m.
     [[nodiscard]] double depth(const Vec3& x) const;
-    /// Returns whether depth(x) is at least 0; of boxes, half spaces and where these move in a few comparisons.
+    /// Returns whether depth(x) is at least 0. For many points at one moment take a RegionNow.
     [[nodiscard]] bool contains(const Vec3& x) const;
     /// Returns a box around the region; infinite where the region is infinite.
     [[nodiscard]] Bounds bounds() const;
@@ -105,6 +106,28 @@ struct Region {
     void each_moving(const std::function<void(Moving&)>& visit);
     /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] const char* flaw() const;
+};
+
+/// Region at one moment; the region must outlive it. Answers as contains() does, for boxes and half spaces, moving or
+/// not, in a few comparisons.
+class RegionNow {
+public:
+    explicit RegionNow(const Region& region);
+    [[nodiscard]] bool contains(Vec3 x) const {
+        for (const Vec3& moved : moved_)  // 0 where nothing moves
+            for (std::size_t a = 0; a < 3; ++a) x[a] -= moved[a];
+        if (half_ != nullptr) return geometry::dot(geometry::operator-(x, half_->point), half_->normal) >= 0;
+        if (box_ == nullptr) return still_->depth(x) >= 0;
+        bool within = true;  // without jumps
+        for (std::size_t a = 0; a < 3; ++a) within = within & (x[a] >= box_->low[a]) & (x[a] <= box_->high[a]);
+        return within;
+    }
+
+private:
+    std::array<Vec3, 2> moved_{};
+    const Region* still_;
+    const BoxRegion* box_;
+    const HalfRegion* half_;
 };
 
 /// Returns the region with its images where it reaches beyond a periodic face of the domain. A box or an upright

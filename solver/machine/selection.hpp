@@ -25,19 +25,25 @@ public:
         if (std::ranges::find(of_.species, frame.species[id]) != of_.species.end()) return true;
         return is_named(frame, id);
     }
-    [[nodiscard]] bool holds(const Frame& frame, std::size_t i) const {
-        const std::size_t id = frame.id(i);
-        return (frame.state.mobile[i] != 0 ? is_of(frame, id) : is_named(frame, id)) &&
-               (!in_ || in_->contains(frame.state.position[i]));
+    /// Returns holds(frame, i) as a function of i, for many particles of one frame.
+    [[nodiscard]] auto at(const Frame& frame) const {
+        return [this, &frame, all = of_.species.empty() && of_.named.empty(),
+                in = in_ ? std::optional<RegionNow>(*in_) : std::nullopt](std::size_t i) {
+            if (in && !in->contains(frame.state.position[i])) return false;
+            if (frame.state.mobile[i] != 0) return all || is_of(frame, frame.id(i));
+            return !of_.named.empty() && is_named(frame, frame.id(i));
+        };
     }
+    [[nodiscard]] bool holds(const Frame& frame, std::size_t i) const { return at(frame)(i); }
     [[nodiscard]] bool holds(const Frame& frame, const Passage& passage) const {
         return is_of(frame, passage.id) && (!in_ || in_->contains(passage.position));
     }
     /// Calls visit(i) for every particle that counts.
     template <class Visit>
     void each(const Frame& frame, Visit&& visit) const {
+        const auto here = at(frame);
         for (std::size_t i = 0; i < frame.size(); ++i)
-            if (holds(frame, i)) visit(i);
+            if (here(i)) visit(i);
     }
     [[nodiscard]] const std::optional<Region>& region() const { return in_; }
 

@@ -167,7 +167,7 @@ private:
     [[nodiscard]] bool sound();
     void check_energy();
     void check_network();
-    void gather_network(bool slides);
+    void gather_network();
     void set_speed_limit();
     void judge_wall_speeds();
     void judge_passages(const Contacts& contacts);

@@ -293,29 +293,33 @@ void ClearEngine::read_contacts(bool of_step, std::vector<ContactForce>& into) c
     });
 }
 
-/// Writes the network of all contacts. `slides`: contacts that the last step has cut have no tangential spring.
-void ClearEngine::gather_network(bool slides) {
+/// Writes the network of all contacts; at a second look of those that last, and those that the last step has cut have
+/// no tangential spring.
+void ClearEngine::gather_network() {
     constexpr double rounding = 1e-12;
-    network_.clear();
+    const auto& lasting = control_.lasting();
+    network_.clear(lasting);
     for (std::size_t i = 0; i < p_.size(); ++i) network_.add_sphere(p_.inverse_mass[i], radius(i));
     for (std::size_t b = 0; b < bodies_.size(); ++b)
         network_.add_body(bodies_.mass[b], bodies_.inertia[b], bodies_.axes(b), bodies_.members(b),
                           [this](std::size_t i) { return bodies_.lever(i); });
-    const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::int32_t id, const auto& t,
+    const auto bond = [&](const AnyContact& laws, std::size_t i, std::int32_t j, std::uint64_t key, const auto& t,
                           const double* memory) {
-        return bond_of(laws, t, memory, key_of(p_.id[i], id), static_cast<std::int32_t>(i), j, slides, rounding);
+        return bond_of(laws, t, memory, key, static_cast<std::int32_t>(i), j, !lasting.empty(), rounding);
     };
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
-        network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), p_.id[j], t, memory));
+        const std::uint64_t key = key_of(p_.id[i], p_.id[j]);
+        if (network_.takes(key)) network_.add(bond(laws_of(i, j), i, static_cast<std::int32_t>(j), key, t, memory));
     });
     std::size_t last = walls_.size();
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3&) {
         const auto& wall = walls_[w].wall;
         if (w != last) network_.add_wall(freedoms_of(wall, wall_time()));
         last = w;
+        const std::uint64_t key = key_of(p_.id[i], -1 - static_cast<std::int32_t>(w));
+        if (!network_.takes(key)) return;
         const Vec3 x = wall.image().of(p_.position[i]);
-        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, -1 - static_cast<std::int32_t>(w), t, memory),
-                             x - t.distance * t.normal);
+        network_.add_at_wall(bond(*walls_[w].laws[p_.kind[i]], i, -1, key, t, memory), x - t.distance * t.normal);
     });
 }
 

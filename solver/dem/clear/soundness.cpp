@@ -133,7 +133,7 @@ void ClearEngine::check_energy() {
 
 /// Compares the length of a part with the longest stable step of the present contacts.
 void ClearEngine::check_network() {
-    gather_network(control_.looks_again());
+    gather_network();
     if (!control_.look(network_, part_, std::max(largest_overlap_, largest_wall_overlap_))) return;
     const StepShare found = network_.share(part_);
     if (!control_.judge(found, network_)) return;

@@ -213,8 +213,10 @@ void ContactReader::wall(const Walls& walls, std::size_t w, std::vector<ContactF
     });
 }
 
-void ContactReader::network(const Walls& walls, double time, bool slides, Network& into) const {
-    into.clear();
+void ContactReader::network(const Walls& walls, double time, const std::vector<std::uint64_t>& lasting,
+                            Network& into) const {
+    into.clear(lasting);
+    const bool slides = !lasting.empty();
     for (std::int32_t i = 0; i < field_.count; ++i) {
         const double inverse = static_cast<double>(field_.records[i].inverse_mass) / space_.scale.mass;
         into.add_sphere(inverse, radius(i));
@@ -225,25 +227,28 @@ void ContactReader::network(const Walls& walls, double time, bool slides, Networ
         into.add_body(clumps_->mass[b], clumps_->inertia[b], clumps_->axes(b), places,
                       [&](std::uint32_t i) { return clumps_->lever_at(field_, static_cast<std::int32_t>(i)); });
     }
-    const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::int32_t id,
+    const auto bond = [&](const AnyContact& laws, auto& t, std::int32_t i, std::int32_t j, std::uint64_t key,
                           const Memory& memory) {
         t.damping_root = std::sqrt(t.root * t.reduced_mass);
-        return bond_of(laws, t, memory.data(), key_of(id_[i], id), i, j, slides, rounding_at_rest);
+        return bond_of(laws, t, memory.data(), key, i, j, slides, rounding_at_rest);
     };
     for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
+        const std::uint64_t key = key_of(id_[i], id_[j]);
+        if (!into.takes(key)) return;
         complete(i, j, t);
-        into.add(bond(laws_of(i, j), t, i, j, id_[j], memory));
+        into.add(bond(laws_of(i, j), t, i, j, key, memory));
     });
     for (std::size_t w = 0; w < walls.count(); ++w) {
         if (!walls[w].present()) continue;
         const std::vector<Freedom> freedoms = freedoms_of(walls[w], time);
         into.add_wall(freedoms);
-        for_each_at_wall(
-            walls, w, [&](std::int32_t i, const WallPoint& at, Touch<Partner::wall>& t, const Memory& memory) {
-                complete(i, t);
-                into.add_at_wall(
-                    bond(walls.laws(w, field_.kind[i]), t, i, -1, -1 - static_cast<std::int32_t>(w), memory), at.place);
-            });
+        for_each_at_wall(walls, w,
+                         [&](std::int32_t i, const WallPoint& at, Touch<Partner::wall>& t, const Memory& memory) {
+                             const std::uint64_t key = key_of(id_[i], -1 - static_cast<std::int32_t>(w));
+                             if (!into.takes(key)) return;
+                             complete(i, t);
+                             into.add_at_wall(bond(walls.laws(w, field_.kind[i]), t, i, -1, key, memory), at.place);
+                         });
     }
 }
 

@@ -44,9 +44,10 @@ public:
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w.
     void wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const;
-    /// Writes the network of all contacts, with spheres in the order of the records. `time`: wall time, s. `slides`:
-    /// contacts that the last step has cut have no tangential spring; then `before` must be given.
-    void network(const Walls& walls, double time, bool slides, Network& into) const;
+    /// Writes the network of all contacts, with spheres in the order of the records. `time`: wall time, s. If `lasting`
+    /// is not empty, only of contacts with these keys, and those that the last step has cut have no tangential spring;
+    /// then `before` must be given.
+    void network(const Walls& walls, double time, const std::vector<std::uint64_t>& lasting, Network& into) const;
     /// Returns the energy of all contacts.
     [[nodiscard]] StoredEnergy stored(const Walls& walls) const;
 

@@ -78,11 +78,11 @@ void MixedEngine::advance(std::int64_t steps, bool one_part) {
 /// Compares the length of a part with the longest stable step of the present contacts.
 void MixedEngine::check_network() {
     join_lists();
-    const bool slides = control_.looks_again();
-    const std::vector<Velocities> before = slides ? motions(0) : std::vector<Velocities>{};
+    const auto& lasting = control_.lasting();
+    const std::vector<Velocities> before = lasting.empty() ? std::vector<Velocities>{} : motions(0);
     const ContactReader reader(laws_, space_, field_, columns_.id.data(), before, kernels_->width, resting_.parked(),
                                before, &clumps_);
-    reader.network(walls_, wall_time(), slides, network_);
+    reader.network(walls_, wall_time(), lasting, network_);
     if (!control_.look(network_, space_.scale.time, recent_overlap_)) return;
     const StepShare found = network_.share(space_.scale.time);
     if (!control_.judge(found, network_)) return;

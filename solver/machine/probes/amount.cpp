@@ -21,8 +21,9 @@ public:
     void restart() override { amount_.clear(); }
     double look(const Frame& frame) override {
         double sum = 0;
+        const auto holds = selection_.at(frame);
         for (std::size_t i = 0; i < frame.size(); ++i) {
-            const bool counts = (!latest_ || frame.id(i) >= frame.newest) && selection_.holds(frame, i) &&
+            const bool counts = (!latest_ || frame.id(i) >= frame.newest) && holds(i) &&
                                 (!slower_than_ || geometry::norm(frame.state.velocity[i]) < *slower_than_);
             const double one = !counts               ? 0
                                : of == Amount::count ? 1
