@@ -290,52 +290,75 @@ struct Formula::Compiled {
 
 namespace {
 
-/// Formulas of this process by text and names: a campaign of machines reads the same ones for every case.
+/// Calls visit(word) for every run of letters, digits and _ that a name may be.
+void each_word(std::string_view text, auto&& visit) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t end = at;
+        while (end < text.size() && (letter(text[end]) || (text[end] >= '0' && text[end] <= '9'))) ++end;
+        if (end > at && letter(text[at])) visit(text.substr(at, end - at));
+        at = std::max(end, at + 1);
+    }
+}
+
+/// Formulas of this process by their texts, with the words in them and whether these were known.
 class ReadFormulas {
 public:
-    static std::string key_of(std::string_view text, const WordList& names) {
-        std::string key(text);
-        for (const auto name : names) (key += '\n') += name;
-        return key;
-    }
-    std::optional<Formula> find(const std::string& key) {
+    std::optional<Formula> find(const std::string& text, const Formula::Known& known) {
         const std::scoped_lock lock(mutex_);
-        const auto found = by_key_.find(key);
-        return found == by_key_.end() ? std::nullopt : std::optional(found->second);
+        const auto found = by_text_.find(text);
+        if (found == by_text_.end()) return std::nullopt;
+        for (const auto& [word, was_known] : found->second.words)
+            if (known(word) != was_known) return std::nullopt;
+        return found->second.formula;
     }
-    void keep(std::string key, const Formula& formula) {
+    void keep(std::string text, const Formula::Known& known, const Formula& formula) {
+        Read read{{}, formula};
+        each_word(text, [&](std::string_view word) { read.words.emplace_back(word, known(word)); });
         const std::scoped_lock lock(mutex_);
-        if (by_key_.size() == most_kept) by_key_.clear();
-        by_key_.emplace(std::move(key), formula);
+        if (by_text_.size() == most_kept) by_text_.clear();
+        by_text_.insert_or_assign(std::move(text), std::move(read));
     }
 
 private:
-    static constexpr std::size_t most_kept = 1000;
+    static constexpr std::size_t most_kept = 10'000;
+    struct Read {
+        std::vector<std::pair<std::string, bool>> words;
+        Formula formula;
+    };
     std::mutex mutex_;
-    std::unordered_map<std::string, Formula> by_key_;
+    std::unordered_map<std::string, Read> by_text_;
 };
-
-ReadFormulas& read_formulas() {
-    static ReadFormulas all;
-    return all;
-}
 
 }  // namespace
 
 Formula::Formula(std::shared_ptr<Compiled> compiled) : compiled_(std::move(compiled)) {}
 
 std::variant<Formula, std::string> Formula::parse(std::string_view text, const WordList& names) {
-    auto key = ReadFormulas::key_of(text, names);
-    if (const auto known = read_formulas().find(key)) return *known;
     FormulaCheck check(text, names);
     if (const auto reason = check.reason()) return *reason;
     try {
-        Formula formula(std::make_shared<Compiled>(check));
-        read_formulas().keep(std::move(key), formula);
-        return formula;
+        return Formula(std::make_shared<Compiled>(check));
     } catch (const mu::ParserError& error) {
         return fmt::format("it cannot be read at position {}: {}", error.GetPos() + 1, error.GetMsg());
     }
+}
+
+std::variant<Formula, std::string> Formula::of(std::string_view text, const Known& known) {
+    static ReadFormulas all;
+    std::string key(text);
+    if (auto read = all.find(key, known)) return *std::move(read);
+    auto parsed = parse(text, names_in(text, known));
+    if (const auto* formula = std::get_if<Formula>(&parsed)) all.keep(std::move(key), known, *formula);
+    return parsed;
+}
+
+std::vector<std::string> names_in(std::string_view text, const Formula::Known& known) {
+    std::vector<std::string> names;
+    each_word(text, [&](std::string_view word) {
+        if (known(word)) names.emplace_back(word);
+    });
+    return names;
 }
 
 const std::vector<std::string>& Formula::names() const {

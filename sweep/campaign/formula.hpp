@@ -19,11 +19,15 @@ namespace grainsweep::campaign {
 class Formula {
 public:
     using Lookup = std::function<double(std::string_view name)>;
+    using Known = std::function<bool(std::string_view name)>;
 
     /// Parses and checks a text that may use `names`; a name `pi` hides the constant. If the text is invalid, returns
     /// the reason as a part of a sentence, with the position in the text (1: its first character) and the nearest valid
     /// word.
     [[nodiscard]] static std::variant<Formula, std::string> parse(std::string_view text, const WordList& names);
+    /// Parses a text that may use those names in it that are `known`. Remembers it: every case of a machine reads the
+    /// same texts.
+    [[nodiscard]] static std::variant<Formula, std::string> of(std::string_view text, const Known& known);
 
     /// Returns the names that it uses, each once, in the order of their first use.
     [[nodiscard]] const std::vector<std::string>& names() const;
@@ -38,5 +42,8 @@ private:
 
     std::shared_ptr<Compiled> compiled_;
 };
+
+/// Returns the names in a text that are known.
+[[nodiscard]] std::vector<std::string> names_in(std::string_view text, const Formula::Known& known);
 
 }  // namespace grainsweep::campaign

@@ -158,13 +158,13 @@ std::string shown(const Json& value) {
 std::string path_of(std::string_view parent, std::string_view key) {
     const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
     if (!key.empty() && key.size() <= longest_shown && std::ranges::all_of(key, plain)) {
-        return fmt::format("{}.{}", parent, key);
+        return std::string(parent).append(1, '.').append(key);
     }
     return fmt::format("{}[{}]", parent, shown(std::string(key)));
 }
 
 std::string path_of(std::string_view parent, std::size_t index) {
-    return fmt::format("{}[{}]", parent, index);
+    return std::string(parent).append(1, '[').append(std::to_string(index)).append(1, ']');
 }
 
 }  // namespace grainsweep::campaign

@@ -164,9 +164,9 @@ void put_in_order(const Cursor& all, std::vector<machine::Derived>& derived) {
 /// Expression of measurements and of names that are numbers in this case.
 machine::Derived derived_of(const std::string& name, const Cursor& text, const std::vector<std::string>& known,
                             const MachineScope& scope) {
-    auto parsed = Formula::parse(text.text(), names_in(text.text(), [&](std::string_view used) {
-                                     return scope.has_number(used) || std::ranges::find(known, used) != known.end();
-                                 }));
+    auto parsed = Formula::of(text.text(), [&](std::string_view used) {
+        return scope.has_number(used) || std::ranges::find(known, used) != known.end();
+    });
     if (!std::holds_alternative<Formula>(parsed)) {  // the sentence finds the nearest name
         auto names = known;
         const auto constants = scope.names();

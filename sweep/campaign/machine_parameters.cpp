@@ -246,8 +246,8 @@ void refuse_names_twice(const Cursor& place, const std::vector<ParameterSpec>& p
 }
 
 /// Returns the names that expressions may use after the species are read.
-std::set<std::string> species_names(const Section& top) {
-    std::set<std::string> names;
+std::set<std::string, std::less<>> species_names(const Section& top) {
+    std::set<std::string, std::less<>> names;
     const auto species = top.find("species");
     if (species && species->json().is_object())
         for (const auto& [name, value] : species->json().items())
@@ -307,7 +307,7 @@ double let_in(const Cursor& place, const MachineScope& scope) {
 }
 
 /// Adds the definitions of "let", except those with a name that is defined later. Refuses a circle.
-void evaluate_lets(const Section& top, const std::set<std::string>& to_come, MachineScope& scope) {
+void evaluate_lets(const Section& top, const std::set<std::string, std::less<>>& to_come, MachineScope& scope) {
     const auto lets = top.find("let");
     if (!lets) return;
     if (!lets->json().is_object()) lets->refuse("must be an object of expressions by name");
@@ -321,13 +321,12 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
         open.insert(name);
     }
     std::map<std::string, std::vector<std::string>, std::less<>> used;  // by an expression
-    const std::set<std::string> to_be = open;
+    const std::set<std::string, std::less<>> to_be(open.begin(), open.end());
     const auto parse = [&](const std::string& given) {
         const auto known = [&](std::string_view name) {
-            const std::string word(name);
-            return scope.has_number(name) || to_be.contains(word) || to_come.contains(word);
+            return scope.has_number(name) || to_be.contains(name) || to_come.contains(name);
         };
-        auto parsed = formula_of(given, names_in(given, known));
+        auto parsed = Formula::of(given, known);
         if (std::holds_alternative<Formula>(parsed)) return parsed;
         auto names = scope.names();
         names.insert(names.end(), to_be.begin(), to_be.end());

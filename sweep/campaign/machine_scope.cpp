@@ -79,7 +79,7 @@ private:
 /// A quantity as in_si reads it.
 std::shared_ptr<const std::variant<double, std::string>> quantity_in(const std::string& text, std::string_view unit) {
     static Memory<std::variant<double, std::string>> quantities;
-    return quantities.of(fmt::format("{}\n{}", text, unit), [&] { return in_si(text, unit); });
+    return quantities.of(std::string(text).append("\n").append(unit), [&] { return in_si(text, unit); });
 }
 
 /// Whether expressions calculate in a unit; bounds of a speed in rpm are in rpm.
@@ -94,35 +94,17 @@ bool calculates_in(std::string_view unit) {
 std::shared_ptr<const ValueText> value_text(const std::string& written, std::string_view unit) {
     static Memory<ValueText> texts;
     const bool si = calculates_in(unit);
-    return texts.of(fmt::format("{}{:d}", written, si), [&] {
+    return texts.of(written + (si ? '1' : '0'), [&] {
         const std::string united = si ? with_si_numbers(written) : std::string();
         return ValueText{united.empty() ? written : united, unclear_quotient(written), with_decimal_point(written),
                          united.empty() && is_quantity(written)};
     });
 }
 
-std::variant<Formula, std::string> formula_of(const std::string& text, const std::vector<std::string>& names) {
-    static Memory<std::variant<Formula, std::string>> formulas;
-    return *formulas.of(fmt::format("{}\n{}", text, fmt::join(names, "\n")),
-                        [&] { return Formula::parse(text, names); });
-}
-
 /// An expression with the names in it; where it is wrong, with all, so that the sentence finds the nearest one.
 std::variant<Formula, std::string> MachineScope::parsed_here(const std::string& text) const {
-    auto parsed = formula_of(text, names_in(text, [this](std::string_view name) { return numbers_.contains(name); }));
+    auto parsed = Formula::of(text, [this](std::string_view name) { return numbers_.contains(name); });
     return std::holds_alternative<Formula>(parsed) ? parsed : Formula::parse(text, names());
-}
-
-std::vector<std::string> names_in(std::string_view text, const std::function<bool(std::string_view)>& known) {
-    const auto of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    std::vector<std::string> names;
-    for (std::size_t at = 0; at < text.size();) {
-        std::size_t end = at;
-        while (end < text.size() && of_name(text[end])) ++end;
-        if (end > at && known(text.substr(at, end - at))) names.emplace_back(text.substr(at, end - at));
-        at = std::max(end, at + 1);
-    }
-    return names;
 }
 
 /// A word in an expression is named as such.

@@ -110,12 +110,6 @@ struct ValueText {
 /// Returns a text where a unit is wanted. Quantities become SI numbers where expressions calculate in it. Remembers
 /// it.
 [[nodiscard]] std::shared_ptr<const ValueText> value_text(const std::string& written, std::string_view unit = "1");
-/// Returns Formula::parse of the names. Remembers it.
-[[nodiscard]] std::variant<Formula, std::string> formula_of(const std::string& text,
-                                                            const std::vector<std::string>& names);
-/// Returns the names in a text that are known.
-[[nodiscard]] std::vector<std::string> names_in(std::string_view text,
-                                                const std::function<bool(std::string_view)>& known);
 /// Returns whether a text is a number with or without a unit, not an expression.
 [[nodiscard]] bool is_quantity(std::string_view text);
 /// Returns the only type whose name is a key of the object; null: none or several.

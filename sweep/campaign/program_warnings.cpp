@@ -1,7 +1,7 @@
 #include "sweep/campaign/program_warnings.hpp"
 
 #include "solver/plain_text.hpp"
-#include "sweep/campaign/machine_scope.hpp"
+#include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/placeholders.hpp"
 
 #include <fmt/format.h>
