@@ -423,8 +423,9 @@ void Run::add_profile(const Measure& measure, std::span<const Sample> profile, d
 double Run::mass_in(const Region& region) {
     const Frame frame = look(Contacts::none);
     double mass = 0;
+    const RegionNow here(region);
     for (std::size_t i = 0; i < frame.size(); ++i)
-        if (frame.state.mobile[i] != 0 && region.contains(frame.state.position[i])) mass += frame.mass(i);
+        if (frame.state.mobile[i] != 0 && here.contains(frame.state.position[i])) mass += frame.mass(i);
     return mass;
 }
 
@@ -469,8 +470,9 @@ bool Run::holds_now(std::size_t condition) {
 bool Run::is_quiet(const Quiet& quiet, std::size_t condition) {
     const Frame frame = look(Contacts::none);
     double inside = 0, fast = 0;
+    const RegionNow here(quiet.region);
     for (std::size_t i = 0; i < frame.size(); ++i) {
-        if (frame.state.mobile[i] == 0 || !quiet.region.contains(frame.state.position[i])) continue;
+        if (frame.state.mobile[i] == 0 || !here.contains(frame.state.position[i])) continue;
         ++inside;
         fast += norm(frame.state.velocity[i]) < quiet.speed ? 0 : 1;
     }

@@ -116,8 +116,9 @@ public:
     void restart() override { profile_ = observables::VelocityProfile(profile_.sum.size()), frames_ = 0; }
     double look(const Frame& frame) override {
         dem::State inside;
+        const RegionNow here(in_);
         for (std::size_t i = 0; i < frame.size(); ++i) {
-            if (frame.state.mobile[i] == 0 || !in_.contains(frame.state.position[i])) continue;
+            if (frame.state.mobile[i] == 0 || !here.contains(frame.state.position[i])) continue;
             inside.position.push_back(frame.state.position[i]);
             inside.velocity.push_back(frame.state.velocity[i]);
         }
