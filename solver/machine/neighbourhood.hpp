@@ -25,14 +25,19 @@ public:
         }
     }
 
-    void add(const Vec3& centre, double radius) { cells_[cell_of(centre)].push_back({centre, radius}); }
+    void add(const Vec3& centre, double radius) {
+        largest_ = std::max(largest_, radius);
+        cells_[wrapped(cell_of(centre))].push_back({centre, radius});
+    }
     /// Returns whether a sphere there would overlap one of them; of radius 0, whether the point lies in one.
     [[nodiscard]] bool occupied(const Vec3& centre, double radius) const {
-        const Cell middle = cell_of(centre);
-        for (std::int64_t x = -1; x <= 1; ++x)
-            for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t z = -1; z <= 1; ++z) {
-                    const auto found = cells_.find(wrapped({middle[0] + x, middle[1] + y, middle[2] + z}));
+        const double reach = (radius + largest_) * (1 + 1e-9);
+        const Cell first = cell_of({centre[0] - reach, centre[1] - reach, centre[2] - reach});
+        const Cell last = cell_of({centre[0] + reach, centre[1] + reach, centre[2] + reach});
+        for (std::int64_t x = first[0]; x <= last[0]; ++x)
+            for (std::int64_t y = first[1]; y <= last[1]; ++y)
+                for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+                    const auto found = cells_.find(wrapped({x, y, z}));
                     if (found == cells_.end()) continue;
                     for (const Ball& ball : found->second)
                         if (geometry::norm(domain_.separation(centre, ball.centre)) < ball.radius + radius) return true;
@@ -56,12 +61,13 @@ private:
         Cell cell{};
         for (std::size_t k = 0; k < 3; ++k)
             cell[k] = static_cast<std::int64_t>(std::floor((x[k] - domain_.low[k]) / edge_[k]));
-        return wrapped(cell);
+        return cell;
     }
 
     const geometry::Domain& domain_;
     Cell count_{};  ///< cells of a period; 0: the axis has none
     Vec3 edge_{};
+    double largest_ = 0;  ///< radius
     std::map<Cell, std::vector<Ball>> cells_;
 };
 
