@@ -20,6 +20,7 @@
 namespace grainsweep::machine {
 namespace {
 
+using geometry::operator-;
 using kit::require;
 using kit::sentence;
 
@@ -28,7 +29,8 @@ constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
 constexpr double most_sites = 2e8;
 constexpr double rain_layer = 1.05, rain_cover = 0.25;                    // largest diameters, share of the area
 constexpr double packed_fraction = 0.62, least_edge = 6, most_edge = 16;  // diameters
-constexpr std::uint64_t tries_by_members = 20000;                         // of one clump
+constexpr std::uint64_t tries_by_members = 20000, tries_of_lower = 400;   // of one clump
+constexpr double shrinkage = 0.98;          // of the box of these tries, from one to the next
 constexpr std::int64_t most_tried = 20000;  // particles whose places are sought before a case runs
 constexpr double rounding = 1e-9;           // of a radius: a layer one diameter thick holds spheres
 
@@ -143,15 +145,26 @@ std::vector<Vec3> sites_in(const Spec& spec, const Fill& fill, const Pitch& pitc
     return centres;
 }
 
-void require_all(const Spec& spec, const Fill& fill, std::size_t sites) {
-    require(sites == static_cast<std::size_t>(fill.count),
-            name_of(spec, fill.mix) +
-                sentence(": %.0f of %.0f particles fit into the region on a lattice of 1.15 diameters: make the "
-                         "region larger or the number smaller",
-                         static_cast<double>(sites), static_cast<double>(fill.count)));
+/// Throws unless all particles of a filling have a place.
+void require_all(const Spec& spec, const Fill& fill, std::size_t places) {
+    const char* full =
+        ": %.0f of %.0f particles fit into the region on a lattice of 1.15 diameters: make the region "
+        "larger or the number smaller";
+    if (fill.as == Fill::As::rain)
+        full = ": rain of %.0f of %.0f particles fills the region up to its top: make it higher or wider";
+    if (fill.as == Fill::As::packed)
+        full =
+            ": %.0f of %.0f particles fit into the region in a close packing: make the region larger or the number "
+            "smaller";
+    if (has_shapes(spec, fill))
+        full = ": %.0f of %.0f particles find a place without overlap: make the region larger or the number smaller";
+    require(places == static_cast<std::size_t>(fill.count),
+            name_of(spec, fill.mix) + sentence(full, static_cast<double>(places), static_cast<double>(fill.count)));
 }
 
-std::vector<Vec3> on_lattice(const Pitch& pitch, const Draws& draws, std::vector<Vec3> centres) {
+std::vector<Vec3> on_lattice(const Spec& spec, const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
+    const Pitch pitch(spec, fill.mix);
+    auto centres = sites_in(spec, fill, pitch, obstacles);
     for (std::size_t n = 0; n < centres.size(); ++n)
         for (std::size_t k = 0; k < 3; ++k)
             centres[n][k] += pitch.jitter * (2 * draws.uniform(place_draw, 3 * n + k) - 1);
@@ -212,40 +225,46 @@ std::vector<Vec3> at_random(const Spec& spec, const Fill& fill, const Draws& dra
     return *centres;
 }
 
-/// Clumps at random places, one after the other, without overlap of their members. Each keeps its orientation: it is
-/// the place that is drawn again.
-std::vector<Vec3> at_random_by_members(const Spec& spec, const Fill& fill, const Draws& draws,
-                                       const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
+enum class ByMembers { at_random, lowest };
+
+/// Returns the places of clumps, one after the other, until one finds none without overlap of members. `lowest`: from a
+/// random place down to the lowest one that random tries in ever smaller boxes find. Only places are drawn again, so
+/// that orientations stay as drawn.
+std::vector<Vec3> by_members(const Spec& spec, const Fill& fill, const Draws& draws,
+                             const std::vector<Draws::Particle>& particles, const Obstacles& obstacles, ByMembers how) {
     const Bounds bounds = bounds_in(spec, fill.in);
     Neighbourhood near(spec.domain, widest_in(spec, fill.mix));
     std::vector<Vec3> centres;
     for (std::uint64_t n = 0; n < particles.size(); ++n) {
         const auto orientation = draws.orientation(particles[n].species, n);
-        std::vector<geometry::Ball> balls;
+        const auto balls_at = [&](const Vec3& x) { return balls_of(spec, particles[n], x, orientation); };
         const auto lies_free = [&](const geometry::Ball& ball) {
             return fill.in.depth(ball.centre) >= ball.radius * (1 - rounding) &&
                    !near.occupied(ball.centre, ball.radius) && !obstacles.touch(ball.centre, ball.radius);
         };
-        const auto place = [&](std::uint64_t attempt) {
+        const auto place = [&](const Bounds& in, std::uint64_t attempt) -> std::optional<Vec3> {
             Vec3 x{};
             for (std::size_t k = 0; k < 3; ++k)
-                x[k] = bounds.low[k] + (bounds.high[k] - bounds.low[k]) *
-                                           draws.uniform(place_draw, stats::splitmix64(n) + 3 * attempt + k);
+                x[k] = in.low[k] +
+                       (in.high[k] - in.low[k]) * draws.uniform(place_draw, stats::splitmix64(n) + 3 * attempt + k);
+            if (spec.domain.outside(x) || !std::ranges::all_of(balls_at(x), lies_free)) return std::nullopt;
             return x;
         };
-        std::uint64_t attempt = 0;
-        for (; attempt < tries_by_members; ++attempt) {
-            const Vec3 x = place(attempt);
-            balls = balls_of(spec, particles[n], x, orientation);
-            if (!spec.domain.outside(x) && std::ranges::all_of(balls, lies_free)) break;
+        std::optional<Vec3> found;
+        for (std::uint64_t attempt = 0; attempt < tries_by_members && !found; ++attempt) found = place(bounds, attempt);
+        if (!found) break;
+        double reach = geometry::norm(bounds.high - bounds.low);
+        for (std::uint64_t attempt = 0; how == ByMembers::lowest && attempt < tries_of_lower; ++attempt) {
+            reach *= shrinkage;
+            Bounds in = bounds;
+            for (std::size_t k = 0; k < 3; ++k) {
+                in.low[k] = std::max(in.low[k], (*found)[k] - reach);
+                in.high[k] = std::min(in.high[k], (*found)[k] + (k < 2 ? reach : 0));
+            }
+            if (const auto lower = place(in, tries_by_members + attempt)) found = lower;
         }
-        require(attempt < tries_by_members,
-                name_of(spec, fill.mix) +
-                    sentence(": %.0f of %.0f particles find a place at random without overlap: make the region larger, "
-                             "or the number smaller",
-                             static_cast<double>(n), static_cast<double>(particles.size())));
-        centres.push_back(place(attempt));
-        for (const auto& ball : balls) near.add(ball.centre, ball.radius);
+        centres.push_back(*found);
+        for (const auto& ball : balls_at(*found)) near.add(ball.centre, ball.radius);
     }
     return centres;
 }
@@ -266,7 +285,7 @@ std::vector<Vec3> layer_of(const particles::Room& room, const std::vector<Draws:
     return {};
 }
 
-/// Layers as high as the widest particle, from the bottom up, each filled at random.
+/// Layers as high as the widest particle, from the bottom up, each filled at random, as far as there is room.
 std::vector<Vec3> as_rain(const Spec& spec, const Fill& fill, const Draws& draws,
                           const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
     const Bounds bounds = bounds_in(spec, fill.in);
@@ -280,18 +299,15 @@ std::vector<Vec3> as_rain(const Spec& spec, const Fill& fill, const Draws& draws
             }};
         room.low[2] += height * static_cast<double>(layer);
         room.high[2] = std::min(room.high[2], room.low[2] + height);
-        require(room.high[2] - room.low[2] >= height * (1 - rounding),
-                name_of(spec, fill.mix) +
-                    sentence(": rain of %.0f of %.0f particles fills the region up to its top: make it higher or "
-                             "wider",
-                             static_cast<double>(centres.size()), static_cast<double>(particles.size())));
+        if (room.high[2] - room.low[2] < height * (1 - rounding)) break;
         const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 2 + layer) * 0x1p53);
         for (const Vec3& centre : layer_of(room, particles, centres.size(), seed)) centres.push_back(centre);
     }
     return centres;
 }
 
-/// The lowest spheres of a random close packing of the widest ones, which repeats itself.
+/// The lowest spheres of a random close packing of the widest ones, which repeats itself; at most as many as are
+/// wanted.
 std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
     const double largest = widest_in(spec, fill.mix);
     const Bounds bounds = bounds_in(spec, fill.in);
@@ -322,12 +338,7 @@ std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws,
                         centres.push_back(centre);
                 }
     std::ranges::sort(centres, {}, [](const Vec3& c) { return std::array{c[2], c[1], c[0]}; });
-    require(centres.size() >= static_cast<std::size_t>(fill.count),
-            name_of(spec, fill.mix) +
-                sentence(": %.0f of %.0f particles fit into the region in a close packing: make the region larger "
-                         "or the number smaller",
-                         static_cast<double>(centres.size()), static_cast<double>(fill.count)));
-    centres.resize(static_cast<std::size_t>(fill.count));
+    centres.resize(std::min(centres.size(), static_cast<std::size_t>(fill.count)));
     return centres;
 }
 
@@ -335,28 +346,34 @@ std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws,
 
 std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& draws,
                             const std::vector<Draws::Particle>& given, const Obstacles& obstacles) {
-    const bool shaped = has_shapes(spec, fill);
-    if (shaped && fill.as == Fill::As::random) return at_random_by_members(spec, fill, draws, given, obstacles);
     auto particles = given;  // the spheres around them
     for (auto& particle : particles) particle.radius *= spec.species[particle.species].girth();
+    const bool shaped = has_shapes(spec, fill);
+    std::vector<Vec3> centres;
     switch (fill.as) {
-        case Fill::As::random:
-            return at_random(spec, fill, draws, particles, obstacles);
-        case Fill::As::rain:
-            return as_rain(spec, fill, draws, particles, obstacles);
-        case Fill::As::packed:
-            return packed(spec, fill, draws, obstacles);
         case Fill::As::cells:
             return in_cells(spec, fill, draws, obstacles);
+        case Fill::As::random:
+            if (!shaped) return at_random(spec, fill, draws, particles, obstacles);
+            break;
+        case Fill::As::rain:
+            centres = as_rain(spec, fill, draws, particles, obstacles);
+            break;
+        case Fill::As::packed:
+            centres = packed(spec, fill, draws, obstacles);
+            break;
         case Fill::As::lattice:
+            centres = on_lattice(spec, fill, draws, obstacles);
             break;
     }
-    const Pitch pitch(spec, fill.mix);
-    auto sites = sites_in(spec, fill, pitch, obstacles);
-    // Grains of any direction need a lattice as wide as they are long; at random they lie closer.
-    if (shaped && sites.size() < particles.size()) return at_random_by_members(spec, fill, draws, given, obstacles);
-    require_all(spec, fill, sites.size());
-    return on_lattice(pitch, draws, std::move(sites));
+    // Spheres around long grains of any direction take more room than the grains.
+    const auto try_members = [&](ByMembers how) {
+        if (shaped && centres.size() < given.size()) centres = by_members(spec, fill, draws, given, obstacles, how);
+    };
+    if (fill.as != Fill::As::packed) try_members(ByMembers::at_random);
+    try_members(ByMembers::lowest);
+    require_all(spec, fill, centres.size());
+    return centres;
 }
 
 void require_places(const Spec& spec) {

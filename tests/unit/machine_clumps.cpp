@@ -298,6 +298,40 @@ TEST(MachineClumps, LieAtRandomWhereALatticeHasTooFewPlaces) {
     EXPECT_NEAR(answer.at("orientation"), 1. / 3, 0.06);
 }
 
+// Spheres around grains leave no room in any way of filling, and where random places do not suffice either, grains
+// start from the bottom up, at orientations by chance.
+TEST(MachineClumps, StartFromTheBottomWhereRandomPlacesDoNotSuffice) {
+    constexpr double side = 0.04, high = 0.03, solid = 0.36;
+    const auto filled = [&](const char* as, double count) {
+        json machine = pour({{"aspect_ratio", 2}});
+        machine["fill"][0]["as"] = as;
+        machine["fill"][0]["count"] = count;
+        machine["fill"][0]["in"]["box"]["high"][2] = 0.001 + high;
+        machine["phases"][0]["for"] = 0;
+        machine["measure"].erase("solid");
+        machine["measure"]["overlap"] = {{"overlap", json::object()}};
+        return answer_of(spec_of(machine));
+    };
+    const double count = std::floor(solid * side * side * high / volume_of_one);
+    for (const char* as : {"lattice", "random", "rain", "packed"}) {
+        const auto all = filled(as, count);
+        const auto& answer = all.scalars;
+        EXPECT_EQ(answer.at("count"), count) << as;
+        EXPECT_EQ(answer.at("max_overlap"), 0) << as;
+        EXPECT_EQ(answer.at("max_wall_overlap"), 0) << as;
+        EXPECT_NEAR(answer.at("orientation"), 1. / 3, 3 * std::sqrt(4. / 45 / count)) << as;
+        EXPECT_EQ(text_of(filled(as, count)), text_of(all)) << as;
+    }
+    EXPECT_LT(filled("packed", std::floor(count / 2)).scalars.at("top"), 0.7 * high);
+    try {
+        (void)filled("packed", 2 * count);
+        ADD_FAILURE();
+    } catch (const std::invalid_argument& why) {
+        EXPECT_NE(std::string(why.what()).find("particles find a place without overlap"), std::string::npos)
+            << why.what();
+    }
+}
+
 TEST(MachineClumps, AMachineMayHaveAnAspectRatioOfItsOwn) {
     json machine = pour({{"aspect_ratio", 1}});
     machine["species"]["rice"].erase("shape");
