@@ -1,5 +1,5 @@
-// Field: one member of a type that a file sets, as a row of a table. A type has an array of fields, a variant an array
-// of named alternatives. Readers, schemas and reference tables are functions over these arrays, and no templates.
+// Field: a member of a type that a file sets or a command prints, as a row. A type has an array of fields, a variant an
+// array of named alternatives. Readers, schemas and reference tables are functions over these arrays, and no templates.
 #pragma once
 
 #include <array>
@@ -59,10 +59,10 @@ struct Field {
     /// the beginning of a text.
     std::span<const std::string_view> words = {};
     bool required = false;
-    std::string_view unit = {};           ///< SI unit of quantity and vector
+    std::string_view unit = {};           ///< of quantity and vector, the SI unit; of a result its own
     void* (*at)(void* object) = nullptr;  ///< member of the object; null: the reader of the object takes the value
     void (*choose)(void* object, std::size_t word) = nullptr;  ///< sets a member to a word of `words`
-    bool optional = false;                                     ///< the member is std::optional, and empty by default
+    bool optional = false;  ///< the member is std::optional, and empty by default; some results do not have the key
     std::span<const Field> members = {};  ///< fields of an object, or of the entries of array and named
 };
 

@@ -13,6 +13,9 @@
 #include "sweep/cli/stored_case.hpp"
 #include "sweep/files/artefacts.hpp"
 #include "sweep/live/now.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
+#include "sweep/report/results/runs.hpp"
 #include "sweep/report/table.hpp"
 #include "sweep/report/text_table.hpp"
 #include "sweep/store/store.hpp"
@@ -39,6 +42,8 @@ namespace {
 using campaign::Outcome;
 using report::Format;
 using report::Json;
+using report::Result;
+namespace results = report::results;
 using store::Store;
 using store::Table;
 using Cell = store::Table::Cell;
@@ -183,13 +188,12 @@ int status(const Arguments& asked, Format format) {
         Json rows = Json::array();
         for (std::size_t k = 0; k < standings.size(); ++k) {
             const auto& [converged, verdict] = standings[k];
-            Json row = report::to_json(table, k);
-            row.add("converged", converged).add("verdict", converged ? Json(verdict) : Json());
+            Result<results::status> row = {{"converged", converged}, {"verdict", converged ? Json(verdict) : Json()}};
             if (now && now->campaign == records[k].name)
                 row.add("running", report::to_json(running_cases(archive, *now, now->running.size())))
                     .add("expected_seconds", now->seconds_left)
                     .add("expected_at_most", now->at_most);
-            rows.push_back(row);
+            rows.push_back(report::to_json(table, k).add(row));
         }
         report::write(std::cout, rows);
         return 0;
@@ -320,7 +324,7 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
 }
 
 Table files_table(const std::vector<store::StoredFile>& files) {
-    Table table{{"file", "named at", "bytes", "hash"}, {}};
+    Table table{report::columns_of(results::stored_files), {}};
     for (const auto& file : files)
         table.rows.push_back({file.name, file.place, report::to_cell(file.bytes), file.hash});
     return table;
@@ -342,14 +346,15 @@ int explain(const Arguments& asked, Format format) {
         return 0;
     }
     if (format == Format::json) {
-        report::write(std::cout, Json{{"case_id", question.id},
-                                      {"scene", question.scene},
-                                      {"revision", question.revision},
-                                      {"seed", report::to_json(Table::Cell{static_cast<std::int64_t>(question.seed)})},
-                                      {"inputs", report::to_json(question.inputs)},
-                                      {"files", report::to_json(files_table(archive.files_of(question.id)))},
-                                      {"attempts", report::to_json(table)},
-                                      {"why", reason}});
+        report::write(std::cout, Result<results::explain>{
+                                     {"case_id", question.id},
+                                     {"scene", question.scene},
+                                     {"revision", question.revision},
+                                     {"seed", report::to_json(Table::Cell{static_cast<std::int64_t>(question.seed)})},
+                                     {"inputs", report::to_json(question.inputs)},
+                                     {"files", report::to_json(files_table(archive.files_of(question.id)))},
+                                     {"attempts", report::to_json(table)},
+                                     {"why", reason}});
         return 0;
     }
     std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id),
@@ -433,7 +438,7 @@ struct Expectation {
 };
 
 struct Comparison {
-    Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
+    Table table{report::columns_of(results::compared_scalar), {}};
     bool agrees = false;
     std::string verdict;
 };
@@ -546,11 +551,11 @@ int replay(const ReplayRequest& request, Format format) {
     pictures.finish(now);
     const auto [table, agrees, verdict] = compared(*stored, now, expectation_of(request, program.get(), same_path));
     if (format == Format::json) {
-        report::write(std::cout, report::Json{{"case_id", question.id},
-                                              {"same_path", same_path},
-                                              {"agrees", agrees},
-                                              {"verdict", verdict},
-                                              {"scalars", report::to_json(table)}});
+        report::write(std::cout, Result<results::replay>{{"case_id", question.id},
+                                                         {"same_path", same_path},
+                                                         {"agrees", agrees},
+                                                         {"verdict", verdict},
+                                                         {"scalars", report::to_json(table)}});
     } else {
         if (format == Format::text) std::cout << heading_of(archive, question.id) << "\n\n";
         if (!table.rows.empty()) report::write(std::cout, table, format);
@@ -606,7 +611,7 @@ int dump(const Arguments& asked, Format format) {
         return 0;
     }
     report::RowWriter rows(std::cout, format);
-    rows.begin({"line"});
+    rows.begin(report::columns_of(results::dump_line));
     archive.dump([&](std::string_view line) { rows.add({std::string(line)}); });
     rows.end();
     return 0;

@@ -13,6 +13,8 @@
 #include "sweep/designs/design.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 
 #include <fmt/format.h>
 
@@ -25,6 +27,8 @@ namespace {
 
 using report::Format;
 using report::Json;
+using report::Result;
+namespace results = report::results;
 using Cell = store::Table::Cell;
 
 Cell text_or_none(const std::string& text) {
@@ -120,41 +124,42 @@ store::Table observables_of(const SceneInfo& scene) {
 
 Json json_of(const ParameterSpec& parameter) {
     const auto type = parameter.default_value.index();
-    Json object = {{"name", parameter.name},
-                   {"unit", parameter.unit},
-                   {"meaning", parameter.meaning},
-                   {"type", type == 0   ? "number"
-                            : type == 1 ? "integer"
-                                        : "word"},
-                   {"default", report::to_json(report::to_cell(parameter.default_value))}};
+    Result<results::parameter> object = {{"name", parameter.name},
+                                         {"unit", parameter.unit},
+                                         {"meaning", parameter.meaning},
+                                         {"type", type == 0   ? "number"
+                                                  : type == 1 ? "integer"
+                                                              : "word"},
+                                         {"default", report::to_json(report::to_cell(parameter.default_value))}};
     if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
-        object.add({{"words", words->allowed}, {"file_allowed", words->file_allowed}});
+        object.add("words", words->allowed).add("file_allowed", words->file_allowed);
     } else {
         const auto& bounds = std::get<Interval>(parameter.bounds);
-        object.add({{"low", bounds.low},
-                    {"high", bounds.high},
-                    {"low_open", bounds.low_open},
-                    {"high_open", bounds.high_open}});
+        object.add("low", bounds.low)
+            .add("high", bounds.high)
+            .add("low_open", bounds.low_open)
+            .add("high_open", bounds.high_open);
     }
     return object.add("matters_if", Json::list(parameter.relevant_if, condition_text));
 }
 
 Json json_of(const SceneInfo& scene) {
     const auto json_of_observable = [](const ObservableSpec& observable) {
-        return Json{{"name", observable.name},
-                    {"unit", observable.unit},
-                    {"meaning", observable.meaning},
-                    {"shape", word_of(observable.shape)},
-                    {"over", observable.over}};
+        return Result<results::observable>{{"name", observable.name},
+                                           {"unit", observable.unit},
+                                           {"meaning", observable.meaning},
+                                           {"shape", word_of(observable.shape)},
+                                           {"over", observable.over}};
     };
     Json accuracy = Json::object();
     for (const auto& [name, inputs] : scene.accuracy) accuracy.add(name, report::to_json(inputs));
-    return {{"name", scene.shown()},
-            {"summary", scene.summary},
-            {"revision", scene.revision},
-            {"parameters", Json::list(scene.parameters, [](const auto& parameter) { return json_of(parameter); })},
-            {"observables", Json::list(scene.observables, json_of_observable)},
-            {"accuracy", accuracy}};
+    return Result<results::scene>{
+        {"name", scene.shown()},
+        {"summary", scene.summary},
+        {"revision", scene.revision},
+        {"parameters", Json::list(scene.parameters, [](const auto& parameter) { return json_of(parameter); })},
+        {"observables", Json::list(scene.observables, json_of_observable)},
+        {"accuracy", accuracy}};
 }
 
 void show_scene(const SceneInfo& scene, Format format) {
@@ -184,7 +189,7 @@ void add_fields(store::Table& table, std::string_view object, const Type& type) 
 
 /// The keys of a machine file, object by object, shapes and regions among them.
 store::Table machine_table() {
-    store::Table table{{"object", "key", "default", "meaning"}, {}};
+    store::Table table{report::columns_of(results::section_key), {}};
     for (const Type& type : campaign::machine_keys::all()) add_fields(table, type.name, type);
     for (const Type& type : campaign::machine_keys::shapes())
         add_fields(table, fmt::format("shape {}", type.name), type);
@@ -195,7 +200,7 @@ store::Table machine_table() {
 
 /// The keys of the section "program", object by object.
 store::Table program_table() {
-    store::Table table{{"object", "key", "default", "meaning"}, {}};
+    store::Table table{report::columns_of(results::section_key), {}};
     const auto add = [&](const char* object, std::span<const Field> keys) {
         add_fields(table, object, {object, {}, keys});
     };
@@ -212,13 +217,13 @@ void show_keys(std::string_view word, std::string_view summary, const store::Tab
                Format format) {
     if (format == Format::csv) return report::write(std::cout, table, format);
     if (format == Format::json) {
-        return report::write(std::cout, {{"name", word},
-                                         {"summary", summary},
-                                         {"revision", 1},
-                                         {"parameters", Json::array()},  // the file's own
-                                         {"observables", Json::array()},
-                                         {"accuracy", Json::object()},
-                                         {"section", report::to_json(table)}});
+        return report::write(std::cout, Result<results::scene>{{"name", word},
+                                                               {"summary", summary},
+                                                               {"revision", 1},
+                                                               {"parameters", Json::array()},  // the file's own
+                                                               {"observables", Json::array()},
+                                                               {"accuracy", Json::object()},
+                                                               {"section", report::to_json(table)}});
     }
     std::cout << fmt::format("{}: {}\n\n", word, summary);
     report::write(std::cout, table, format);
@@ -249,7 +254,7 @@ int list_scenes(const std::string& name, Format format) {
         show_scene(*scene, format);
         return 0;
     }
-    store::Table table{{"scene", "revision", "parameters", "observables", "summary"}, {}};
+    store::Table table{report::columns_of(results::listed_scene), {}};
     for (const auto& scene : campaign::named_scenes())
         table.rows.push_back({scene->shown(), std::int64_t{scene->revision},
                               static_cast<std::int64_t>(scene->parameters.size()),
@@ -267,7 +272,7 @@ int list_machines(const std::string& name, Format format) {
         show_scene(*campaign::enter_machine(campaign::machine_named("NAME", name)), format);
         return 0;
     }
-    store::Table table{{"machine", "kind", "parameters", "observables", "summary"}, {}};
+    store::Table table{report::columns_of(results::listed_machine), {}};
     for (const auto& installed : campaign::installed_machines()) {
         const auto machine = campaign::installed_machine(installed);
         table.rows.push_back({installed, std::string(campaign::kind_of_installed(installed)),
@@ -298,7 +303,7 @@ std::string allowed_text(const designs::OptionSpec& option) {
 }
 
 store::Table options_of(const designs::DesignInfo& design) {
-    store::Table table{{"option", "default", "allowed", "meaning"}, {}};
+    store::Table table{report::columns_of(results::option), {}};
     for (const auto& option : design.options) {
         table.rows.push_back({option.name, default_text(option), allowed_text(option), option.meaning});
     }
@@ -309,7 +314,7 @@ int list_designs(const std::string& name, Format format) {
     std::vector<std::string> known;
     for (const auto& design : designs::design_catalogue()) known.push_back(design.name);
     if (name.empty()) {
-        store::Table table{{"design", "extends", "summary"}, {}};
+        store::Table table{report::columns_of(results::listed_design), {}};
         for (const auto& design : designs::design_catalogue()) {
             table.rows.push_back({design.name, std::string(design.extends ? "yes" : "no"), design.summary});
         }
@@ -322,10 +327,10 @@ int list_designs(const std::string& name, Format format) {
                                     campaign::nearest_word(name, known));
     }
     if (format == Format::json) {
-        report::write(std::cout, Json{{"name", design->name},
-                                      {"summary", design->summary},
-                                      {"extends", design->extends},
-                                      {"options", report::to_json(options_of(*design))}});
+        report::write(std::cout, Result<results::design>{{"name", design->name},
+                                                         {"summary", design->summary},
+                                                         {"extends", design->extends},
+                                                         {"options", report::to_json(options_of(*design))}});
         return 0;
     }
     if (format == Format::text) std::cout << fmt::format("{}: {}\n\n", design->name, design->summary);

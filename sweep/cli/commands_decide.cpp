@@ -5,6 +5,8 @@
 #include "sweep/cli/settings.hpp"
 #include "sweep/cli/window_run.hpp"
 #include "sweep/report/model_tables.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/models.hpp"
 #include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
 #include "sweep/store/campaign_name.hpp"
@@ -278,8 +280,11 @@ int window(const WindowArguments& arguments, Format format) {
     if (!arguments.output.empty()) shown.say(fmt::format("{}: open it in a browser, or print it", arguments.output));
     if (end) {
         shown.say(fmt::format("{} cases run in {} batches: {}", end->cases, end->batches, end->says));
-        shown.value.add(
-            "run", {{"cases", end->cases}, {"batches", end->batches}, {"reached", end->reached}, {"says", end->says}});
+        using report::Result, report::results::window, report::results::window_run;
+        shown.value.add(Result<window>{
+            {"run",
+             Result<window_run>{
+                 {"cases", end->cases}, {"batches", end->batches}, {"reached", end->reached}, {"says", end->says}}}});
     }
     report::write(std::cout, shown, format);
     return end ? end->exit_code : 0;

@@ -7,6 +7,8 @@
 #include "sweep/cli/page_file.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/film.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 #include "sweep/report/watch_page.hpp"
 
 #include <fmt/format.h>
@@ -17,8 +19,6 @@
 
 namespace grainsweep::cli {
 namespace {
-
-using report::Json;
 
 constexpr std::int64_t usual_pictures = 121;
 
@@ -47,9 +47,10 @@ int draw(const DrawRequest& request, report::Format format) {
     const std::string page = report::watch_page(film, report::about_machine(*scene, inputs, empty));
     write_page_file(request.page, page);
     if (format == report::Format::json)
-        report::write(std::cout, Json{{"machine", scene->shown()},
-                                      {"page", request.page},
-                                      {"particles", static_cast<std::int64_t>(film.spheres())}});
+        report::write(std::cout, report::Result<report::results::drawing>{
+                                     {"machine", scene->shown()},
+                                     {"page", request.page},
+                                     {"particles", static_cast<std::int64_t>(film.spheres())}});
     else
         std::cout << fmt::format("{} ({}): {} with {} spheres; open it in a browser\n", request.page,
                                  report::size_text(page.size()), scene->shown(), film.spheres());

@@ -5,6 +5,8 @@
 #include "sweep/report/document.hpp"
 #include "sweep/report/figures.hpp"
 #include "sweep/report/file_size.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 
 #include <fmt/format.h>
 
@@ -47,7 +49,7 @@ store::CampaignRecord campaign_of_figure(const Store& store, const std::string& 
 }
 
 int list_figures(const report::FigureSubject& subject, Format format) {
-    Document shown{.rows = {{"figure", "panels", "shows"}, {}}};
+    Document shown{.rows = {report::columns_of(report::results::listed_figure), {}}};
     Table& table = shown.rows;
     for (const auto& info : report::figures_for(subject))
         table.rows.push_back(
@@ -82,7 +84,8 @@ int figure(const FigureRequest& request, Format format) {
                                         request.lines};
     if (request.name.empty()) return list_figures(subject, format);
     const auto bytes = write_figure(request.file, report::figure_named(subject, request.name), request.database);
-    Document shown{.rows = {{"figure", "bytes"}, {{output, static_cast<std::int64_t>(bytes)}}}};
+    Document shown{
+        .rows = {report::columns_of(report::results::figure_file), {{output, static_cast<std::int64_t>(bytes)}}}};
     shown.value = report::to_json(shown.rows, 0);
     shown.say(fmt::format("{} ({:.4g} mm wide, {})", output, width, report::size_text(bytes)));
     report::write(std::cout, shown, format);

@@ -4,6 +4,8 @@
 #include "sweep/cli/import_results.hpp"
 #include "sweep/report/document.hpp"
 #include "sweep/report/next_command.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/runs.hpp"
 
 #include <fmt/format.h>
 
@@ -43,7 +45,7 @@ int import_file(ImportArguments& request, Format format) {
     const auto report = import_results(request);
     const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
     Document shown{
-        .rows = {{"campaign", "database", "imported", "of_design", "beside", "known", "unanswered"},
+        .rows = {report::columns_of(report::results::import),
                  {{report.campaign, report.database.string(), count(report.placed + report.others),
                    count(report.placed), count(report.others), count(report.known), count(report.unanswered)}}}};
     shown.value = report::to_json(shown.rows, 0);

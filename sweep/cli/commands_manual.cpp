@@ -11,6 +11,8 @@
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/designs/design.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 
 #include <fmt/format.h>
 
@@ -541,11 +543,11 @@ std::string completion_for(const std::string& name) {
 }
 
 /// Text as it is; as one value where a program asks for one.
-int print(const std::string& column, const std::string& text, report::Format format) {
+int print(std::span<const Field> column, const std::string& text, report::Format format) {
     if (format == report::Format::text)
         std::cout << text;
     else
-        report::write(std::cout, store::Table{{column}, {{text}}}, format);
+        report::write(std::cout, store::Table{report::columns_of(column), {{text}}}, format);
     return 0;
 }
 
@@ -558,12 +560,12 @@ std::vector<Command> manual_commands() {
             "completion", "prints a completion script for a shell",
             [](Parser& parser, std::string& shell) { parser.add_option("SHELL", shell, "bash or zsh"); },
             [](const std::string& shell, report::Format format) {
-                return print("completion", completion_for(shell), format);
+                return print(report::results::completion, completion_for(shell), format);
             })),
         verbatim(command<Nothing>(
             "manual", "prints the manual page for man(1)", [](Parser&, Nothing) {},
             [](Nothing, report::Format format) {
-                return print("manual", manual_page(describe(all_commands())), format);
+                return print(report::results::manual, manual_page(describe(all_commands())), format);
             })),
     };
 }

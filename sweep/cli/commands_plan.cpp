@@ -14,6 +14,8 @@
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/program_case.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/runs.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/store.hpp"
@@ -44,6 +46,8 @@ using campaign::Campaign;
 using campaign::Cases;
 using report::Format;
 using report::Json;
+using report::Result;
+namespace results = report::results;
 using Cell = store::Table::Cell;
 
 /// Bars of the probability in equal parts of the range, the highest full.
@@ -96,7 +100,8 @@ std::string in_expressions(const Campaign& campaign, const std::string& unit, co
 }
 
 store::Table factors_of(const Campaign& campaign) {
-    store::Table table{{"factor", "unit", "low", "high", "scale", "levels"}, {}};
+    store::Table table{report::columns_of(results::planned_factor), {}};
+    table.columns.pop_back();  // the rules
     for (const auto& factor : campaign.space.factors) {
         const auto& stated = campaign.scene().find_parameter(factor.name)->unit;
         const auto calculated = in_expressions(campaign, stated, 1.0);
@@ -122,7 +127,7 @@ store::Table factors_of(const Campaign& campaign) {
 /// Returns one row for each factor with a distribution: quantiles, the density as a row of characters along the range,
 /// and the share outside the bounds of the parameter.
 store::Table distributions_of(const Campaign& campaign) {
-    store::Table table{{"factor", "cut %", "5 %", "50 %", "95 %", "low to high"}, {}};
+    store::Table table{report::columns_of(results::planned_distribution), {}};
     for (const auto& factor : campaign.space.factors) {
         const auto* distribution = std::get_if<stats::Distribution>(&factor.range);
         if (distribution == nullptr) continue;
@@ -137,7 +142,7 @@ store::Table distributions_of(const Campaign& campaign) {
 /// Returns one row for each species with a shape in the first possible case of a machine: its spheres, how well they
 /// cover an STL file, and what they cost.
 store::Table grains_of(const Campaign& campaign, const Cases& cases, const campaign::Forecast& cost) {
-    store::Table table{{"grain", "spheres", "shared volume", "smallest sphere", "cost"}, {}};
+    store::Table table{report::columns_of(results::planned_grain), {}};
     const auto machine = campaign::known_machine(campaign.scene().name);
     const auto first = std::ranges::find_if(cost.seconds, [](double seconds) { return seconds > 0; });
     if (machine == nullptr || first == cost.seconds.end()) return table;
@@ -209,12 +214,12 @@ std::string probe_text(const Probe& probe) {
 }
 
 Json probe_json(const Probe& probe) {
-    return {{"point", probe.point},
-            {"case_id", probe.case_id},
-            {"outcome", campaign::to_string(probe.outcome)},
-            {"message", probe.message},
-            {"predicted_seconds", probe.predicted},
-            {"measured_seconds", probe.measured}};
+    return Result<results::probed_case>{{"point", probe.point},
+                                        {"case_id", probe.case_id},
+                                        {"outcome", campaign::to_string(probe.outcome)},
+                                        {"message", probe.message},
+                                        {"predicted_seconds", probe.predicted},
+                                        {"measured_seconds", probe.measured}};
 }
 
 constexpr std::size_t points_shown = 8;
@@ -308,43 +313,43 @@ Outlook outlook_of(Campaign& campaign, const store::Store* archive, bool probes)
 
 Json plan_json(const Campaign& campaign, const Outlook& outlook) {
     const auto& [cases, cost, candidates, warnings, database, stored, finished, left_seconds, probe] = outlook;
-    Json design = {{"kind", campaign.design}}, already;
+    Json design = Result<results::planned_design>{{"kind", campaign.design}}, already;
     for (const auto& [name, value] : campaign.request.options) design.add(name, option_json(value));
     if (stored)
-        already = {{"database", database},
-                   {"candidates", stored->stored.candidates},
-                   {"replicates", stored->stored.replicates}};
+        already = Result<results::stored_extent>{{"database", database},
+                                                 {"candidates", stored->stored.candidates},
+                                                 {"replicates", stored->stored.replicates}};
     const auto threads = campaign.execution.threads;
     const auto points = points_kept(cases);
     const auto course = campaign::longest_course(campaign, cost);
-    Json plan = {{"campaign", campaign.name},
-                 {"scene", campaign.scene().name},
-                 {"revision", campaign.scene().revision},
-                 {"design", design},
-                 {"seed", report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)})},
-                 {"replicates", campaign.replicates},
-                 {"candidates", candidates},
-                 {"dropped", candidates - points},
-                 {"points", points},
-                 {"cases", cost.places},
-                 {"finished", finished},
-                 {"stored", already},
-                 {"warnings", warnings},
-                 {"questions", cost.questions},
-                 {"proven", cost.proven},
-                 {"impossible", cost.impossible},
-                 {"predicted_seconds", cost.total_seconds},
-                 {"longest_seconds", cost.longest_seconds},
-                 {"left_seconds", left_seconds},
-                 {"probe", probe ? probe_json(*probe) : Json()},
-                 {"all_waves_seconds", course ? Json(course->seconds) : Json()},
-                 {"largest_bytes", cost.largest_bytes},
-                 {"threads", campaign::is_program(campaign.scene().name) ? Json()
-                             : threads                                   ? Json(*threads)
-                                                                         : Json("auto")},
-                 {"powder", campaign.powder.empty() ? Json() : Json(campaign.powder)},
-                 {"factors", report::to_json(factors_of(campaign))},
-                 {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
+    Result<results::plan> plan = {{"campaign", campaign.name},
+                                  {"scene", campaign.scene().name},
+                                  {"revision", campaign.scene().revision},
+                                  {"design", design},
+                                  {"seed", report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)})},
+                                  {"replicates", campaign.replicates},
+                                  {"candidates", candidates},
+                                  {"dropped", candidates - points},
+                                  {"points", points},
+                                  {"cases", cost.places},
+                                  {"finished", finished},
+                                  {"stored", already},
+                                  {"warnings", warnings},
+                                  {"questions", cost.questions},
+                                  {"proven", cost.proven},
+                                  {"impossible", cost.impossible},
+                                  {"predicted_seconds", cost.total_seconds},
+                                  {"longest_seconds", cost.longest_seconds},
+                                  {"left_seconds", left_seconds},
+                                  {"probe", probe ? probe_json(*probe) : Json()},
+                                  {"all_waves_seconds", course ? Json(course->seconds) : Json()},
+                                  {"largest_bytes", cost.largest_bytes},
+                                  {"threads", campaign::is_program(campaign.scene().name) ? Json()
+                                              : threads                                   ? Json(*threads)
+                                                                                          : Json("auto")},
+                                  {"powder", campaign.powder.empty() ? Json() : Json(campaign.powder)},
+                                  {"factors", report::to_json(factors_of(campaign))},
+                                  {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
     if (const auto distributions = distributions_of(campaign); !distributions.rows.empty())
         plan.add("distributions", report::to_json(distributions));
     if (const auto grains = grains_of(campaign, cases, cost); !grains.rows.empty())

@@ -5,6 +5,8 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/files/whole_file.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 
 #include <fmt/format.h>
 
@@ -21,6 +23,8 @@ namespace {
 
 using report::Format;
 using report::Json;
+using report::Result;
+namespace results = report::results;
 
 constexpr std::size_t largest_export = 16ULL << 20U;
 
@@ -53,11 +57,11 @@ int import_export(const PowderRequest& request, Format format) {
     } else if (format == Format::json) {
         Json taken = Json::object();
         for (const auto& [what, found] : imported.facts) taken.add(what, found);
-        report::write(std::cout, Json{{"output", request.output},
-                                      {"sentence", imported.sentence},
-                                      {"taken", taken},
-                                      {"notes", imported.notes},
-                                      {"warnings", imported.warnings}});
+        report::write(std::cout, Result<results::powder_import>{{"output", request.output},
+                                                                {"sentence", imported.sentence},
+                                                                {"taken", taken},
+                                                                {"notes", imported.notes},
+                                                                {"warnings", imported.warnings}});
     } else {
         report::write(std::cout, table, format);
         for (const auto& note : imported.notes) std::cout << fmt::format("note: {}\n", note);
@@ -102,28 +106,29 @@ int show_powder(const PowderRequest& request, Format format) {
     const auto powder = campaign::read_powder(request.file);
     const auto numbers = campaign::numbers_of(powder);
     store::Table table{{"quantity", "unit", "value"}, {}};
-    const auto row = [&](const char* what, const char* unit, double value) {
-        table.rows.push_back({std::string(what), std::string(unit), value});
+    using Numbers = Result<results::powder_numbers>;
+    Numbers values;
+    const auto row = [&](Numbers::Key what, double value) {
+        table.rows.push_back({std::string(what.field->name), std::string(what.field->unit), value});
+        values.add(what, value);
     };
     if (powder.sizes) {
         const auto& sizes = *powder.sizes;
-        row("d10 by volume", "m", sizes.d10), row("d50 by volume", "m", sizes.d50),
-            row("d90 by volume", "m", sizes.d90);
-        row("d10 by number", "m", sizes.number_d10), row("d50 by number", "m", sizes.number_d50);
-        row("d90 by number", "m", sizes.number_d90);
-        row("smallest", "m", sizes.smallest), row("largest", "m", sizes.largest);
-        row("mass cut off below", "1", sizes.cut_below), row("mass cut off above", "1", sizes.cut_above);
+        row("d10 by volume", sizes.d10), row("d50 by volume", sizes.d50), row("d90 by volume", sizes.d90);
+        row("d10 by number", sizes.number_d10), row("d50 by number", sizes.number_d50);
+        row("d90 by number", sizes.number_d90);
+        row("smallest", sizes.smallest), row("largest", sizes.largest);
+        row("mass cut off below", sizes.cut_below), row("mass cut off above", sizes.cut_above);
     }
-    if (powder.unit()) row("diameter that stands for it", "m", *powder.unit());
-    row("bond number", "1", numbers.bond_number);
-    row("Rayleigh time of the smallest", "s", numbers.rayleigh_time);
-    row("time step at 1 m/s", "s", numbers.time_step);
-    row("core time of 1,000 particles for 1 s", "s", numbers.seconds);
+    if (powder.unit()) row("diameter that stands for it", *powder.unit());
+    row("bond number", numbers.bond_number);
+    row("Rayleigh time of the smallest", numbers.rayleigh_time);
+    row("time step at 1 m/s", numbers.time_step);
+    row("core time of 1,000 particles for 1 s", numbers.seconds);
     const std::string lacks = campaign::lacks_of(powder);
     if (format == Format::json) {
-        Json values = Json::object();
-        for (const auto& line : table.rows) values.add(std::get<std::string>(line[0]), report::to_json(line[2]));
-        report::write(std::cout, Json{{"powder", powder.name}, {"values", values}, {"lacks", lacks}});
+        report::write(std::cout,
+                      Result<results::powder>{{"powder", powder.name}, {"values", values}, {"lacks", lacks}});
         return 0;
     }
     if (format == Format::text) std::cout << fmt::format("powder {} ({})\n\n", powder.name, request.file);

@@ -4,6 +4,8 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/files/whole_file.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 
 #include <fmt/format.h>
 
@@ -42,7 +44,7 @@ int write_shape(const ShapeRequest& request, Format format) {
     }
     write_page_file(request.output, shape.csv);
 
-    store::Table table{{"quantity", "value"}, {}};
+    store::Table table{report::columns_of(report::results::shape_number), {}};
     const auto row = [&](const char* what, double value) { table.rows.push_back({std::string(what), value}); };
     row("spheres", static_cast<double>(shape.spheres));
     row("shared volume divided by the volume", shape.overlap);

@@ -12,6 +12,8 @@
 #include "sweep/report/main_observables.hpp"
 #include "sweep/report/next_command.hpp"
 #include "sweep/report/print_axes.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/runs.hpp"
 #include "sweep/workers/compute.hpp"
 #include "sweep/workers/memory_room.hpp"
 
@@ -36,6 +38,8 @@ using campaign::CaseResult;
 using campaign::Outcome;
 using report::Format;
 using report::Json;
+using report::Result;
+namespace results = report::results;
 using Cell = store::Table::Cell;
 
 constexpr std::size_t most_inputs = 6;
@@ -150,7 +154,7 @@ CaseResult answer_of(const AskedCase& asked, const SolveRequest& request, Pictur
 }
 
 Json sample_json(const Sample& sample) {
-    Json object = Json::object();
+    Result<results::sample> object;
     if (!std::isnan(sample.time)) object.add("time", sample.time);
     if (!std::isnan(sample.bin)) object.add("bin", sample.bin);
     return object.add("value", sample.value);
@@ -178,28 +182,28 @@ Json answer_json(const campaign::Case& question, const CaseResult& result) {
     for (const auto& observable : absent(question, result)) missing.add(observable.name, observable.absent);
     for (const auto& [name, samples] : result.observations.series) series.add(name, Json::list(samples, sample_json));
     for (const auto& [name, seconds] : result.cost.phases) phases.add(name, seconds);
-    Json object = {{"scene", question.scene},
-                   {"revision", question.revision},
-                   {"case_id", question.id},
-                   {"seed", report::to_json(Cell{static_cast<std::int64_t>(question.seed)})}};
+    Result<results::solve> object = {{"scene", question.scene},
+                                     {"revision", question.revision},
+                                     {"case_id", question.id},
+                                     {"seed", report::to_json(Cell{static_cast<std::int64_t>(question.seed)})}};
     if (result.program)
-        object.add("program", {{"version", result.program->version},
-                               {"peak_memory", result.program->peak_memory},
-                               {"exit_status", result.program->exit_status}});
+        object.add("program", Result<results::solved_program>{{"version", result.program->version},
+                                                              {"peak_memory", result.program->peak_memory},
+                                                              {"exit_status", result.program->exit_status}});
     else
         object.add("instruction_path", instruction_path());
-    return object.add({{"inputs", report::to_json(question.inputs)},
-                       {"outcome", campaign::to_string(result.outcome)},
-                       {"message", result.message},
-                       {"scalars", scalars_of(question, result)},
-                       {"absent", missing},
-                       {"series", series},
-                       {"cost",
-                        {{"wall_seconds", result.cost.wall_seconds},
-                         {"cpu_seconds", result.cost.cpu_seconds},
-                         {"particle_steps", result.cost.particle_steps},
-                         {"threads", result.cost.threads},
-                         {"phases", phases}}}});
+    return object.add(
+        Result<results::solve>{{"inputs", report::to_json(question.inputs)},
+                               {"outcome", campaign::to_string(result.outcome)},
+                               {"message", result.message},
+                               {"scalars", scalars_of(question, result)},
+                               {"absent", missing},
+                               {"series", series},
+                               {"cost", Result<results::cost>{{"wall_seconds", result.cost.wall_seconds},
+                                                              {"cpu_seconds", result.cost.cpu_seconds},
+                                                              {"particle_steps", result.cost.particle_steps},
+                                                              {"threads", result.cost.threads},
+                                                              {"phases", phases}}}});
 }
 
 /// Prints the case: what most users need, or with --all everything.

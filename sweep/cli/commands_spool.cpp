@@ -14,6 +14,8 @@
 #include "sweep/designs/design.hpp"
 #include "sweep/files/artefacts.hpp"
 #include "sweep/report/document.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/runs.hpp"
 #include "sweep/spool/task.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/study/features.hpp"
@@ -199,7 +201,7 @@ WorkReport work_on(const WorkRequest& request) {
 
 report::Document document_of(const WorkReport& report) {
     const std::string share = fmt::format("{}/{}", report.part, report.of);
-    report::Document shown{.rows = {{"campaign", "share", "cases", "answered", "computed", "ending", "exit_code"},
+    report::Document shown{.rows = {report::columns_of(report::results::work),
                                     {{report.campaign, share, report.cases, report.answered, report.computed,
                                       report.ending, std::int64_t{report.exit_code}}}}};
     shown.value = report::to_json(shown.rows, 0);

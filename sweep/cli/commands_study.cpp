@@ -13,6 +13,8 @@
 #include "sweep/report/findings.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/report/page.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 #include "sweep/report/watch_page.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/compute.hpp"
@@ -213,7 +215,7 @@ int write_report(const ReportRequest& request, Format format) {
     const std::string page = std::move(stream).str();
     write_page_file(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
-    Document shown{.rows = {{"report", "bytes"}, {{output, size}}}};
+    Document shown{.rows = {report::columns_of(report::results::report_file), {{output, size}}}};
     shown.value = report::to_json(shown.rows, 0);
     shown.say(fmt::format("{} ({}): open it in a browser", output, report::size_text(page.size())));
     report::write(std::cout, shown, format);

@@ -1,5 +1,7 @@
 // verify: reads a whole archive and names all data that changed after they were written.
 #include "sweep/cli/command.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/catalogues.hpp"
 #include "sweep/store/store.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +41,7 @@ std::string sound(const Store& archive) {
 int verify(const std::string& database, Format format) {
     const Store archive(database, Store::Mode::read);
     const auto damages = archive.verify();
-    Table table{{"kind", "case_id", "campaign", "observable", "damage"}, {}};
+    Table table{report::columns_of(report::results::damage), {}};
     for (const auto& damage : damages)
         table.rows.push_back({damage.kind, damage.case_id, damage.campaign, damage.observable, damage.what});
     if (format != Format::text || !damages.empty()) report::write(std::cout, table, format);

@@ -1,5 +1,7 @@
 #include "sweep/cli/run_summary.hpp"
 
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/runs.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/store/store.hpp"
 
@@ -23,12 +25,12 @@ void show_run(const RunReport& run, report::Format format, bool all) {
     const report::Document shown{.rows = {{"campaign", "database", "bytes", "ending", "exit_code", "converged"},
                                           {{run.campaign, run.database.string(), bytes, run.ending,
                                             std::int64_t{run.exit_code}, report::to_cell(converged)}}},
-                                 .value = {{"campaign", run.campaign},
-                                           {"database", run.database.string()},
-                                           {"bytes", bytes},
-                                           {"ending", run.ending},
-                                           {"converged", run.converged},
-                                           {"exit_code", run.exit_code}}};
+                                 .value = report::Result<report::results::run>{{"campaign", run.campaign},
+                                                                               {"database", run.database.string()},
+                                                                               {"bytes", bytes},
+                                                                               {"ending", run.ending},
+                                                                               {"converged", run.converged},
+                                                                               {"exit_code", run.exit_code}}};
     report::write(std::cout, shown, format);
 }
 

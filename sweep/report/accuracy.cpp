@@ -213,25 +213,26 @@ Document accuracy_document(std::string_view campaign, std::span<const NumericsCo
     document.rows = all_rows(campaign, costs);
     const auto setting_json = [](const NumericsCost& cost) {
         const auto bias_json = [](const Bias& one) {
-            return Json{{"observable", one.observable},
-                        {"unit", one.unit},
-                        {"pairs", one.pairs},
-                        {"mean", one.mean},
-                        {"bias", one.bias},
-                        {"bias_error", one.half_width},
-                        {"scatter", one.scatter},
-                        {"spread", one.spread},
-                        {"relative_bound", one.relative_bound()}};
+            return Result<results::bias>{{"observable", one.observable},
+                                         {"unit", one.unit},
+                                         {"pairs", one.pairs},
+                                         {"mean", one.mean},
+                                         {"bias", one.bias},
+                                         {"bias_error", one.half_width},
+                                         {"scatter", one.scatter},
+                                         {"spread", one.spread},
+                                         {"relative_bound", one.relative_bound()}};
         };
-        return Json{{"setting", cost.numerics.says}, {"campaign", cost.numerics.campaign},
-                    {"cases", cost.cases},           {"answered", cost.answered},
-                    {"core_seconds", cost.seconds},  {"biases", Json::list(cost.biases, bias_json)}};
+        return Result<results::numerics>{
+            {"setting", cost.numerics.says}, {"campaign", cost.numerics.campaign},
+            {"cases", cost.cases},           {"answered", cost.answered},
+            {"core_seconds", cost.seconds},  {"biases", Json::list(cost.biases, bias_json)}};
     };
-    document.value = {{"campaign", campaign},
-                      {"tolerance", tolerance},
-                      {"observables", asked},
-                      {"cheapest", best ? Json(costs[*best].numerics.says) : Json()},
-                      {"settings", Json::list(costs, setting_json)}};
+    document.value = Result<results::accuracy>{{"campaign", campaign},
+                                               {"tolerance", tolerance},
+                                               {"observables", asked},
+                                               {"cheapest", best ? Json(costs[*best].numerics.says) : Json()},
+                                               {"settings", Json::list(costs, setting_json)}};
     return document;
 }
 
@@ -262,14 +263,14 @@ store::Table corrected_table(const study::Corrected& corrected) {
     return table;
 }
 
-Json corrected_json(const study::Corrected& corrected) {
+Result<results::corrected> corrected_json(const study::Corrected& corrected) {
     Json moments = Json::object();
     for (const auto& one : corrected.check.moments)
-        moments.add(to_string(one.statistic), Json{{"value", one.value},
-                                                   {"error", one.together},
-                                                   {"numerics", one.numerics},
-                                                   {"statistics", one.statistics},
-                                                   {"uncorrected", one.cheap}});
+        moments.add(to_string(one.statistic), Result<results::corrected_moment>{{"value", one.value},
+                                                                                {"error", one.together},
+                                                                                {"numerics", one.numerics},
+                                                                                {"statistics", one.statistics},
+                                                                                {"uncorrected", one.cheap}});
     return {{"observable", corrected.goal.observable},
             {"setting", *corrected.goal.setting},
             {"cases", corrected.check.points},

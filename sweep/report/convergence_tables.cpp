@@ -42,9 +42,7 @@ std::string gate_text(const History& history, stats::Statistic statistic) {
 }
 
 store::Table no_checks() {
-    return {{"campaign", "observable", "points", "mean", "sd", "skewness", "g1", "kurtosis", "mean_error", "sd_error",
-             "skewness_error", "g1_error", "kurtosis_error", "zero_share", "excluded", "converged", "provisional"},
-            {}};
+    return {columns_of(results::check), {}};
 }
 
 struct CheckFlags {
@@ -63,7 +61,7 @@ void add_check(store::Table& table, const Responses& responses, const ResponseCo
     table.rows.push_back(std::move(row));
 }
 
-Json estimate_json(double value, double error) {
+Result<results::estimate> estimate_json(double value, double error) {
     return {{"value", value}, {"error", error}};
 }
 
@@ -73,7 +71,7 @@ Json provisional_of(const History& history) {
     Json statistics = Json::object();
     for (const auto statistic : stats::statistics)
         statistics.add(to_string(statistic), estimate_json(known.of(statistic).value, known.of(statistic).error));
-    return {
+    return Result<results::provisional_moments>{
         {"points", known.points}, {"values", known.count}, {"excluded", known.excluded}, {"statistics", statistics}};
 }
 
@@ -165,12 +163,13 @@ Json levels_json(const History& history, const Estimators* estimators) {
     for (const auto& [level, all] : history.all.levels) {
         const auto* one = with_model(estimators, level);
         const auto limits = counting_failures(history, level, all.value);
-        list.push_back({{"statistic", stats::to_string(level)},
-                        {"value", all.value},
-                        {"error", all.error},
-                        {"measure", all.measure},
-                        {"model_assisted", one == nullptr ? Json() : estimate_json(one->value, one->error)},
-                        {"of_all_cases", limits ? Json(std::array{limits->first, limits->second}) : Json()}});
+        list.push_back(Result<results::level>{
+            {"statistic", stats::to_string(level)},
+            {"value", all.value},
+            {"error", all.error},
+            {"measure", all.measure},
+            {"model_assisted", one == nullptr ? Json() : estimate_json(one->value, one->error)},
+            {"of_all_cases", limits ? Json(std::array{limits->first, limits->second}) : Json()}});
     }
     return list;
 }
@@ -295,8 +294,8 @@ store::Table provisional_rows(const Responses& responses, const ResponseColumn& 
     return table;
 }
 
-Json to_json(const Responses& responses, const ResponseColumn& response, const History& history,
-             std::span<const LatticeStep> lattices) {
+Result<results::converge> to_json(const Responses& responses, const ResponseColumn& response, const History& history,
+                                  std::span<const LatticeStep> lattices) {
     const bool rule = history.has_rule;
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     const bool judged = rule && converged != history.checks.end();
@@ -308,32 +307,34 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
         const auto& all = history.all.of(statistic);
         statistics.add(
             stats::to_string(statistic),
-            {{"value", all.value}, {"error", all.error}, {"measure", judged_check(history).of(statistic).measure}});
+            Result<results::judged_estimate>{
+                {"value", all.value}, {"error", all.error}, {"measure", judged_check(history).of(statistic).measure}});
     }
-    Json value = {{"campaign", responses.campaign.name},
-                  {"observable", response.name},
-                  {"unit", response.unit},
-                  {"design", responses.campaign.design},
-                  {"points", history.all.points},
-                  {"values", history.all.count},
-                  {"excluded", history.all.excluded},
-                  {"zero_share", history.all.zero_share},
-                  {"candidates", responses.candidates},
-                  {"dropped", responses.dropped()},
-                  {"asked", responses.rows()},
-                  {"finished", responses.finished()},
-                  {"provisional", provisional_of(history)},
-                  {"rule", rule ? Json(stats::to_string(history.settings.rule)) : Json()},
-                  {"tolerance", rule ? Json(history.settings.tolerance) : Json()},
-                  {"gates", gates},
-                  {"statistics", statistics},
-                  {"converged", judged},
-                  {"converged_at", judged ? Json(converged->points) : Json()},
-                  {"held_back_by", !judged && held_back ? Json(stats::to_string(*held_back)) : Json()},
-                  {"points_needed", judged_check(history).points_needed},
-                  {"verdict", history.verdict},
-                  {"notes", history.warnings},
-                  {"checks", to_json(checks_rows(responses, response, history))}};
+    Result<results::converge> value = {
+        {"campaign", responses.campaign.name},
+        {"observable", response.name},
+        {"unit", response.unit},
+        {"design", responses.campaign.design},
+        {"points", history.all.points},
+        {"values", history.all.count},
+        {"excluded", history.all.excluded},
+        {"zero_share", history.all.zero_share},
+        {"candidates", responses.candidates},
+        {"dropped", responses.dropped()},
+        {"asked", responses.rows()},
+        {"finished", responses.finished()},
+        {"provisional", provisional_of(history)},
+        {"rule", rule ? Json(stats::to_string(history.settings.rule)) : Json()},
+        {"tolerance", rule ? Json(history.settings.tolerance) : Json()},
+        {"gates", gates},
+        {"statistics", statistics},
+        {"converged", judged},
+        {"converged_at", judged ? Json(converged->points) : Json()},
+        {"held_back_by", !judged && held_back ? Json(stats::to_string(*held_back)) : Json()},
+        {"points_needed", judged_check(history).points_needed},
+        {"verdict", history.verdict},
+        {"notes", history.warnings},
+        {"checks", to_json(checks_rows(responses, response, history))}};
     if (!lattices.empty()) value.add("lattices", to_json(lattice_table(lattices)));
     return value;
 }
@@ -369,7 +370,7 @@ std::vector<std::string> estimator_lines(const Estimators& estimators) {
     return lines;
 }
 
-Json estimators_json(const History& history, const Estimators& estimators) {
+Result<results::estimators> estimators_json(const History& history, const Estimators& estimators) {
     Json plain = Json::object(), with_model, without_scatter, shares;
     for (const auto statistic : stats::statistics)
         plain.add(key(statistic), estimate_json(history.all.of(statistic).value, history.all.of(statistic).error));
@@ -378,18 +379,20 @@ Json estimators_json(const History& history, const Estimators& estimators) {
     if (known)
         for (const auto statistic : stats::assisted_statistics) {
             const auto& one = estimators.assisted->of(statistic);
-            const auto json_with = [](const stats::AssistedEstimate& estimate) {
-                return estimate_json(estimate.value, estimate.half_width);
-            };
-            with_model.add(key(statistic),
-                           json_with(one.assisted).add("taken", one.takes_assisted).add("withdrawn", one.withdrawn));
+            with_model.add(key(statistic), Result<results::assisted_estimate>{{"value", one.assisted.value},
+                                                                              {"error", one.assisted.half_width},
+                                                                              {"taken", one.takes_assisted},
+                                                                              {"withdrawn", one.withdrawn}});
             if (scatter_known)
-                without_scatter.add(key(statistic), json_with(one.without_scatter).add("withdrawn", one.withdrawn));
+                without_scatter.add(key(statistic),
+                                    Result<results::estimate_without_scatter>{{"value", one.without_scatter.value},
+                                                                              {"error", one.without_scatter.half_width},
+                                                                              {"withdrawn", one.withdrawn}});
         }
     if (scatter_known)
-        for (std::size_t p = 0; const char* moment : {"variance", "third_moment", "fourth_moment"}) {
+        for (std::size_t p = 0; const auto& moment : results::scatter_shares) {
             const auto& budget = estimators.assisted->budget[p++];
-            shares.add(moment, budget.scatter / (budget.response + budget.scatter));
+            shares.add(moment.name, budget.scatter / (budget.response + budget.scatter));
         }
     return {{"plain", plain},
             {"model_assisted", with_model},
@@ -417,10 +420,11 @@ Document convergence_document(const store::Store& store, const Responses& respon
     if (corrected) shown.converged = corrected->within;
     if (format == Format::json) {
         const auto estimators = estimators_of(store, responses, response, estimated);
-        shown.value = to_json(responses, response, history, lattices)
-                          .add("distribution", levels_json(history, left_out ? &estimators : nullptr))
-                          .add("estimators", estimators_json(history, estimators));
-        if (corrected) shown.value.add("corrected", corrected_json(*corrected));
+        auto value = to_json(responses, response, history, lattices);
+        value.add("distribution", levels_json(history, left_out ? &estimators : nullptr))
+            .add("estimators", estimators_json(history, estimators));
+        if (corrected) value.add("corrected", corrected_json(*corrected));
+        shown.value = value;
     }
     if (format == Format::text) {
         shown.say(study_heading(responses, response)).say();

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "sweep/report/document.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/study.hpp"
 #include "sweep/study/estimators.hpp"
 #include "sweep/study/history.hpp"
 
@@ -18,18 +20,17 @@ namespace grainsweep::report {
 [[nodiscard]] store::Table provisional_rows(const study::Responses& responses, const study::ResponseColumn& response,
                                             const study::History& history);
 /// Returns all results of `converge` for one campaign as one JSON value.
-[[nodiscard]] Json to_json(const study::Responses& responses, const study::ResponseColumn& response,
-                           const study::History& history, std::span<const study::LatticeStep> lattices);
+[[nodiscard]] Result<results::converge> to_json(const study::Responses& responses,
+                                                const study::ResponseColumn& response, const study::History& history,
+                                                std::span<const study::LatticeStep> lattices);
 
 /// Returns one row per statistic of both estimators: plain, with the model, without scatter (if it is known). Withdrawn
 /// values are marked.
 [[nodiscard]] store::Table estimators_table(const study::History& history, const study::Estimators& estimators);
 /// Returns sentences on the cases of the model and its limits.
 [[nodiscard]] std::vector<std::string> estimator_lines(const study::Estimators& estimators);
-/// {"plain": {"mean": {"value", "error"}, ...}, "model_assisted": {..., "taken", "withdrawn"} or null,
-/// "without_scatter": {..., "withdrawn"} or null, "model_error", "scatter_from", "scatter_share": {"variance",
-/// "third_moment", "fourth_moment"}, "note", "population"}
-[[nodiscard]] Json estimators_json(const study::History& history, const study::Estimators& estimators);
+[[nodiscard]] Result<results::estimators> estimators_json(const study::History& history,
+                                                          const study::Estimators& estimators);
 
 /// Returns the output of `converge` for a campaign; computes only the parts that `format` needs. `levels`: beside those
 /// among the gates; empty: study::shown_levels. `without`: what completed cases without a value count as in them; where

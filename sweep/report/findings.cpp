@@ -2,6 +2,8 @@
 
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/report/print_axes.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/study.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
 
@@ -55,65 +57,69 @@ store::Table brackets_rows(const Brackets& brackets, const std::string& campaign
     return table;
 }
 
-Json brackets_json(const Brackets& brackets) {
+Result<results::crossings> brackets_json(const Brackets& brackets, const std::string& campaign) {
     const auto level = [](const RefinedLevel& at) {
-        return Json{{"value", at.value},
-                    {"mean", at.mean()},
-                    {"error", at.half_width()},
-                    {"runs", at.answers.size()},
-                    {"unanswered", at.unanswered}};
+        return Result<results::bracket_end>{{"value", at.value},
+                                            {"mean", at.mean()},
+                                            {"error", at.half_width()},
+                                            {"runs", at.answers.size()},
+                                            {"unanswered", at.unanswered}};
     };
     Json found = Json::array();
     for (std::size_t c = 0; c < brackets.found.size(); ++c) {
         const auto& one = brackets.found[c];
         Json levels = Json::object();
         for (std::size_t j = 0; j < brackets.others.size(); ++j) levels.add(brackets.others[j], brackets.levels[c][j]);
-        found.push_back({{"levels", levels},
-                         {"low", level(one.low)},
-                         {"high", level(one.high)},
-                         {"runs", one.runs},
-                         {"state", designs::to_string(one.state)}});
+        found.push_back(Result<results::bracket>{{"levels", levels},
+                                                 {"low", level(one.low)},
+                                                 {"high", level(one.high)},
+                                                 {"runs", one.runs},
+                                                 {"state", designs::to_string(one.state)}});
     }
-    return {{"factor", brackets.factor},
+    return {{"campaign", campaign},
+            {"factor", brackets.factor},
             {"observable", brackets.observable},
             {"threshold", brackets.threshold},
             {"width", brackets.width},
             {"brackets", found}};
 }
 
-Json calibration_json(const CalibrationReport& report) {
+Result<results::calibration> calibration_json(const CalibrationReport& report, const std::string& campaign) {
     const auto wave = [](const auto& one) {
-        return Json{{"settings", one.settings}, {"cases", one.cases}, {"failed", one.failed},
-                    {"excluded", one.excluded}, {"kept", one.kept},   {"model_errors", one.model_error}};
+        return Result<results::wave>{{"settings", one.settings}, {"cases", one.cases},
+                                     {"failed", one.failed},     {"excluded", one.excluded},
+                                     {"kept", one.kept},         {"model_errors", one.model_error}};
     };
     const auto factor = [](const study::FactorPosterior& one) {
-        return Json{{"factor", one.factor.name},
-                    {"mean", one.mean},
-                    {"sd", one.sd},
-                    {"q05", one.low},
-                    {"q95", one.high},
-                    {"share_of_range", one.share_of_range},
-                    {"verdict", one.word()},
-                    {"levels", Json::list(one.levels, [](const study::LevelProbability& level) {
-                         return Json{{"level", level.level}, {"probability", level.probability}};
-                     })}};
+        return Result<results::factor_posterior>{
+            {"factor", one.factor.name},
+            {"mean", one.mean},
+            {"sd", one.sd},
+            {"q05", one.low},
+            {"q95", one.high},
+            {"share_of_range", one.share_of_range},
+            {"verdict", one.word()},
+            {"levels", Json::list(one.levels, [](const study::LevelProbability& level) {
+                 return Result<results::level_probability>{{"level", level.level}, {"probability", level.probability}};
+             })}};
     };
     const auto target = [](const study::TargetCheck& one) {
-        return Json{{"experiment", one.experiment},
-                    {"observable", one.observable},
-                    {"condition", one.condition},
-                    {"value", one.value},
-                    {"error", one.error},
-                    {"discrepancy", one.discrepancy},
-                    {"predicted", one.predicted},
-                    {"predicted_sd", one.predicted_error},
-                    {"checked", one.checked},
-                    {"checked_sd", one.checked_sd},
-                    {"runs", one.runs},
-                    {"z", one.z.value_or(std::numeric_limits<double>::quiet_NaN())}};
+        return Result<results::target_check>{{"experiment", one.experiment},
+                                             {"observable", one.observable},
+                                             {"condition", one.condition},
+                                             {"value", one.value},
+                                             {"error", one.error},
+                                             {"discrepancy", one.discrepancy},
+                                             {"predicted", one.predicted},
+                                             {"predicted_sd", one.predicted_error},
+                                             {"checked", one.checked},
+                                             {"checked_sd", one.checked_sd},
+                                             {"runs", one.runs},
+                                             {"z", one.z.value_or(std::numeric_limits<double>::quiet_NaN())}};
     };
     const auto& found = report.found;
-    return {{"ended", found.waves_end},
+    return {{"campaign", campaign},
+            {"ended", found.waves_end},
             {"why", found.why_they_end},
             {"verdict", report.verdict ? Json(report.verdict->sentence) : Json()},
             {"waves", Json::list(found.waves, wave)},
@@ -251,17 +257,18 @@ namespace {
 
 Document document_of(const Brackets& brackets, const Responses& responses) {
     const auto& campaign = responses.campaign.name;
-    Document shown{
-        .rows = brackets_rows(brackets, campaign), .value = {{"campaign", campaign}}, .alone = true, .converged = true};
-    shown.value.add(brackets_json(brackets));
+    Document shown{.rows = brackets_rows(brackets, campaign),
+                   .value = brackets_json(brackets, campaign),
+                   .alone = true,
+                   .converged = true};
     shown.say(fmt::format("{}: {}; {}", campaign, brackets_line(brackets), outcome_line(responses)));
     shown.say().show(brackets_table(brackets));
     return shown;
 }
 
 Document document_of(const CalibrationReport& report, const Responses& responses) {
-    Document shown{.rows = posterior_table(report), .value = {{"campaign", responses.campaign.name}}, .alone = true};
-    shown.value.add(calibration_json(report));
+    Document shown{
+        .rows = posterior_table(report), .value = calibration_json(report, responses.campaign.name), .alone = true};
     shown.converged = report.found.waves_end && report.found.posterior;
     shown.say(fmt::format("{}: {}", responses.campaign.name, outcome_line(responses)));
     say_calibration(shown, report);
@@ -272,7 +279,9 @@ Document document_of(const CalibrationReport& report, const Responses& responses
 Document document_beside(const Responses& responses) {
     const auto& record = responses.campaign;
     const auto first = campaign::name_beside(record, campaign::experiments_of(record).front());
-    Document shown{.value = {{"campaign", record.name}, {"shown_with", first}}, .alone = true, .converged = true};
+    Document shown{.value = Result<results::calibration_beside>{{"campaign", record.name}, {"shown_with", first}},
+                   .alone = true,
+                   .converged = true};
     shown.say(fmt::format("{}: {}; the calibration over all experiments is shown with {}", record.name,
                           outcome_line(responses), first));
     return shown;

@@ -45,7 +45,7 @@ Cell trend_cell(const FactorInfluence& factor) {
     return factor.trend == Trend::unknown ? Cell{} : Cell{std::string(to_string(factor.trend))};
 }
 
-Json index_json(const stats::SensitivityIndex& index) {
+Result<results::estimate> index_json(const stats::SensitivityIndex& index) {
     return {{"value", index.value}, {"error", index.half_width}};
 }
 
@@ -139,16 +139,18 @@ store::Table influence_table(const Influence& influence) {
     return table;
 }
 
-Json to_json(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
+Result<results::sensitivity> to_json(const Responses& responses, const ResponseColumn& response,
+                                     const Influence& influence) {
     const auto json_of_factor = [&](const FactorInfluence& factor) {
-        Json one = {{"name", factor.factor}};
+        Result<results::factor_influence> one = {{"name", factor.factor}};
         if (!factor.members.empty()) one.add("members", factor.members);
         if (influence.method != Influence::Method::morris)
             one.add("bins", factor.bins).add("first", index_json(factor.first));
         if (influence.method == Influence::Method::saltelli)
             one.add("first_saltelli", index_json(factor.first_saltelli)).add("total", index_json(factor.total));
         if (factor.effects)
-            one.add("mu_star", {{"value", factor.effects->mu_star}, {"error", factor.effects->mu_star_half_width}})
+            one.add("mu_star", Result<results::estimate>{{"value", factor.effects->mu_star},
+                                                         {"error", factor.effects->mu_star_half_width}})
                 .add("mu", factor.effects->mu)
                 .add("sigma", factor.effects->sigma);
         one.add("trend", to_json(trend_cell(factor)));
@@ -161,15 +163,14 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
             {"used", influence.used},
             {"excluded", influence.excluded},
             {"factors", Json::list(influence.factors, json_of_factor)},
-            {"variance",
-             {{"main_effects", index_json(split.main_effects)},
-              {"unexplained", index_json(split.unexplained)},
-              {"interactions", index_json(split.interactions)},
-              {"scatter", index_json(split.scatter)},
-              {"interactions_of_two", nullptr},  // what a model of the response says, under "model"
-              {"scatter_and_higher", nullptr},
-              {"pure_error", split.pure.variance},
-              {"pure_error_freedom", split.pure.freedom}}},
+            {"variance", Result<results::variance_split>{{"main_effects", index_json(split.main_effects)},
+                                                         {"unexplained", index_json(split.unexplained)},
+                                                         {"interactions", index_json(split.interactions)},
+                                                         {"scatter", index_json(split.scatter)},
+                                                         {"interactions_of_two", nullptr},
+                                                         {"scatter_and_higher", nullptr},
+                                                         {"pure_error", split.pure.variance},
+                                                         {"pure_error_freedom", split.pure.freedom}}},
             {"notes", influence.notes}};
 }
 
@@ -215,11 +216,12 @@ Json noise_json(const ModelInfluence& influence) {
     const auto& noise = *influence.indices->noise;
     Json controls = Json::array();
     for (std::size_t k = 0; k < noise.controls.size(); ++k)
-        controls.push_back(Json{{"name", influence.factors[noise.controls[k].factor]},
-                                {"where", influence.calmest[k]},
-                                {"significant", noise.controls[k].significant()}}
+        controls.push_back(Result<results::noise_control>{{"name", influence.factors[noise.controls[k].factor]},
+                                                          {"where", influence.calmest[k]},
+                                                          {"significant", noise.controls[k].significant()}}
                                .add(index_json(noise.controls[k].left)));
-    return Json{{"factors", influence.noise}, {"controls", controls}}.add(index_json(noise.total));
+    return Result<results::noise_share>{{"factors", influence.noise}, {"controls", controls}}.add(
+        index_json(noise.total));
 }
 
 }  // namespace
@@ -257,24 +259,25 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
     return lines;
 }
 
-Json model_influence_json(const ModelInfluence& influence) {
+Result<results::model_influence> model_influence_json(const ModelInfluence& influence) {
     Json factors = Json::array(), pairs = Json::array(), scatter, unexplained, model;
     if (influence.indices) {
         const auto& indices = *influence.indices;
         for (std::size_t j = 0; j < influence.factors.size(); ++j) {
-            Json factor = {{"name", influence.factors[j]}};
+            Result<results::model_index> factor = {{"name", influence.factors[j]}};
             if (influence.depends())
                 factor.add("shapley", index_json(indices.shapley[j]));
             else
-                factor.add({{"first", index_json(indices.first[j])},
-                            {"total", index_json(indices.total[j])},
-                            {"interactions", index_json(indices.interactions[j])}});
+                factor.add("first", index_json(indices.first[j]))
+                    .add("total", index_json(indices.total[j]))
+                    .add("interactions", index_json(indices.interactions[j]));
             factors.push_back(factor);
         }
         for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
             if (influence.depends()) return;
             pairs.push_back(
-                Json{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(index_json(index)));
+                Result<results::pair_index>{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(
+                    index_json(index)));
         });
         const auto& quality = std::get<stats::ResponseModel>(influence.model->model).quality();
         scatter = quality.noise_share;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "sweep/report/document.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/study.hpp"
 #include "sweep/study/influence.hpp"
 #include "sweep/study/model_influence.hpp"
 
@@ -17,16 +19,15 @@ namespace grainsweep::report {
 [[nodiscard]] Json shown_of(study::Influence::Method method);
 /// Returns one row per factor for people, the most influential first.
 [[nodiscard]] store::Table influence_table(const study::Influence& influence);
-[[nodiscard]] Json to_json(const study::Responses& responses, const study::ResponseColumn& response,
-                           const study::Influence& influence);
+[[nodiscard]] Result<results::sensitivity> to_json(const study::Responses& responses,
+                                                   const study::ResponseColumn& response,
+                                                   const study::Influence& influence);
 
 /// Returns one row per factor, the most influential first: first order, total, interactions.
 [[nodiscard]] store::Table model_influence_table(const study::ModelInfluence& influence);
 /// Returns sentences on pairs of factors whose interaction exceeds its error, and on the cases of the model.
 [[nodiscard]] std::vector<std::string> model_influence_lines(const study::ModelInfluence& influence);
-/// {"factors": [{"name", "first", "total", "interactions"}], "pairs": [{"factors", "value", "error"}], "scatter_share",
-/// "unexplained_share", "response_model", "refused"}; indices {"value", "error"}, shares of the variance of single runs
-[[nodiscard]] Json model_influence_json(const study::ModelInfluence& influence);
+[[nodiscard]] Result<results::model_influence> model_influence_json(const study::ModelInfluence& influence);
 /// Returns {"columns", "rows", "says": lines} of the table for people, for a page.
 [[nodiscard]] Json model_influence_page(const study::ModelInfluence& influence);
 

@@ -37,7 +37,7 @@ std::string lines_of(const ObservableModel& named, const stats::ProbabilityModel
         campaign::listed(named.features.names));
 }
 
-Json quality_json(const stats::ResponseModel& model) {
+Result<results::model> quality_json(const stats::ResponseModel& model) {
     const auto& quality = model.quality();
     return {{"leave_one_out_error", quality.leave_one_out_error},
             {"coverage_50", quality.coverage_50},
@@ -46,7 +46,7 @@ Json quality_json(const stats::ResponseModel& model) {
             {"learned_map", quality.learned_map}};
 }
 
-Json quality_json(const stats::ProbabilityModel& model) {
+Result<results::model> quality_json(const stats::ProbabilityModel& model) {
     const auto& quality = model.quality();
     return {{"ones", quality.ones}, {"brier", quality.brier}, {"brier_of_share", quality.brier_of_share}};
 }
@@ -59,15 +59,15 @@ std::string model_lines(const ObservableModel& model) {
     return text;
 }
 
-Json model_json(const ObservableModel& model) {
+Result<results::model> model_json(const ObservableModel& model) {
     const auto rests_on = std::visit([](const auto& one) { return one.quality().rests_on; }, model.model);
-    Json object = {{"observable", model.observable},
-                   {"kind", model.is_probability() ? "probability" : "response"},
-                   {"cases", model.cases()},
-                   {"rests_on", rests_on},
-                   {"undefined", model.undefined},
-                   {"features", model.features.names},
-                   {"notes", model.notes}};
+    Result<results::model> object = {{"observable", model.observable},
+                                     {"kind", model.is_probability() ? "probability" : "response"},
+                                     {"cases", model.cases()},
+                                     {"rests_on", rests_on},
+                                     {"undefined", model.undefined},
+                                     {"features", model.features.names},
+                                     {"notes", model.notes}};
     return object.add(std::visit([](const auto& one) { return quality_json(one); }, model.model));
 }
 
@@ -111,23 +111,25 @@ store::Table predictions_table(const ModelCases& cases, const ObservableModel& m
     return table;
 }
 
-Json predictions_json(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
+Result<results::predict> predictions_json(const ModelCases& cases, const ObservableModel& model,
+                                          const Predicted& predicted) {
     Json points = Json::array();
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
         const auto& p = predicted.predictions[i];
-        points.push_back({{"inputs", inputs_json(cases.factors, predicted.settings[i])},
-                          {"mean", p.mean},
-                          {"mean_error", p.mean_error},
-                          {"mean_low", p.mean_low()},
-                          {"mean_high", p.mean_high()},
-                          {"scatter", p.scatter},
-                          {"inside", outside_text(cases.factors, predicted.settings[i]).empty()},
-                          {"defined", predicted.defined[i]},
-                          {"answers", predicted.answers[i]},
-                          {"answers_low", predicted.answers_low[i]},
-                          {"answers_high", predicted.answers_high[i]},
-                          {"near_cases", predicted.near[i].cases},
-                          {"near_failed", predicted.near[i].failed.size()}});
+        points.push_back(
+            Result<results::prediction>{{"inputs", inputs_json(cases.factors, predicted.settings[i])},
+                                        {"mean", p.mean},
+                                        {"mean_error", p.mean_error},
+                                        {"mean_low", p.mean_low()},
+                                        {"mean_high", p.mean_high()},
+                                        {"scatter", p.scatter},
+                                        {"inside", outside_text(cases.factors, predicted.settings[i]).empty()},
+                                        {"defined", predicted.defined[i]},
+                                        {"answers", predicted.answers[i]},
+                                        {"answers_low", predicted.answers_low[i]},
+                                        {"answers_high", predicted.answers_high[i]},
+                                        {"near_cases", predicted.near[i].cases},
+                                        {"near_failed", predicted.near[i].failed.size()}});
     }
     return {{"campaign", cases.campaign.name},
             {"observable", model.observable},

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "sweep/report/document.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/models.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/study/predicted.hpp"
 
@@ -13,10 +15,7 @@ namespace grainsweep::report {
 
 /// Returns the cases of a model and the quality of its errors in a few lines; then its notes, each with "note: ".
 [[nodiscard]] std::string model_lines(const study::ObservableModel& model);
-/// Returns {"observable", "kind": "response" or "probability", "cases", "rests_on", "undefined", "features", "notes"}.
-/// A response also has "leave_one_out_error", "coverage_50", "coverage_95", "noise_share", "learned_map"; a probability
-/// "ones", "brier", "brier_of_share".
-[[nodiscard]] Json model_json(const study::ObservableModel& model);
+[[nodiscard]] Result<results::model> model_json(const study::ObservableModel& model);
 
 /// Returns an object such as {"gap": 0.003, "cohesion_law": "sjkr"}; null: averaged over.
 [[nodiscard]] Json inputs_json(std::span<const study::ModelFactor> factors, const study::Setting& setting);
@@ -31,9 +30,9 @@ namespace grainsweep::report {
 /// Returns the output of `predict`.
 [[nodiscard]] Document predictions_document(const study::ModelCases& cases, const study::ObservableModel& model,
                                             const study::Predicted& predicted);
-/// Returns {"campaign", "observable", "points": [...], "model": {...}}.
-[[nodiscard]] Json predictions_json(const study::ModelCases& cases, const study::ObservableModel& model,
-                                    const study::Predicted& predicted);
+[[nodiscard]] Result<results::predict> predictions_json(const study::ModelCases& cases,
+                                                        const study::ObservableModel& model,
+                                                        const study::Predicted& predicted);
 
 /// Returns the axes for the script of a page: [{"name", "unit", "levels": texts, "numbers", "low", "high", "log"},
 /// ...].

@@ -52,21 +52,22 @@ store::Table settings_table(const ModelCases& cases, const Window& window, std::
 Json window_table_json(const ModelCases& cases, const WindowRequest& request, const Window& window,
                        const Judgement& one) {
     const auto estimate = [](const stats::Prediction& p) {
-        return Json{{"mean", p.mean}, {"mean_error", p.mean_error}, {"scatter", p.scatter}};
+        return Result<results::mean_and_scatter>{
+            {"mean", p.mean}, {"mean_error", p.mean_error}, {"scatter", p.scatter}};
     };
     Json observables = Json::object();
     for (std::size_t k = 0; k < window.models.size(); ++k)
         observables.add(window.models[k].observable, estimate(one.predictions[k]));
-    Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
+    Result<results::window_setting> object = {{"inputs", inputs_json(cases.factors, one.setting)}};
     if (!request.objectives.empty()) object.add(estimate(one.objectives[0]));
     const auto near = window.answers->near(one.setting);
-    return object.add({{"probability", one.probability},
-                       {"answers", one.answers},
-                       {"answers_low", one.answers_low},
-                       {"answers_high", one.answers_high},
-                       {"near_cases", near.cases},
-                       {"near_failed", near.failed.size()},
-                       {"observables", observables}});
+    return object.add(Result<results::window_setting>{{"probability", one.probability},
+                                                      {"answers", one.answers},
+                                                      {"answers_low", one.answers_low},
+                                                      {"answers_high", one.answers_high},
+                                                      {"near_cases", near.cases},
+                                                      {"near_failed", near.failed.size()},
+                                                      {"observables", observables}});
 }
 
 /// Columns of a computed front: the goals that are no factors, of two objectives with an error each.
@@ -105,23 +106,25 @@ Json computed_json(const ModelCases& cases, const Window& window, const FrontSet
         const auto& name = window.models[*goals[k].model].observable;
         observables.add(name, values[k]);
         if (one.judged)
-            means.add(name,
-                      {{"mean", one.judged->objectives[k].mean}, {"mean_error", one.judged->objectives[k].mean_error}});
+            means.add(name, Result<results::front_mean>{{"mean", one.judged->objectives[k].mean},
+                                                        {"mean_error", one.judged->objectives[k].mean_error}});
     }
-    Json object = {
+    Result<results::computed_setting> object = {
         {"inputs", inputs_json(cases.factors, one.setting)}, {"runs", one.runs}, {"observables", observables}};
-    if (one.judged) object.add({{"means", means}, {"probability", one.judged->probability}});
+    if (one.judged) object.add("means", means).add("probability", one.judged->probability);
     return object;
 }
 
 Json objective_json(const WindowRequest& request, const Window& window, std::size_t k) {
-    Json object = {{window.goals[k].factor ? "factor" : "observable", request.objectives[k].name},
-                   {"maximize", request.objectives[k].maximise}};
+    using Objective = Result<results::window_objective>;
+    const auto& name = request.objectives[k].name;
+    auto object = window.goals[k].factor ? Objective{{"factor", name}} : Objective{{"observable", name}};
+    object.add("maximize", request.objectives[k].maximise);
     if (window.goals.size() == 2) object.add("reference", window.goals[k].reference);
     return object;
 }
 
-Json volume_json(const FrontVolume& volume) {
+Result<results::hypervolume> volume_json(const FrontVolume& volume) {
     return {{"value", volume.value}, {"error", volume.error}, {"further", volume.further}};
 }
 
@@ -151,13 +154,13 @@ store::Table batches_table(const ModelCases& cases, const WindowRequest& request
 }
 
 Json batch_json(const ModelCases& cases, const Window& window, const BatchStanding& batch) {
-    Json object = {{"campaign", batch.campaign}, {"cases", batch.cases}};
+    Result<results::batch> object = {{"campaign", batch.campaign}, {"cases", batch.cases}};
     if (window.goals.size() == 2)
-        return object.add({{"hypervolume", batch.volume->value}, {"hypervolume_error", batch.volume->error}});
+        return object.add("hypervolume", batch.volume->value).add("hypervolume_error", batch.volume->error);
     if (!batch.best) return object.add("best", Json());
-    return object.add("best", {{"inputs", inputs_json(cases.factors, batch.best->setting)},
-                               {"mean", batch.best->objectives[0].mean},
-                               {"mean_error", batch.best->objectives[0].mean_error}});
+    return object.add("best", Result<results::batch_best>{{"inputs", inputs_json(cases.factors, batch.best->setting)},
+                                                          {"mean", batch.best->objectives[0].mean},
+                                                          {"mean_error", batch.best->objectives[0].mean_error}});
 }
 
 std::string_view judged_text(stats::Judged judged) {
@@ -216,7 +219,7 @@ std::string goal_text(const WindowRequest& request) {
     return request.objectives.size() == 2 ? text + ", as a compromise," : text;
 }
 
-Json window_json(const ModelCases& cases, const WindowRequest& request, const Window& window) {
+Result<results::window> window_json(const ModelCases& cases, const WindowRequest& request, const Window& window) {
     const auto json = [&](const Judgement& one) { return window_table_json(cases, request, window, one); };
     Json objective;
     if (!request.objectives.empty()) objective = objective_json(request, window, 0);

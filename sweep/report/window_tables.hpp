@@ -2,6 +2,8 @@
 #pragma once
 
 #include "sweep/report/document.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/models.hpp"
 #include "sweep/study/process_window.hpp"
 
 namespace grainsweep::report {
@@ -15,14 +17,8 @@ namespace grainsweep::report {
 [[nodiscard]] std::string goal_text(const study::WindowRequest& request);
 /// Returns the hypervolume with its error, and what the best front may dominate beyond it.
 [[nodiscard]] std::string volume_text(const study::FrontVolume& volume);
-/// {"campaign", "where", "objective", "objectives": [{"observable" or "factor", "maximize", "reference"}], "risk",
-/// "judged", "share_of_box", "share_error", "share_low", "share_high", "share_failed", "best":
-/// {"inputs", "mean", "mean_error", "scatter", "probability", "answers", "answers_low", "answers_high", "near_cases",
-/// "near_failed", "observables"}, "surest", "computed_front": [{"inputs", "runs", "observables"; of two objectives
-/// "means", "probability"}], "front", "hypervolume": {"value", "error", "further"}, "batches": [{"campaign", "cases",
-/// "best" or "hypervolume", "hypervolume_error"}], "next", "models", "notes"}. mean, mean_error and scatter: of the
-/// first objective.
-[[nodiscard]] Json window_json(const study::ModelCases& cases, const study::WindowRequest& request,
-                               const study::Window& window);
+/// mean, mean_error and scatter of a setting: of the first objective.
+[[nodiscard]] Result<results::window> window_json(const study::ModelCases& cases, const study::WindowRequest& request,
+                                                  const study::Window& window);
 
 }  // namespace grainsweep::report

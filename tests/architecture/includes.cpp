@@ -120,7 +120,7 @@ const std::vector<Rule>& rules() {
         {"sweep/plot/", {"sweep/plot/", "sweep/files/"}},
         {"sweep/report/",
          {"sweep/report/", "sweep/plot/", "sweep/study/", "sweep/store/", "sweep/campaign/", "sweep/files/", "stats/",
-          "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+          "solver/field.hpp", "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
         {"sweep/live/",
          {"sweep/live/", "sweep/report/", "sweep/store/", "sweep/campaign/", "sweep/files/",
           "sweep/workers/process_start.hpp", "solver/plain_text.hpp"}},

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace grainsweep::tests {
 
-/// Returns the keys and types of a command's output on a small campaign. Throws std::invalid_argument for a command
-/// that it does not run.
-[[nodiscard]] std::string json_table(const std::string& command);
+/// Returns the fields of a result. Throws std::invalid_argument for an unknown name.
+[[nodiscard]] std::string json_table(const std::string& name);
 
 }  // namespace grainsweep::tests
