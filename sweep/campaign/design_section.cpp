@@ -26,8 +26,7 @@ const designs::DesignInfo& read_kind(const Cursor& place) {
 
 /// Returns one count, or one per factor. The entry of a factor with levels is the number of its levels.
 OptionValue read_counts(const Cursor& place, const OptionSpec& option, std::span<const std::size_t> levels) {
-    const Interval bounds{static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
-    if (!place.json().is_array()) return place.whole(bounds);
+    if (!place.json().is_array()) return place.whole(option.bounds);
     const auto elements = place.elements();
     if (elements.size() != levels.size()) {
         place.refuse(
@@ -35,7 +34,7 @@ OptionValue read_counts(const Cursor& place, const OptionSpec& option, std::span
     }
     std::vector<std::int64_t> counts;
     for (std::size_t j = 0; j < elements.size(); ++j) {
-        counts.push_back(elements[j].whole(bounds));
+        counts.push_back(elements[j].whole(option.bounds));
         if (levels[j] != 0 && counts.back() != static_cast<std::int64_t>(levels[j])) {
             elements[j].refuse(fmt::format("this factor is given by its {} levels", levels[j]));
         }
@@ -85,7 +84,7 @@ void check_size(const Cursor& place, const OptionValue& value, std::span<const s
 
 std::vector<std::string> names_for(const OptionSpec& option, const Campaign& campaign) {
     std::vector<std::string> names;
-    if (option.kind == OptionSpec::Kind::factor) {
+    if (option.names == OptionSpec::Names::factors) {
         for (const auto& factor : campaign.space.factors)
             if (std::holds_alternative<Between>(factor.range)) names.push_back(factor.name);
     } else {
@@ -96,7 +95,7 @@ std::vector<std::string> names_for(const OptionSpec& option, const Campaign& cam
 }
 
 std::string read_option_word(const Cursor& place, const OptionSpec& option, const Campaign& campaign) {
-    if (option.kind == OptionSpec::Kind::word) return place.word(option.words);
+    if (option.names == OptionSpec::Names::any) return place.word(option.words);
     const auto names = names_for(option, campaign);
     if (names.empty()) place.refuse("needs a factor that varies between two values, and there is none");
     return place.word(names);
@@ -150,30 +149,28 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
     auto& request = campaign.request;
     set_factors(campaign);
     for (const auto& option : design.options) {
-        if (option.kind == OptionSpec::Kind::rows) {
-            request.options[option.name] = read_rows(section, option, campaign.space, folder);
+        const std::string name(option.name);
+        if (option.kind == Field::Kind::array) {
+            request.options[name] = read_rows(section, option, campaign.space, folder);
             continue;
         }
-        const auto given = section.find(option.name);
-        if (!given) {
-            request.options[option.name] = *option.default_value;
-            continue;
-        }
+        const auto given = section.find(name);
+        if (!given) continue;
         OptionValue value;
-        if (option.kind == OptionSpec::Kind::word || option.kind == OptionSpec::Kind::factor ||
-            option.kind == OptionSpec::Kind::observable) {
+        if (option.kind == Field::Kind::word || option.kind == Field::Kind::text) {
             value = read_option_word(*given, option, campaign);
-        } else if (option.kind == OptionSpec::Kind::number) {
+        } else if (option.kind == Field::Kind::number) {
             value = given->number(option.bounds);
-        } else if (option.kind == OptionSpec::Kind::counts) {
+        } else if (option.kind == Field::Kind::value) {
             value = read_counts(*given, option, request.levels);
             check_size(*given, value, request.levels, false);
         } else {
-            value = given->whole({static_cast<double>(option.minimum), static_cast<double>(option.maximum)});
-            if (option.name == "points") check_size(*given, value, request.levels, true);
+            value = given->whole(option.bounds);
+            if (name == "points") check_size(*given, value, request.levels, true);
         }
-        request.options[option.name] = std::move(value);
+        request.options[name] = std::move(value);
     }
+    designs::add_defaults(design, request.options);
     if (design.grows) check_growing(place, campaign);
 }
 

@@ -91,7 +91,7 @@ Identity identity_of(const Campaign& campaign) {
     std::erase_if(identity.options, [&](const auto& entry) {
         const auto* option = find_option(design, entry.first);
         return std::holds_alternative<designs::Rows>(entry.second) ||  // compared row by row, by their cases
-               (option != nullptr && option->silent_by_default && entry.second == option->default_value);
+               (option != nullptr && option->silent_by_default && entry.second == option->default_value());
     });
     return identity;
 }
@@ -155,18 +155,18 @@ void refuse_another_size(const Identity& stored, const Identity& asked, std::str
         return text.empty() ? "none" : text;
     };
     for (const auto& option : design.options) {
-        if (!option.extent || option.kind == designs::OptionSpec::Kind::rows) continue;
+        if (!option.extent || option.kind == Field::Kind::array) continue;
         const auto value_in = [&](const Identity& identity) {
             const auto found = identity.options.find(option.name);
             return found == identity.options.end() ? nullptr : &found->second;
         };
         const auto *before = value_in(stored), *after = value_in(asked);
-        const bool per_factor = option.kind == designs::OptionSpec::Kind::counts;
+        const bool per_factor = option.kind == Field::Kind::value;
         if (shown(before) == shown(after) ||
             (per_factor && counts_that_act(before, asked.factors) == counts_that_act(after, asked.factors)))
             continue;
         throw input_error(
-            "$.design." + option.name, shown(after),
+            fmt::format("$.design.{}", option.name), shown(after),
             fmt::format("campaign '{}' stands in '{}' with {}, and a {} of another size is another design, with other "
                         "points under the same numbers: give it a campaign name of its own; cases that both ask are "
                         "not computed again",

@@ -40,38 +40,6 @@ constexpr Field of(Field field) {
     return field;
 }
 
-/// Without its default.
-Field key_of(const designs::OptionSpec& option) {
-    using OptionKind = designs::OptionSpec::Kind;
-    Field key{option.name, Kind::whole, option.meaning};
-    key.required = !option.default_value && option.kind != OptionKind::rows;
-    key.bounds = {static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
-    switch (option.kind) {
-        case OptionKind::count:
-            break;
-        case OptionKind::word:
-            key.kind = Kind::word;
-            key.words = option.words;
-            break;
-        case OptionKind::factor:
-        case OptionKind::observable:
-            key.kind = Kind::text;
-            break;
-        case OptionKind::number:
-            key.kind = Kind::number;
-            key.bounds = option.bounds;
-            break;
-        // A single count may stand for a list of equal ones, and a file for rows: the design section reads both.
-        case OptionKind::counts:
-            key.kind = Kind::value;
-            break;
-        case OptionKind::rows:
-            key.kind = Kind::array;
-            break;
-    }
-    return key;
-}
-
 }  // namespace
 
 std::span<const Field> campaign_keys() {
@@ -427,8 +395,8 @@ std::span<const Field> execution_keys() {
 std::vector<Field> design_keys(const designs::DesignInfo& design) {
     std::vector<Field> keys = {needed({"kind", Kind::word, design.summary})};
     for (const auto& option : design.options) {
-        keys.push_back(key_of(option));
-        if (option.kind == designs::OptionSpec::Kind::rows)
+        keys.push_back(option);
+        if (option.kind == Kind::array)  // a file may stand for rows
             keys.push_back(
                 {"file", Kind::text, "CSV beside the campaign file, one column per factor, its header the names"});
     }

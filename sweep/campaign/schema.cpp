@@ -286,17 +286,12 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
     schema["description"] = design.summary;
     schema["properties"]["kind"] = {{"const", design.name}, {"description", design.summary}};
     for (const auto& option : design.options) {
-        auto& property = schema["properties"][option.name];
-        if (option.default_value && option.kind != designs::OptionSpec::Kind::counts) {
-            if (const auto* count = std::get_if<std::int64_t>(&*option.default_value)) property["default"] = *count;
-            if (const auto* word = std::get_if<std::string>(&*option.default_value)) property["default"] = *word;
-            if (const auto* real = std::get_if<double>(&*option.default_value)) property["default"] = number_of(*real);
-        }
-        if (option.kind == designs::OptionSpec::Kind::counts) {
+        auto& property = schema["properties"][std::string(option.name)];
+        if (option.kind == Field::Kind::value) {
             OrderedJson count = {{"type", "integer"}};
-            add_bounds(count, {static_cast<double>(option.minimum), static_cast<double>(option.maximum)});
+            add_bounds(count, option.bounds);
             property["oneOf"] = {count, {{"type", "array"}, {"items", count}}};
-        } else if (option.kind == designs::OptionSpec::Kind::rows) {
+        } else if (option.kind == Field::Kind::array) {
             property["minItems"] = 1;
             property["items"] = {{"type", "array"}, {"items", {{"type", {"number", "string"}}}}};
             schema["oneOf"] = {{{"required", {option.name}}}, {{"required", {"file"}}}};

@@ -132,13 +132,13 @@ void add_factor(std::vector<Factor>& factors, Samples& samples, std::string_view
 }
 
 designs::OptionValue option_in(const designs::DesignInfo* design, std::string_view name, const std::string& text) {
-    using Kind = designs::OptionSpec::Kind;
+    using Kind = Field::Kind;
     if (design == nullptr) return text;
     const auto option = std::ranges::find(design->options, name, &designs::OptionSpec::name);
     if (option == design->options.end()) return text;
-    if (option->kind == Kind::count) return static_cast<std::int64_t>(stored_number(text));
+    if (option->kind == Kind::whole) return static_cast<std::int64_t>(stored_number(text));
     if (option->kind == Kind::number) return stored_number(text);
-    if (option->kind != Kind::counts) return text;
+    if (option->kind != Kind::value) return text;
     std::istringstream stream(text);
     std::vector<std::int64_t> counts;
     for (std::int64_t count = 0; stream >> count;) counts.push_back(count);

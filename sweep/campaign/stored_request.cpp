@@ -40,8 +40,7 @@ designs::DesignRequest request_of(const Identity& identity) {
     for (const auto& factor : identity.factors) request.levels.push_back(factor.continuous() ? 0 : factor.parts());
     if (const auto* together = word_of(identity, "together")) request.shared = factors_in(*together);
     request.options = identity.options;
-    for (const auto& option : designs::design_named(identity.design).options)
-        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
+    designs::add_defaults(designs::design_named(identity.design), request.options);
     return request;
 }
 

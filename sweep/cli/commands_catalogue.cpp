@@ -284,28 +284,29 @@ int list_machines(const std::string& name, Format format) {
 }
 
 std::string default_text(const designs::OptionSpec& option) {
-    if (!option.default_value) return "required";
-    if (const auto* count = std::get_if<std::int64_t>(&*option.default_value)) return std::to_string(*count);
-    if (const auto* word = std::get_if<std::string>(&*option.default_value)) return *word;
-    if (const auto* number = std::get_if<double>(&*option.default_value)) return campaign::shortest(*number);
-    return "";
+    if (!option.default_value()) return "required";
+    std::string text(option.standard);
+    std::erase(text, '"');
+    return text;
 }
 
 std::string allowed_text(const designs::OptionSpec& option) {
-    using Kind = designs::OptionSpec::Kind;
+    using Kind = Field::Kind;
+    using Names = designs::OptionSpec::Names;
     if (option.kind == Kind::word) return alternatives(option.words);
-    if (option.kind == Kind::factor) return "a factor that varies between two values";
-    if (option.kind == Kind::observable) return "a scalar observable of the scene";
+    if (option.names == Names::factors) return "a factor that varies between two values";
+    if (option.names == Names::observables) return "a scalar observable of the scene";
     if (option.kind == Kind::number) return "a number" + campaign::in_words(option.bounds);
-    if (option.kind == Kind::rows) return "[[...], ...] or \"file\": a CSV file";
-    const std::string one = fmt::format("{} to {}", option.minimum, option.maximum);
-    return option.kind == Kind::counts ? one + ", one number or one per factor" : one;
+    if (option.kind == Kind::array) return "[[...], ...] or \"file\": a CSV file";
+    const std::string one = fmt::format("{:.0f} to {:.0f}", option.bounds.low, option.bounds.high);
+    return option.kind == Kind::value ? one + ", one number or one per factor" : one;
 }
 
 store::Table options_of(const designs::DesignInfo& design) {
     store::Table table{report::columns_of(results::option), {}};
     for (const auto& option : design.options) {
-        table.rows.push_back({option.name, default_text(option), allowed_text(option), option.meaning});
+        table.rows.push_back(
+            {std::string(option.name), default_text(option), allowed_text(option), std::string(option.meaning)});
     }
     return table;
 }

@@ -329,9 +329,8 @@ void ask_points(campaign::Campaign& campaign, std::int64_t points) {
     if (!design.extends || option == design.options.end())
         throw campaign::input_error("--points", std::to_string(points),
                                     fmt::format("a {} design cannot be extended by points", campaign.design));
-    if (points > option->maximum)
-        throw campaign::input_error("--points", std::to_string(points),
-                                    fmt::format("must be at most {}", option->maximum));
+    if (const double most = option->bounds.high; static_cast<double>(points) > most)
+        throw campaign::input_error("--points", std::to_string(points), fmt::format("must be at most {:.0f}", most));
     campaign.request.options["points"] = points;
 }
 

@@ -527,30 +527,23 @@ Calibration calibration_of(const DesignRequest& request) {
 }
 
 DesignInfo calibration_design() {
-    const auto count = [](std::string name, std::int64_t standard, std::int64_t most, std::string meaning) {
-        return OptionSpec{
-            .name = std::move(name), .meaning = std::move(meaning), .default_value = standard, .maximum = most};
-    };
-    const auto word = [](std::string name, std::string meaning) {
-        return OptionSpec{.name = std::move(name), .meaning = std::move(meaning), .kind = OptionSpec::Kind::word};
-    };
+    using Kind = Field::Kind;
+    constexpr Interval share{0, 1};
     const auto points = [](const DesignRequest& request) {
         return request.grown ? *request.grown : calibration_of(request).points;
     };
     return {
         .name = "calibration",
         .summary = "Waves of points that close in on the settings which reproduce what was measured: history matching.",
-        .options = {word("targets", "what was measured"),
-                    word("experiment", "of several that share the waves, the one that this campaign runs"),
-                    word("together", "the factors that those experiments calibrate together"),
-                    count("waves", 4, 100, "waves at most"),
-                    count("points_per_wave", 40, 10'000, "settings of a wave; each is run under every condition"),
-                    count("checks", 8, 1000, "settings drawn from the posterior that are run to check it"),
-                    {.name = "shrink",
-                     .meaning = "the waves end when one rules out less than this share of what was kept",
-                     .kind = OptionSpec::Kind::number,
-                     .default_value = 0.02,
-                     .bounds = {0, 1}}},
+        .options =
+            {{needed({"targets", Kind::word, "what was measured"})},
+             {needed({"experiment", Kind::word, "of several that share the waves, the one that this campaign runs"})},
+             {needed({"together", Kind::word, "the factors that those experiments calibrate together"})},
+             {count_field("waves", 1, 100, "4", "waves at most")},
+             {count_field("points_per_wave", 1, 1e4, "40", "settings of a wave; each is run under every condition")},
+             {count_field("checks", 1, 1000, "8", "settings drawn from the posterior that are run to check it")},
+             {{"shrink", Kind::number, "the waves end when one rules out less than this share of what was kept", "0.02",
+               share}}},
         .grows = true,
         .calibrates = true,
         .rests_on =

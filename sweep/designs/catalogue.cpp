@@ -36,6 +36,20 @@ const DesignInfo& design_named(std::string_view name) {
     return *found;
 }
 
+std::optional<OptionValue> OptionSpec::default_value() const {
+    if (kind == Kind::value) return std::vector<std::int64_t>{};
+    if (standard.empty()) return std::nullopt;
+    if (kind == Kind::word) return std::string(standard.substr(1, standard.size() - 2));  // without its quotes
+    const double number = *number_in(standard);
+    if (kind == Kind::whole) return static_cast<std::int64_t>(number);
+    return number;
+}
+
+void add_defaults(const DesignInfo& design, std::map<std::string, OptionValue, std::less<>>& options) {
+    for (const auto& option : design.options)
+        if (auto value = option.default_value()) options.try_emplace(std::string(option.name), std::move(*value));
+}
+
 std::int64_t independent_sequences(std::string_view design, const DesignRequest& request) {
     if (!design_named(design).independent_sequences || !request.options.contains("sequences")) return 1;
     return request.count("sequences");
@@ -78,8 +92,8 @@ std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a,
     return h;
 }
 
-OptionSpec points_option(std::string meaning) {
-    return {.name = "points", .meaning = std::move(meaning), .maximum = 100'000'000, .extent = true};
+OptionSpec points_option(std::string_view meaning) {
+    return {count_field("points", 1, 1e8, "", meaning), true};
 }
 
 std::int64_t points_asked(const DesignRequest& request) {

@@ -4,6 +4,7 @@
 // campaign can be extended without renumbering.
 #pragma once
 
+#include "solver/field.hpp"
 #include "solver/scenes/values.hpp"
 #include "sweep/designs/curve_place.hpp"
 #include "sweep/designs/factor.hpp"
@@ -27,25 +28,21 @@ using Rows = std::vector<std::vector<Value>>;
 
 using OptionValue = std::variant<std::int64_t, std::string, std::vector<std::int64_t>, Rows, double>;
 
-/// Option of a design. The campaign reader checks against it; `grainsweep designs` and the JSON schema print it.
-struct OptionSpec {
-    /// counts: one whole number, or one per factor; number: a real number; factor: name of a factor with a range;
-    /// observable: name of a scalar of the scene.
-    enum class Kind { count, word, counts, rows, number, factor, observable };
-    std::string name;
-    std::string meaning;
-    Kind kind = Kind::count;
-    std::optional<OptionValue> default_value = {};  ///< empty: required
-    std::int64_t minimum = 1;                       ///< of a count
-    std::int64_t maximum = 1'000'000'000'000;
-    std::vector<std::string_view> words = {};  ///< of a word
+/// Option of a design: its key in the campaign file. The kind `value` stands for one whole number or one per factor, an
+/// array for rows of values.
+struct OptionSpec : Field {
+    /// Names that a text must be: of factors with a range, or of scalars of the scene.
+    enum class Names { any, factors, observables };
     /// Whether the option is the extent of the design, not a part of its identity; a campaign may increase it if the
     /// design is extensible.
     bool extent = false;
-    Interval bounds = {};  ///< of a number
+    Names names = Names::any;
     /// The identity of a campaign states the option only where it differs from its default: campaigns that are older
     /// than the option stay the same.
     bool silent_by_default = false;
+
+    /// Returns the default; empty: the option is required, or the user may give a file instead.
+    [[nodiscard]] std::optional<OptionValue> default_value() const;
 };
 
 struct PointSet;
@@ -149,6 +146,8 @@ struct DesignInfo {
 [[nodiscard]] const DesignInfo* find_design(std::string_view name);
 /// Returns the design of an existing name. Throws std::logic_error for any other name.
 [[nodiscard]] const DesignInfo& design_named(std::string_view name);
+/// Adds the defaults of options that are missing.
+void add_defaults(const DesignInfo& design, std::map<std::string, OptionValue, std::less<>>& options);
 /// Returns the number of independent sequences of the request's design; 1 if there are none.
 [[nodiscard]] std::int64_t independent_sequences(std::string_view design, const DesignRequest& request);
 

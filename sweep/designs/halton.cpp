@@ -4,6 +4,7 @@
 #include "sweep/designs/kinds.hpp"
 #include "sweep/designs/radical_inverse.hpp"
 
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -72,6 +73,9 @@ PointSet halton_points(const DesignRequest& request) {
 }  // namespace
 
 DesignInfo halton_design() {
+    constexpr double largest_in_json = 9'007'199'254'740'991;  // 2^53 - 1
+    static constexpr auto scrambles =
+        std::to_array<std::string_view>({"none", "braaten_weller", "braaten_weller_vc2006", "random"});
     return {
         .name = "halton",
         .summary =
@@ -80,29 +84,18 @@ DesignInfo halton_design() {
             "'braaten_weller' 0.144 (sobol 0.064, random points 0.17). With 8 random sequences every statistic has "
             "an honest error bar, and mean, sd and kurtosis of a smooth response are known to 1 % at about 2400 "
             "points. It serves 1000 factors at most.",
-        .options =
-            {points_option("number of points, all sequences together"),
-             {.name = "scramble",
-              .meaning =
-                  "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "
-                  "braaten_weller_vc2006: the table of Vandewoestyne & Cools 2006 (16 factors); "
-                  "random: an independent permutation per digit, from the campaign's seed",
-              .kind = OptionSpec::Kind::word,
-              .default_value = std::string("random"),
-              .maximum = 1,
-              .words = {"none", "braaten_weller", "braaten_weller_vc2006", "random"}},
-             {.name = "sequences",
-              .meaning = "independently scrambled sequences that advance together ('random' only); the "
-                         "convergence rule 'replicates' needs at least 4, 8 are recommended",
-              .default_value = std::int64_t{1},
-              .maximum = 10'000},
-             {.name = "first",
-              .meaning = "index of the first point (unscrambled, index 0 is the corner where every factor is "
-                         "at its low end)",
-              .default_value = std::int64_t{1},
-              .minimum = 0,
-              .maximum = 9'007'199'254'740'991,  // 2^53 - 1, the largest whole number of every JSON
-              .words = {}}},
+        .options = {points_option("number of points, all sequences together"),
+                    {{"scramble", Field::Kind::word,
+                      "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "
+                      "braaten_weller_vc2006: the table of Vandewoestyne & Cools 2006 (16 factors); "
+                      "random: an independent permutation per digit, from the campaign's seed",
+                      R"("random")", any_number, scrambles}},
+                    {count_field("sequences", 1, 1e4, "1",
+                                 "independently scrambled sequences that advance together ('random' only); the "
+                                 "convergence rule 'replicates' needs at least 4, 8 are recommended")},
+                    {count_field("first", 0, largest_in_json, "1",
+                                 "index of the first point (unscrambled, index 0 is the corner where every factor is "
+                                 "at its low end)")}},
         .extends = true,
         .independent_sequences = true,
         .size = points_asked,

@@ -12,8 +12,14 @@ enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol 
 [[nodiscard]] std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a, std::uint64_t b = 0,
                                      std::uint64_t c = 0);
 
+inline constexpr Interval any_number{};
+/// Returns the field of a whole number; without a default it is required.
+[[nodiscard]] constexpr Field count_field(std::string_view name, double low, double high, std::string_view standard,
+                                          std::string_view meaning) {
+    return {name, Field::Kind::whole, meaning, standard, {low, high}, {}, standard.empty()};
+}
 /// Returns the option "points" of sampling designs.
-[[nodiscard]] OptionSpec points_option(std::string meaning);
+[[nodiscard]] OptionSpec points_option(std::string_view meaning);
 /// Returns the value of this option.
 [[nodiscard]] std::int64_t points_asked(const DesignRequest& request);
 

@@ -77,11 +77,9 @@ DesignInfo latin_hypercube_design() {
                 "kurtosis and g1 together, random halton 650). With candidates its points keep their distance, as "
                 "models of a response like it.",
             .options = {points_option("number of points"),
-                        {.name = "candidates",
-                         .meaning = "hypercubes drawn; the one whose nearest two points are farthest apart is taken",
-                         .default_value = std::int64_t{1},
-                         .maximum = most_hypercubes,
-                         .silent_by_default = true}},
+                        {count_field("candidates", 1, most_hypercubes, "1",
+                                     "hypercubes drawn; the one whose nearest two points are farthest apart is taken"),
+                         false, OptionSpec::Names::any, true}},
             .size = points_asked,
             .sample = latin_hypercube_points};
 }

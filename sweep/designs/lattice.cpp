@@ -4,6 +4,7 @@
 // declares its levels takes those: (i + 1/2)/k, which its map floor(k u) turns into level i exactly.
 #include "sweep/designs/kinds.hpp"
 
+#include <array>
 #include <stdexcept>
 
 namespace grainsweep::designs {
@@ -87,26 +88,23 @@ PointSet lattice_points(const DesignRequest& request) {
 }  // namespace
 
 DesignInfo lattice_design() {
+    constexpr Interval level_counts{1, 1e6};
+    static constexpr auto placements = std::to_array<std::string_view>({"endpoints", "centred"});
     return {.name = "lattice",
             .summary =
                 "Every combination of levels, the last factor fastest: for maps, figures and factors that are "
                 "words. Points grow as levels^factors, and with placement 'endpoints' the spread of an evenly "
                 "varied factor comes out too large by sqrt((k+1)/(k-1)): 10.6 % at k = 10 levels; for "
                 "statistics take 'centred', or better a halton design.",
-            .options = {{.name = "levels",
-                         .meaning = "one number for all factors, or one per factor; not needed where every factor "
-                                    "declares its levels",
-                         .kind = OptionSpec::Kind::counts,
-                         .default_value = std::vector<std::int64_t>{},
-                         .maximum = 1'000'000,
-                         .extent = true},
-                        {.name = "placement",
-                         .meaning = "endpoints: i/(k-1), the ends of the range included; centred: (i + 1/2)/k, the "
-                                    "middles of k equal cells",
-                         .kind = OptionSpec::Kind::word,
-                         .default_value = std::string("endpoints"),
-                         .maximum = 1,
-                         .words = {"endpoints", "centred"}}},
+            .options = {{{"levels", Field::Kind::value,
+                          "one number for all factors, or one per factor; not needed where every factor declares its "
+                          "levels",
+                          "", level_counts},
+                         true},
+                        {{"placement", Field::Kind::word,
+                          "endpoints: i/(k-1), the ends of the range included; centred: (i + 1/2)/k, the middles of k "
+                          "equal cells",
+                          R"("endpoints")", any_number, placements}}},
             .beginning = Beginning::corner,
             .size = lattice_size,
             .sample = lattice_points};

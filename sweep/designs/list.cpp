@@ -32,12 +32,10 @@ DesignInfo list_design() {
             .summary =
                 "The rows you give, in physical values, one column a factor: validation series, corner cases, "
                 "points of another program. Statistics over a list describe the list, not the ranges.",
-            .options = {{.name = "rows",
-                         .meaning = "rows of values, one a factor in the order of 'factors'; or give \"file\": a CSV "
-                                    "beside the campaign file",
-                         .kind = OptionSpec::Kind::rows,
-                         .maximum = 100'000'000,
-                         .extent = true}},
+            .options = {{{"rows", Field::Kind::array,
+                          "rows of values, one a factor in the order of 'factors'; or give \"file\": a CSV beside the "
+                          "campaign file"},
+                         true}},
             .extends = true,
             .beginning = Beginning::listed,
             .size = [](const DesignRequest& request) { return static_cast<std::int64_t>(rows_of(request).size()); },

@@ -14,7 +14,7 @@ namespace grainsweep::designs {
 namespace {
 
 constexpr std::size_t pair = 2;  // repeats asked at once
-constexpr std::int64_t most_repeats = 1000;
+constexpr double most_repeats = 1000;
 constexpr std::size_t most_halvings = 50;  // beyond them no double lies between the ends of the bracket
 
 /// When a level is decided, and when a bracket is narrow enough.
@@ -221,29 +221,24 @@ std::vector<Bracket> brackets(const DesignRequest& request) {
 }
 
 DesignInfo refine_design() {
-    const auto option = [](std::string name, OptionSpec::Kind kind, std::string meaning) {
-        return OptionSpec{.name = std::move(name), .meaning = std::move(meaning), .kind = kind};
-    };
-    using Kind = OptionSpec::Kind;
-    auto width = option("width", Kind::number, "width of the bracket, in the unit of the factor, at which it is done");
-    width.bounds = {0, std::numeric_limits<double>::infinity(), true, true};
+    using enum OptionSpec::Names;
+    using Kind = Field::Kind;
     return {
         .name = "refine",
         .summary =
             "Where an answer passes a threshold along one factor, for every combination of the levels of the "
             "others: bisection with repeats, round by round. A passage within 1/128 of the range takes 9 runs of a "
             "response without scatter, where an even lattice takes 129.",
-        .options = {option("factor", Kind::factor, "the factor along which the threshold is passed"),
-                    option("observable", Kind::observable, "the scalar that passes it"),
-                    option("threshold", Kind::number, "the value it passes, in its unit"),
-                    width,
-                    {.name = "replicates",
-                     .meaning = "repeats of a level at most, with other seeds: two, then two more at a time, until "
-                                "the 95 % interval of their mean excludes the threshold; 1: every level is run "
-                                "once and decides as it is",
-                     .kind = Kind::count,
-                     .default_value = std::int64_t{1},
-                     .maximum = most_repeats}},
+        .options = {{needed({"factor", Kind::text, "the factor along which the threshold is passed"}), false, factors},
+                    {needed({"observable", Kind::text, "the scalar that passes it"}), false, observables},
+                    {needed({"threshold", Kind::number, "the value it passes, in its unit"})},
+                    {needed({"width", Kind::number,
+                             "width of the bracket, in the unit of the factor, at which it is done", "",
+                             positive_number})},
+                    {count_field("replicates", 1, most_repeats, "1",
+                                 "repeats of a level at most, with other seeds: two, then two more at a time, until "
+                                 "the 95 % interval of their mean excludes the threshold; 1: every level is run once "
+                                 "and decides as it is")}},
         .grows = true,
         .brackets = true,
         .rests_on = [](const DesignRequest& request) { return std::vector{request.word("observable")}; },

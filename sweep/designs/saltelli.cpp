@@ -53,10 +53,8 @@ DesignInfo saltelli_design() {
                 "counted as factors. First-order "
                 "indices alone need no such design: any halton campaign gives them about ten times more accurately at "
                 "equal cost.",
-            .options = {{.name = "base_points",
-                         .meaning = "number of base rows; each costs factors + 2 cases",
-                         .maximum = 10'000'000,
-                         .extent = true}},
+            .options = {{count_field("base_points", 1, 1e7, "", "number of base rows; each costs factors + 2 cases"),
+                         true}},
             .extends = true,
             .purpose = Purpose::saltelli,
             .size = saltelli_size,

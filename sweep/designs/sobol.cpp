@@ -7,6 +7,7 @@
 #include "stats/sobol_sequence.hpp"
 #include "sweep/designs/kinds.hpp"
 
+#include <array>
 #include <stdexcept>
 
 namespace grainsweep::designs {
@@ -46,23 +47,19 @@ PointSet sobol_points(const DesignRequest& request) {
 }  // namespace
 
 DesignInfo sobol_design() {
+    static constexpr auto scrambles = std::to_array<std::string_view>({"none", "random"});
     return {.name = "sobol",
             .summary =
                 "The most even coverage where the number of points per sequence is a power of two; in between, random "
                 "halton is as good. Worst two-dimensional projection of 8 factors at 100 points (star discrepancy, "
                 "smaller is more even): 0.064 (random halton 0.079).",
             .options = {points_option("number of points, all sequences together; best a power of two per sequence"),
-                        {.name = "scramble",
-                         .meaning = "none: begins in the corner where every factor is at its low end; random: Owen's "
-                                    "nested uniform scrambling from the campaign's seed",
-                         .kind = OptionSpec::Kind::word,
-                         .default_value = std::string("random"),
-                         .maximum = 1,
-                         .words = {"none", "random"}},
-                        {.name = "sequences",
-                         .meaning = "independently scrambled sequences that advance together ('random' only)",
-                         .default_value = std::int64_t{1},
-                         .maximum = 10'000}},
+                        {{"scramble", Field::Kind::word,
+                          "none: begins in the corner where every factor is at its low end; random: Owen's nested "
+                          "uniform scrambling from the campaign's seed",
+                          R"("random")", any_number, scrambles}},
+                        {count_field("sequences", 1, 1e4, "1",
+                                     "independently scrambled sequences that advance together ('random' only)")}},
             .extends = true,
             .independent_sequences = true,
             .size = points_asked,

@@ -118,8 +118,7 @@ double number_along(const ModelFactor& factor, double u) {
 
 designs::PointSet sobol_points(designs::DesignRequest request) {
     const auto& design = designs::design_named("sobol");
-    for (const auto& option : design.options)
-        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
+    designs::add_defaults(design, request.options);
     return design.sample(request);
 }
 

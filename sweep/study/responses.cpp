@@ -100,9 +100,8 @@ private:
 /// The points of a campaign's design; none where its rows were listed, or followed from answers.
 designs::PointSet points_of_design(const Responses& responses) {
     const auto& design = responses.design();
-    const bool listed = std::ranges::any_of(design.options, [](const designs::OptionSpec& option) {
-        return option.kind == designs::OptionSpec::Kind::rows;
-    });
+    const bool listed = std::ranges::any_of(
+        design.options, [](const designs::OptionSpec& option) { return option.kind == Field::Kind::array; });
     if (listed || design.grows || !design.sample) return {};
     return design.sample(campaign::request_of(responses.campaign));
 }

@@ -21,8 +21,7 @@ inline designs::DesignRequest calibration_request(std::size_t dimensions,
                                                   const std::vector<designs::MeasuredTarget>& targets,
                                                   Options options = {}, std::uint64_t seed = 1) {
     options.insert_or_assign("targets", designs::text_of(targets));
-    for (const auto& option : designs::design_named("calibration").options)
-        if (option.default_value) options.try_emplace(option.name, *option.default_value);
+    designs::add_defaults(designs::design_named("calibration"), options);
     designs::DesignRequest request{
         .levels = std::vector<std::size_t>(dimensions, 0), .options = std::move(options), .seed = seed};
     for (std::size_t j = 0; j < dimensions; ++j) {

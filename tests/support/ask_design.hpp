@@ -16,8 +16,7 @@ inline designs::PointSet ask_design(const std::string& kind, std::vector<std::si
     const designs::DesignInfo* info = designs::find_design(kind);
     if (info == nullptr) throw std::runtime_error("no design " + kind);
     designs::DesignRequest request{.levels = std::move(levels), .options = options, .seed = seed};
-    for (const auto& option : info->options)
-        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
+    designs::add_defaults(*info, request.options);
     return info->sample(request);
 }
 

@@ -10,7 +10,7 @@ TEST(Catalogue, EveryKindSaysWhatItIsAndExtendsWhereItClaims) {
     for (const auto& info : designs::design_catalogue()) {
         EXPECT_GT(info.summary.size(), 60U) << info.name;
         if (info.name == "list" || info.name == "lattice" || info.grows) continue;
-        const std::string counter = info.options.front().name;  // the required count
+        const std::string counter(info.options.front().name);  // the required count
         const auto few = ask_design(info.name, 3, {{counter, 16}}, 9);
         const auto many = ask_design(info.name, 3, {{counter, 64}}, 9);
         EXPECT_GT(many.size(), few.size());
@@ -30,16 +30,15 @@ TEST(Catalogue, TheSizeIsThatOfTheSample) {
             request.levels[1] = 2;
             request.factors[1].range = designs::Levels{{0.0, 1.0}};
         }
+        designs::add_defaults(info, request.options);
         for (const auto& option : info.options) {
-            if (option.default_value) request.options[option.name] = *option.default_value;
-            if (option.kind == designs::OptionSpec::Kind::count && option.extent)
-                request.options[option.name] = std::int64_t{24};
-            if (option.kind == designs::OptionSpec::Kind::counts) request.options[option.name] = std::int64_t{4};
-            if (option.kind == designs::OptionSpec::Kind::rows)
-                request.options[option.name] = designs::Rows(5, std::vector<Value>(3, Value{0.5}));
-            if (option.kind == designs::OptionSpec::Kind::number) request.options[option.name] = 0.5;
-            if (option.kind == designs::OptionSpec::Kind::factor) request.options[option.name] = std::string("a");
-            if (option.name == "observable") request.options[option.name] = std::string("y");
+            auto& value = request.options[std::string(option.name)];
+            if (option.kind == Field::Kind::whole && option.extent) value = std::int64_t{24};
+            if (option.kind == Field::Kind::value) value = std::int64_t{4};
+            if (option.kind == Field::Kind::array) value = designs::Rows(5, std::vector<Value>(3, Value{0.5}));
+            if (option.kind == Field::Kind::number) value = 0.5;
+            if (option.names == designs::OptionSpec::Names::factors) value = std::string("a");
+            if (option.names == designs::OptionSpec::Names::observables) value = std::string("y");
         }
         const auto points = info.sample(request);
         EXPECT_EQ(info.size(request), static_cast<std::int64_t>(points.size())) << info.name;
