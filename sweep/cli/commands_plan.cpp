@@ -469,8 +469,12 @@ struct PlanRequest {
     bool probe = false;
 };
 
-/// Returns the seconds of all waves; 0 if the campaign is no calibration.
-double plan_one(const PlanRequest& request, std::string_view experiment, Format format) {
+struct Planned {
+    Campaign campaign;
+    Outlook outlook;
+};
+
+Planned planned(const PlanRequest& request, std::string_view experiment) {
     const auto& config = request.config;
     auto database = request.database;
     Campaign campaign = read_with_program(config, experiment);
@@ -482,24 +486,30 @@ double plan_one(const PlanRequest& request, std::string_view experiment, Format 
     auto outlook =
         campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr, request.probe); });
     outlook.database = database;
-    if (format == Format::text) show_plan(campaign, outlook);
-    if (format == Format::json) write_json(campaign, outlook);
-    if (format == Format::csv) write_csv(campaign, outlook);
-    const auto course = campaign::longest_course(campaign, outlook.cost);
-    return course ? course->seconds : 0;
+    return {std::move(campaign), std::move(outlook)};
+}
+
+void show(const Planned& one, Format format) {
+    if (format == Format::text) show_plan(one.campaign, one.outlook);
+    if (format == Format::json) write_json(one.campaign, one.outlook);
+    if (format == Format::csv) write_csv(one.campaign, one.outlook);
 }
 
 int plan(const PlanRequest& request, Format format) {
-    auto experiments = campaign::read_experiment_names(request.config);
-    if (experiments.empty()) return plan_one(request, "", format), 0;
+    const auto experiments = campaign::read_experiment_names(request.config);
+    if (experiments.empty()) return show(planned(request, ""), format), 0;
     if (format == Format::csv)
         throw campaign::input_error("--format", "csv",
                                     "the experiments have different columns; text and json show all");
+    std::vector<Planned> all;  // every one is checked before the first is printed
+    for (const auto& experiment : experiments) all.push_back(planned(request, experiment));
     double seconds = 0;
-    for (std::size_t k = 0; k < experiments.size(); ++k) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
         if (format == Format::json) std::cout << (k == 0 ? "[" : ",");
         if (format == Format::text && k > 0) std::cout << '\n';
-        seconds += plan_one(request, experiments[k], format);
+        show(all[k], format);
+        const auto course = campaign::longest_course(all[k].campaign, all[k].outlook.cost);
+        seconds += course ? course->seconds : 0;
     }
     std::cout << (format == Format::json
                       ? "]\n"

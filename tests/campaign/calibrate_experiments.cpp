@@ -188,6 +188,8 @@ TEST(CalibrateExperiments, RefuseInOneSentence) {
     asked = config();
     asked["calibration"]["experiments"]["rate"]["fixed"]["x33"] = 1;
     EXPECT_THAT(refusal(folder, asked), HasSubstr("$.calibration.experiments.rate.fixed.x33"));
+    const auto planned = run_program({"plan", "c.json", "--format", "json"}, folder.path());
+    EXPECT_EQ(json::parse(planned.out)["error"]["code"], 2) << "no list is begun: " << planned.out;
     asked = config();
     asked["calibration"]["experiments"]["rate"].erase("scene");
     EXPECT_THAT(refusal(folder, asked), HasSubstr("an experiment has a \"scene\""));
