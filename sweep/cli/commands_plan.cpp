@@ -489,7 +489,7 @@ Planned planned(const PlanRequest& request, std::string_view experiment) {
     return {std::move(campaign), std::move(outlook)};
 }
 
-void show(const Planned& one, Format format) {
+void show_planned(const Planned& one, Format format) {
     if (format == Format::text) show_plan(one.campaign, one.outlook);
     if (format == Format::json) write_json(one.campaign, one.outlook);
     if (format == Format::csv) write_csv(one.campaign, one.outlook);
@@ -497,7 +497,7 @@ void show(const Planned& one, Format format) {
 
 int plan(const PlanRequest& request, Format format) {
     const auto experiments = campaign::read_experiment_names(request.config);
-    if (experiments.empty()) return show(planned(request, ""), format), 0;
+    if (experiments.empty()) return show_planned(planned(request, ""), format), 0;
     if (format == Format::csv)
         throw campaign::input_error("--format", "csv",
                                     "the experiments have different columns; text and json show all");
@@ -507,7 +507,7 @@ int plan(const PlanRequest& request, Format format) {
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (format == Format::json) std::cout << (k == 0 ? "[" : ",");
         if (format == Format::text && k > 0) std::cout << '\n';
-        show(all[k], format);
+        show_planned(all[k], format);
         const auto course = campaign::longest_course(all[k].campaign, all[k].outlook.cost);
         seconds += course ? course->seconds : 0;
     }
