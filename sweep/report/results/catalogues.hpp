@@ -46,7 +46,7 @@ inline constexpr auto observable = std::to_array<Field>({
     {"over", text, "axis of a profile; empty: none"},
 });
 inline constexpr auto accuracy_settings =
-    std::to_array<Field>({holding({"NAME", object, "inputs of an accuracy setting"}, input_values)});
+    std::to_array<Field>({{"NAME", object, "values of the inputs that an accuracy setting decides"}});
 inline constexpr auto section_key = std::to_array<Field>({
     {"object", text, "object of the file"},
     {"key", text, "key of the object"},
