@@ -467,8 +467,10 @@ std::span<const Field> top() {
         holding({"shaking", MachineKey::object, "the machine vibrates as a whole; everything is in its frame"},
                 shaking_keys),
         Field{"rest_speed", MachineKey::quantity,
-              "m/s: powder slower than this for 256 time steps, with nothing faster near and no net force of half its "
-              "weight, is not advanced; only in precision mixed, without moving walls and shaking",
+              "m/s: powder slower than this for 256 time steps, and as long as a free fall takes to turn that speed "
+              "around, "
+              "with nothing faster near and no net force of half its weight, is not advanced; only in precision mixed, "
+              "without moving walls and shaking",
               "0"},
         Field{
             "impact_speed", MachineKey::quantity,

@@ -58,7 +58,7 @@ struct Seal {
     Shaking shaking;
     double rest_speed;
 };
-inline constexpr std::uint64_t checkpoint_format = 0x6773776565703230;  // changes with the layout of the bytes that
+inline constexpr std::uint64_t checkpoint_format = 0x6773776565703231;  // changes with the layout of the bytes that
                                                                         // follow
 
 }  // namespace grainsweep::dem::fast

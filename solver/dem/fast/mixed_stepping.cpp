@@ -112,13 +112,16 @@ void MixedEngine::take_parts() {
         leave_over(field_, i, residual);
     }
     const auto& memory = laws_.front()->traits().memory;
+    std::vector<float> converted(memory.size(), 1);
     for (std::size_t m = 0; m < memory.size(); ++m) {
         const auto of_unit =
             static_cast<float>(unit_of(memory[m].dimension, old) / unit_of(memory[m].dimension, space_.scale));
+        converted[m] = of_unit;
         if (of_unit == 1) continue;
         for (auto* column : {&columns_.history[m], &columns_.wall_history[m], &columns_.touch_memory[m]})
             for (std::size_t k = 0; k < column->capacity(); ++k) (*column)[k] *= of_unit;
     }
+    resting_.convert_parked(factor * factor, converted);
     restart_forces();
     watch_.restart_balance();
 }
@@ -132,6 +135,7 @@ void MixedEngine::use_parts() {
     write_pair_laws();
     walls_.use_scale(space_.scale, table_);
     watch_.use_scale(space_.scale);
+    resting_.use_scale(space_.scale, rest_speed_, geometry::norm(gravity_));
     resolved_ = resolved_in_parts_[static_cast<std::size_t>(control_.state().halvings)];
     if (!contacts_differ_) sound_ = resolved_;
 }

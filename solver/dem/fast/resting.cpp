@@ -12,9 +12,14 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-/// Steps for which a particle must have been slow: a steady net force would have made it faster than the rest speed
-/// meanwhile.
-constexpr std::int64_t quiet_time = 256;
+/// Steps for which a particle must have been slow. A net force of half its weight would have made it faster than the
+/// rest speed meanwhile, and so would its weight on the way up and down again.
+constexpr double least_quiet_time = 256, most_quiet_time = 0x1p31;
+std::int64_t quiet_time_of(double speed, double gravity) {
+    const double turned = gravity > 0 ? std::ceil(2 * speed / gravity) + 1 : 0;
+    return static_cast<std::int64_t>(std::clamp(turned, least_quiet_time, most_quiet_time));
+}
+
 /// Net force, of the weight, above which a particle is advanced again.
 constexpr double imbalance = 0.5;
 /// Impacts of particles that are faster than the rest speed by this factor reach so many layers behind the particles in
@@ -54,13 +59,26 @@ std::pair<std::size_t, std::size_t> pair_at(const Columns& c, std::size_t o) {
 
 }  // namespace
 
-Resting::Resting(const Setup& setup, const PairContacts& laws, const Scale& scale, double rest_speed)
-    : laws_(&laws),
-      speed_(rest_speed / scale.speed()),
-      gravity_(geometry::norm(setup.gravity) * scale.time * scale.time / scale.length) {
+Resting::Resting(const Setup& setup, const PairContacts& laws, const Scale& scale, double rest_speed) : laws_(&laws) {
+    use_scale(scale, rest_speed, geometry::norm(setup.gravity));
     if (!wanted()) return;
     for (const Sphere& sphere : setup.spheres) held_.push_back(sphere.mobile ? 0 : 1);
     quiet_.resize(held_.size());
+}
+
+void Resting::use_scale(const Scale& scale, double rest_speed, double gravity) {
+    speed_ = rest_speed / scale.speed();
+    gravity_ = gravity * scale.time * scale.time / scale.length;
+    quiet_time_ = quiet_time_of(speed_, gravity_);
+}
+
+void Resting::convert_parked(float force, std::span<const float> memory) {
+    for (ParkedContact& p : parked_) {
+        for (float& f : p.force) f *= force;
+        for (auto& torque : p.torque)
+            for (float& t : torque) t *= force;
+        for (std::size_t m = 0; m < memory.size(); ++m) p.history[m] *= memory[m];
+    }
 }
 
 bool Resting::fits(std::int32_t particles) const {
@@ -73,7 +91,7 @@ bool Resting::fits(std::int32_t particles) const {
 
 void Resting::advance_all(const Field& f) {
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = is_mobile(f, i) ? 0 : 1;
-    std::ranges::fill(quiet_, std::uint16_t{0});
+    std::ranges::fill(quiet_, 0U);
 }
 
 void Resting::advance_also(std::size_t count) {
@@ -137,8 +155,8 @@ void Resting::measure_motion(const Field& f) {
         const auto radius = static_cast<double>(r.radius);
         const double speed = std::max(square(r.velocity), radius * radius * square(r.spin));
         if (speed > slow) disturbs_[i] = speed > fast ? 1 + layers : 1;
-        const std::int64_t quiet = speed > slow ? 0 : std::min(quiet_[i] + steps_, quiet_time);
-        quiet_[i] = static_cast<std::uint16_t>(quiet);
+        const std::int64_t quiet = speed > slow ? 0 : std::min(quiet_[i] + steps_, quiet_time_);
+        quiet_[i] = static_cast<std::uint32_t>(quiet);
     }
 }
 
@@ -169,7 +187,7 @@ void Resting::decide(Field& f) {
         if (held_[i] != 0 && (pushed_[i] != 0 || disturbed_[i] != 0)) {
             held_[i] = 0;
             quiet_[i] = 0;
-        } else if (held_[i] == 0 && quiet_[i] >= quiet_time && disturbed_[i] == 0) {
+        } else if (held_[i] == 0 && quiet_[i] >= quiet_time_ && disturbed_[i] == 0) {
             held_[i] = 1;
             stop(f, static_cast<std::int32_t>(i));
         }

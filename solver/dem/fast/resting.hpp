@@ -3,9 +3,11 @@
 // A pair of two particles that are not advanced is not listed, so it costs time only in a rebuild. For all other
 // particles, a particle at rest is a partner of the same mass as before. Every rebuild decides:
 //
-//   rests     a particle slower than the rest speed, v and |w| R, for 256 steps, with no faster body within the outer
-//             list: nothing that moves can touch it before the next rebuild. Around a body 30 times faster, two more
-//             layers of contacts stay advanced, to absorb its impact
+//   rests     a particle slower than the rest speed, v and |w| R, for 256 steps and as long as a free fall takes to
+//   turn
+//             that speed around, with no faster body within the outer list: nothing that moves can touch it before the
+//             next rebuild. Around a body 30 times faster, two more layers of contacts stay advanced, to absorb its
+//             impact
 //   advanced  again, when a faster body comes within the outer list, or when the net force on the particle, or the net
 //             torque divided by R, averaged since the last rebuild, exceeds half its weight
 //
@@ -35,6 +37,10 @@ public:
     Resting(const Setup& setup, const PairContacts& laws, const Scale& scale, double rest_speed);
 
     [[nodiscard]] bool wanted() const { return speed_ > 0; }
+    /// Sets the units; `rest_speed` and `gravity` in SI.
+    void use_scale(const Scale& scale, double rest_speed, double gravity);
+    /// Multiplies the parked forces by `force`, and each of their memories by `memory`, for other units.
+    void convert_parked(float force, std::span<const float> memory);
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
     /// Advances all particles from the next rebuild on.
     void advance_all(const Field& f);
@@ -78,11 +84,12 @@ private:
                                             std::int32_t live) const;
 
     const PairContacts* laws_;
-    double speed_ = 0;    ///< engine's units
-    double gravity_ = 0;  ///< change of velocity per step
+    double speed_ = 0;             ///< engine's units
+    double gravity_ = 0;           ///< change of velocity per step
+    std::int64_t quiet_time_ = 0;  ///< steps for which a particle must have been slow
 
     std::vector<std::uint8_t> held_;    ///< 1: frozen or at rest
-    std::vector<std::uint16_t> quiet_;  ///< steps for which a particle has been slow
+    std::vector<std::uint32_t> quiet_;  ///< steps for which a particle has been slow
     std::vector<ParkedContact> parked_;
     std::int64_t count_ = 0;
     float overlap_ = 0;
