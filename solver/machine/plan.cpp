@@ -282,10 +282,27 @@ void warn_of_scale(const Spec& spec, std::vector<Warning>& warnings) {
         if (bed > 0 && longest > far_larger * bed && longest > many_diameters * largest)
             warnings.push_back(
                 {"a wall far larger than the powder",
-                 wall.name + sentence(" is %.3g m long, and the powder would fill a cube of %.2g m: an STL "
-                                      "file in mm needs \"scale\": \"1 mm\"",
-                                      longest, bed)});
+                 wall.name + sentence(" is %.3g m long, and the powder would fill a cube of %.2g m: ", longest, bed) +
+                     (std::holds_alternative<geometry::Mesh>(wall.shape) ? "an STL file in mm needs \"scale\": \"1 mm\""
+                                                                         : "numbers without a unit are in m")});
     }
+}
+
+/// Warns of positions in mixed precision that are too coarse for overlaps.
+void warn_of_wide_domain(const Spec& spec, std::vector<Warning>& warnings) {
+    constexpr double coarse = 1e-3;  // diameters
+    if (spec.method.precision != dem::Method::Precision::mixed) return;
+    double longest = 0, smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, spec.domain.length(k));
+    for (const Species& species : spec.species) smallest = std::min(smallest, species.finest());
+    const double unit = longest / 0x1p32;
+    if (unit > coarse * smallest)
+        warnings.push_back(
+            {"a domain too wide for mixed precision",
+             sentence(
+                 "in mixed precision positions are multiples of %.2g m, %.2g of the smallest diameter, in a domain "
+                 "%.3g m long: make it smaller, or take precision \"double\"",
+                 unit, unit / smallest, longest)});
 }
 
 /// Warns of phases that wait for rest or for the end of a flow while walls move or particles are fed.
@@ -460,6 +477,7 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     warn_of_feeds(spec, warnings);
     warn_of_walls(spec, warnings);
     warn_of_scale(spec, warnings);
+    warn_of_wide_domain(spec, warnings);
     warn_of_needles(spec, warnings);
     warn_of_phases(spec, warnings);
     warn_of_frames(spec, warnings);

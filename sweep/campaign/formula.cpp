@@ -65,9 +65,15 @@ constexpr auto functions = std::to_array<FunctionRow>({
     {"sin", 1, 1, define_one<std::sin>},
     {"cos", 1, 1, define_one<std::cos>},
     {"tan", 1, 1, define_one<std::tan>},
+    {"asin", 1, 1, define_one<std::asin>},
+    {"acos", 1, 1, define_one<std::acos>},
+    {"atan", 1, 1, define_one<std::atan>},
     {"atan2", 2, 2, define_two<std::atan2>},
     {"pow", 2, 2, define_two<std::pow>},
+    {"log10", 1, 1, define_one<std::log10>},
     {"floor", 1, 1, define_one<std::floor>},
+    {"ceil", 1, 1, define_one<std::ceil>},
+    {"round", 1, 1, define_one<std::round>},
     {"if", 3, 3, [](mu::Parser& p, const std::string& name) { p.DefineFun(name, &chosen); }},
 });
 

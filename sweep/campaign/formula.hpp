@@ -13,9 +13,9 @@
 namespace grainsweep::campaign {
 
 /// Formula of numbers, names, + - * / ^, comparisons (1 or 0), && ||, parentheses, `pi` and the functions
-/// min, max (any number of arguments), abs, sqrt, exp, log (natural), sin, cos, tan (of radians), atan2, pow, floor,
-/// if(condition, value, otherwise). It has no state, and its result does not depend on the locale. Copies share one
-/// formula; any thread may evaluate it.
+/// min, max (any number of arguments), abs, sqrt, exp, log (natural), log10, sin, cos, tan (of radians), asin, acos,
+/// atan, atan2, pow, floor, ceil, round, if(condition, value, otherwise). It has no state, and its result does not
+/// depend on the locale. Copies share one formula; any thread may evaluate it.
 class Formula {
 public:
     using Lookup = std::function<double(std::string_view name)>;

@@ -116,6 +116,10 @@ TEST(Formulas, KnowTheFunctionsOfTheManual) {
     EXPECT_EQ(value_of("tan(pi/4)"), std::tan(std::numbers::pi / 4));
     EXPECT_EQ(value_of("atan2(-1, -2)"), std::atan2(-1.0, -2.0));
     EXPECT_EQ(value_of("pow(2, 0.5)"), std::pow(2.0, 0.5));
+    EXPECT_EQ(value_of("asin(0.5) + acos(0.25)"), std::asin(0.5) + std::acos(0.25));
+    EXPECT_EQ(value_of("atan(2)"), std::atan(2.0));
+    EXPECT_EQ(value_of("log10(1000)"), 3);
+    EXPECT_EQ(value_of("ceil(1.2) + 10*round(2.5)"), 32);
     EXPECT_EQ(value_of("floor(-1.5)"), -2);
     EXPECT_EQ(value_of("floor (2.5)"), 2);
 }
@@ -178,11 +182,10 @@ TEST(Formulas, ThatAreNoneAreRefusedWithTheirPosition) {
 }
 
 TEST(Formulas, OfferNothingElseOfMuParser) {
-    for (const char* text :
-         {"_pi",   "_e",       "x = 2",   "gap = 1", "1 ? 2 : 3", "\"text\"", "sum(1, 2)", "avg(1, 2)",
-          "ln(2)", "log10(2)", "log2(2)", "sign(2)", "rint(2)",   "sinh(1)",  "asin(1)",   "rnd(1)",
-          "0x10",  "0b1",      "!1",      "1 % 2",   "1;2",       "1 << 2",   "~1",        "1\t+1",
-          "1\n+1", "#1",       "gap[1]",  "{1}",     "a.b",       "Sin(1)"})
+    for (const char* text : {"_pi",       "_e",    "x = 2",   "gap = 1", "1 ? 2 : 3", "\"text\"", "sum(1, 2)",
+                             "avg(1, 2)", "ln(2)", "log2(2)", "sign(2)", "rint(2)",   "sinh(1)",  "rnd(1)",
+                             "0x10",      "0b1",   "!1",      "1 % 2",   "1;2",       "1 << 2",   "~1",
+                             "1\t+1",     "1\n+1", "#1",      "gap[1]",  "{1}",       "a.b",      "Sin(1)"})
         EXPECT_FALSE(refusal_of(text).empty()) << text;
 }
 

@@ -87,6 +87,18 @@ TEST(MachinePlan, WarnsOfWallsTooFastForTheStep) {
     EXPECT_EQ(kinds(thrown, {{"time_step", 5e-6}}).count("walls faster than the time step allows"), 1U);
 }
 
+// Of spheres of 2.5 mm: positions are multiples of 1e-3 diameters in a domain 11 km long.
+TEST(MachinePlan, WarnsOfADomainTooWideForMixedPrecision) {
+    const auto domain_to = [](const char* high) {
+        return R"([{"op": "add", "path": "/domain", "value": {"low": [-1, -1, -1], "high": [")" + std::string(high) +
+               R"(", 1, 1]}}])";
+    };
+    const std::string kind = "a domain too wide for mixed precision";
+    EXPECT_FALSE(kinds(domain_to("10 km").c_str()).contains(kind));
+    EXPECT_TRUE(kinds(domain_to("12 km").c_str()).contains(kind));
+    EXPECT_FALSE(kinds(domain_to("12 km").c_str(), {{"precision", "double"}}).contains(kind));
+}
+
 TEST(MachinePlan, WarnsOfAPhaseThatWaitsInVain) {
     const char* fed = R"([{"op": "add", "path": "/feed/0/during", "value": ["fall", "turn"]}])";
     EXPECT_EQ(kinds(fed), Kinds{"a phase that cannot end before its time"});
