@@ -1,5 +1,6 @@
 #include "solver/machine/filling.hpp"
 
+#include "solver/machine/neighbourhood.hpp"
 #include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/particles/near_pairs.hpp"
@@ -63,6 +64,23 @@ public:
                                             sentence("%.4g, %.4g, %.4g) m: give them regions apart", centres[i][0],
                                                      centres[i][1], centres[i][2]));
         });
+    }
+
+    /// Throws if particles stand deep in those that were there.
+    void require_apart_from_present() const {
+        constexpr double deep = 0.2;  // of a radius
+        double largest = 0;
+        for (const double radius : present_->radius) largest = std::max(largest, 2 * radius);
+        Neighbourhood near(spec_.domain, largest);
+        for (std::size_t i = 0; i < present_->id.size(); ++i) near.add(present_->position[i], present_->radius[i]);
+        for (std::size_t i = 0; i < into_.spheres.size(); ++i) {
+            const Vec3& x = into_.spheres[i].position;
+            require(!near.occupied(x, (1 - deep) * into_.spheres[i].radius),
+                    spec_.species[into_.species[i]].name +
+                        sentence(": the filling of this phase puts a particle into one that is there, at (%.4g, %.4g, "
+                                 "%.4g) m: give it \"on_top\" or a region that is empty then",
+                                 x[0], x[1], x[2]));
+        }
     }
 
 private:
@@ -397,6 +415,7 @@ Filled filled_later(const Spec& spec, std::uint64_t seed, std::size_t phase, con
     Filler filler(spec, seed, nullptr, all);
     filler.continue_at(phase, present, walls, time);
     filler.fill();
+    filler.require_apart_from_present();
     return all;
 }
 

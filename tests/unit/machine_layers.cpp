@@ -113,6 +113,16 @@ TEST(MachineLayers, WallsStartAnewAndFillingsComeAgain) {
     }
 }
 
+TEST(MachineLayers, AFillingIntoThePowderThatIsThereSaysSo) {
+    json machine = sound_rake();
+    machine["fill"][0]["on_top"] = false;
+    machine["fill"][0]["in"]["box"]["low"][2] = 0;
+    machine::Run run(spec_of(machine), 5);
+    while (!run.finished() && run.health().stable()) run.advance(1e9);
+    EXPECT_THAT(run.health().reason,
+                HasSubstr("sand: the filling of this phase puts a particle into one that is there"));
+}
+
 TEST(MachineLayers, CellsHoldParticlesThatDoNotTouch) {
     const auto spec = spec_of(sound_rake());
     const auto run = machine::Run(spec, 5).snapshot();
