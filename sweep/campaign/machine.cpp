@@ -176,6 +176,7 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     read_feeds(top, reading);
     read_measures(top, reading);
     read_phases(top, reading);
+    check_motions(top, reading);
     if (reading.spec.fills.empty() && reading.spec.feeds.empty())
         throw input_error(top.place().path(), "", "a machine needs particles: \"fill\" or \"feed\"");
     read_surroundings(top, reading);

@@ -139,7 +139,7 @@ geometry::LoadCourse read_load(const Section& motion, std::string_view name, std
     return std::make_shared<const std::vector<geometry::LoadAt>>(std::move(course));
 }
 
-std::vector<machine::WallMotion> read_follow(const Section& motion, const MachineReading& reading) {
+std::vector<machine::WallMotion> read_follow(const Section& motion, MachineReading& reading) {
     const auto& scope = reading.scope;
     if (!scope.present(motion)) return {};
     const Section follow(motion.at("follow"), machine_keys::follow());
@@ -150,6 +150,7 @@ std::vector<machine::WallMotion> read_follow(const Section& motion, const Machin
         if (const auto place = motion.find(type.name)) place->refuse("beside \"follow\": a motion is one of the two");
     const auto from = motion.find("from");
     const double start = from ? scope.number(*from, "s", no_negative_number) : 0;
+    reading.timed.emplace_back(motion.place().path(), start);
     const Course course = follow.find("times") ? course_of_table(follow, scope) : course_of_expression(follow, scope);
     const std::size_t most = course.turns ? most_turns : most_pieces;
     if (course.times.size() > most + 1) follow.place().refuse(fmt::format("at most {} times are possible", most + 1));

@@ -1,6 +1,7 @@
 // "motion" of a wall.
 #include "sweep/campaign/machine_reading.hpp"
 
+#include "solver/geometry/lines.hpp"
 #include "solver/machine/shapes.hpp"
 
 #include <fmt/format.h>
@@ -77,7 +78,7 @@ std::vector<machine::WhileIn> runs_of(const machine::Phases& phases) {
 
 }  // namespace
 
-void read_motion(const Cursor& place, const MachineReading& reading, machine::MachineWall& wall) {
+void read_motion(const Cursor& place, MachineReading& reading, machine::MachineWall& wall) {
     const auto& scope = reading.scope;
     const Section section(place, machine_keys::motion());
     const bool acts = scope.present(section);
@@ -138,6 +139,8 @@ void read_motion(const Cursor& place, const MachineReading& reading, machine::Ma
     }
     if (const auto flaw = geometry::flaw(motion.motion); !flaw.empty()) place.refuse(flaw);
     if (!acts || geometry::is_still(motion.motion)) return;
+    if (!motion.phases)
+        reading.timed.emplace_back(place.path(), std::visit([](const auto& m) { return m.start; }, motion.motion));
     const std::size_t count = std::max<std::size_t>(1, runs.size());
     for (std::size_t k = 0; k < count; ++k) {
         if (!runs.empty()) motion.phases = runs[k];
@@ -148,6 +151,87 @@ void read_motion(const Cursor& place, const MachineReading& reading, machine::Ma
             motion.motion);
         wall.motions.push_back(motion);
     }
+}
+
+namespace {
+
+/// Returns whether a motion moves the wall along a unit vector.
+bool moves_along(const geometry::Motion& motion, const Vec3& way) {
+    const auto has_part = [&](const Vec3& a) { return std::abs(geometry::dot(a, way)) > 1e-6 * geometry::norm(a); };
+    if (const auto* m = std::get_if<geometry::Translation>(&motion)) return has_part(m->velocity);
+    if (const auto* m = std::get_if<geometry::Vibration>(&motion)) return has_part(m->amplitude);
+    if (const auto* m = std::get_if<geometry::Press>(&motion)) return has_part(m->along);
+    if (const auto* m = std::get_if<geometry::Flight>(&motion))
+        for (std::size_t k = 0; k < 3; ++k)
+            if (std::abs(m->freedom[k] * way[k]) > 1e-6) return true;
+    return false;
+}
+
+bool turns_about(const geometry::Motion& motion, const geometry::Drive& drive) {
+    const auto same_line = [&](const auto& m) {
+        return geometry::parallel(m.axis, drive.axis) && geometry::on_line(m.point, drive.point, drive.axis, 1);
+    };
+    if (const auto* m = std::get_if<geometry::Rotation>(&motion)) return same_line(*m);
+    const auto* m = std::get_if<geometry::Drive>(&motion);
+    return m != nullptr && same_line(*m);
+}
+
+/// Returns why two motions cannot act at the same time; empty: they can.
+std::string contradiction(const geometry::Motion& a, const geometry::Motion& b) {
+    if (const auto* press = std::get_if<geometry::Press>(&a); press != nullptr && moves_along(b, press->along))
+        return std::holds_alternative<geometry::Press>(b)
+                   ? "a wall is pressed along one line by one press at a time; add the forces, or press across"
+                   : "along the line of a press only its force and the powder move a wall; the other motion must lie "
+                     "across it, or act at another time";
+    if (const auto* drive = std::get_if<geometry::Drive>(&a); drive != nullptr && turns_about(b, *drive))
+        return std::holds_alternative<geometry::Drive>(b)
+                   ? "a wall is driven about one axis by one drive; add the torques"
+                   : "about the axis of a drive only its torque and the powder turn a wall; a rotation about it must "
+                     "act at another time";
+    return {};
+}
+
+/// Returns whether two motions act at the same time, however early conditions end the phases.
+bool act_together(const machine::WallMotion& a, const machine::WallMotion& b,
+                  const std::vector<machine::Phase>& phases) {
+    if (a.phases && b.phases) return a.phases->first <= b.phases->last && b.phases->first <= a.phases->last;
+    const auto surely = [&](const machine::WallMotion& one) {
+        double begin = 0, end = one.phases && one.phases->last >= phases.size() ? endless : 0;
+        if (!one.phases) return std::visit([](const auto& m) { return std::pair{m.start, m.end}; }, one.motion);
+        for (std::size_t p = 0; p < phases.size(); ++p) {
+            if (p < one.phases->first) begin += phases[p].duration;
+            if (p <= one.phases->last && phases[p].until.empty()) end += phases[p].duration;
+        }
+        return std::pair{begin, end};
+    };
+    const auto first = surely(a), second = surely(b);
+    return std::max(first.first, second.first) < std::min(first.second, second.second);
+}
+
+}  // namespace
+
+void check_motions(const Section& top, MachineReading& reading) {
+    auto& spec = reading.spec;
+    double end = 0;
+    for (const auto& phase : spec.phases) end += phase.duration;
+    for (const auto& [path, start] : reading.timed)
+        if (!(start < end))
+            spec.warnings.push_back(
+                {"a motion that never starts",
+                 fmt::format("{}: it starts after {:.4g} s, and all phases end after {:.4g} s", path, start, end)});
+    for (std::size_t name = 0; name < reading.walls.size(); ++name)
+        for (const std::size_t number : reading.repeats[name]) {
+            const auto& motions = spec.walls[number].motions;
+            std::string why;
+            for (const auto& a : motions)
+                for (std::size_t k = 0; geometry::is_free(a.motion) && k < motions.size(); ++k)
+                    if (const auto& b = motions[k]; &a != &b && why.empty() && act_together(a, b, spec.phases))
+                        why = contradiction(a.motion, b.motion);
+            std::vector<geometry::Motion> all;
+            for (const auto& one : motions) all.push_back(one.motion);
+            if (why.empty() && !spec.walls[number].again) why = geometry::flaw(all);
+            if (!why.empty()) throw input_error(top.at("walls")[reading.walls[name]]["motion"].path(), "", why);
+        }
 }
 
 }  // namespace grainsweep::campaign

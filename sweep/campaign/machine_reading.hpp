@@ -33,13 +33,14 @@ struct MachineReading {
     std::vector<std::size_t> of_particles;             ///< materials of particles, in the order of Spec::densities
     std::vector<std::vector<dem::Material>> contacts;  ///< by material and material
     std::vector<std::string> species;
-    std::vector<std::string> phases;                ///< names in the file
-    std::vector<machine::Phases> copies;            ///< phases of the Spec for each of them, in their order
-    std::vector<std::string> phase_paths;           ///< in the file, of each phase of the Spec
-    std::vector<std::string> named_particles;       ///< in the order of the fillings
-    std::vector<std::string> walls;                 ///< names in the file
-    std::vector<std::vector<std::size_t>> repeats;  ///< walls of the Spec for each of them
-    std::vector<std::string> measures;              ///< measures with a probe, in the order of the Spec
+    std::vector<std::string> phases;                    ///< names in the file
+    std::vector<machine::Phases> copies;                ///< phases of the Spec for each of them, in their order
+    std::vector<std::string> phase_paths;               ///< in the file, of each phase of the Spec
+    std::vector<std::string> named_particles;           ///< in the order of the fillings
+    std::vector<std::string> walls;                     ///< names in the file
+    std::vector<std::vector<std::size_t>> repeats;      ///< walls of the Spec for each of them
+    std::vector<std::string> measures;                  ///< measures with a probe, in the order of the Spec
+    std::vector<std::pair<std::string, double>> timed;  ///< motions that start at a time: path in the file, s
 
     /// Returns the contents of a file that a text names.
     [[nodiscard]] std::string_view contents(const Cursor& place) const { return scope.contents(place); }
@@ -95,12 +96,14 @@ void settle_rolling_of_shapes(const Section& top, MachineReading& reading);
 [[nodiscard]] geometry::Shape read_shape(const Section& wall, const MachineReading& reading);
 /// Reads a motion of a wall, which has its shape and earlier motions, and appends it: one for each run of successive
 /// phases. A motion that does not act in this case, or moves nothing, is left out.
-void read_motion(const Cursor& place, const MachineReading& reading, machine::MachineWall& wall);
+void read_motion(const Cursor& place, MachineReading& reading, machine::MachineWall& wall);
+/// Refuses motions of one wall that contradict each other, and warns of those that start after all phases.
+void check_motions(const Section& top, MachineReading& reading);
 /// Reads the load of a press or a drive: `constant`, or its course in time.
 [[nodiscard]] geometry::LoadCourse read_load(const Section& motion, std::string_view name, std::string_view unit,
                                              const MachineScope& scope, double& constant);
 /// Reads a motion with "follow" as motions of constant velocity.
-[[nodiscard]] std::vector<machine::WallMotion> read_follow(const Section& motion, const MachineReading& reading);
+[[nodiscard]] std::vector<machine::WallMotion> read_follow(const Section& motion, MachineReading& reading);
 /// Reads the phases of "during"; empty: all.
 [[nodiscard]] machine::Phases read_during(const Section& section, const MachineReading& reading);
 /// Returns the index of a measurement of one value, by its name.

@@ -1,5 +1,5 @@
 // Loads of pressed and driven walls that change with time, against the integral of their course.
-#include "tests/support/machines.hpp"
+#include "tests/support/wrong_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -139,6 +139,66 @@ TEST(MachineLoads, ACheckpointKeepsTheCourse) {
         lone_plate(R"json({"press": {"along": [0, 0, 1], "force": "0.05*sin(20*t)", "every": 0.01, "until": 0.5,
         "mass": 0.1, "speed_at_most": 1, "stiffness": 2, "damping": 0.1}})json");
     expect_same_resumed(machine, 0.2);
+}
+
+/// Refusal of the plate with two motions; "accepted" without one.
+std::string refusal_of_two(std::string first, const std::string& second) {
+    json machine = lone_plate(first.c_str());
+    machine["walls"]["plate"]["motion"].push_back(json::parse(second));
+    return refusal_of(machine);
+}
+
+std::string press(const char* along, const char* when) {
+    return R"({"press": {"force": 0.02, "mass": 0.1, "speed_at_most": 1, "along": )" + std::string(along) + "}, " +
+           when + "}";
+}
+
+// Each press took the whole load: 0.5 N and 2 N gave 1.16 N or 0.76 N.
+TEST(MachineLoads, OnlyOnePressActsAlongALine) {
+    const std::string early = press("[0, 0, -1]", R"("to": "wait")"), late = press("[0, 0, 1]", R"("from": "push")");
+    const std::string always = press("[0, 0, 1]", R"("from": "wait")"),
+                      across = press("[1, 0, 0]", R"("from": "wait")");
+    const std::string sentence =
+        "$.walls.plate.motion: a wall is pressed along one line by one press at a time; add the forces, or press "
+        "across.";
+    EXPECT_EQ(refusal_of_two(always, late), sentence);
+    EXPECT_EQ(refusal_of_two(late, always), sentence);
+    EXPECT_EQ(refusal_of_two(always, press("[0.6, 0, 0.8]", R"("from": "wait")")), sentence);
+    EXPECT_EQ(refusal_of_two(always, press("[0, 0, 1]", R"("from": "0.3 s")")), sentence);
+    EXPECT_EQ(refusal_of_two(early, late), "accepted");
+    EXPECT_EQ(refusal_of_two(always, across), "accepted");
+    EXPECT_EQ(refusal_of_two(early, press("[0, 0, 1]", R"("from": "0.1 s")")), "accepted");
+}
+
+TEST(MachineLoads, AShiftActsAcrossAPressOrAtAnotherTime) {
+    const std::string shift = R"({"shift": {"velocity": [0, 0, 0.1]}, "from": "wait", "to": "wait"})";
+    const std::string sentence =
+        "$.walls.plate.motion: along the line of a press only its force and the powder move a wall; the other motion "
+        "must lie across it, or act at another time.";
+    EXPECT_EQ(refusal_of_two(shift, press("[0, 0, 1]", R"("from": "wait")")), sentence);
+    EXPECT_EQ(refusal_of_two(press("[0, 0, 1]", R"("from": 0)"),
+                             R"({"follow": {"times": [0, 0.1], "positions": [[0, 0, 0], [0, 0, 0.01]]}})"),
+              sentence);
+    EXPECT_EQ(refusal_of_two(shift, press("[1, 0, 0]", R"("from": "wait")")), "accepted");
+    EXPECT_EQ(refusal_of_two(shift, press("[0, 0, 1]", R"("from": "push")")), "accepted");
+}
+
+TEST(MachineLoads, OnlyOneDriveTurnsAWallAboutAnAxis) {
+    const auto turning = [](const char* load, const char* axis, const char* when) {
+        return std::string("{\"") + load + R"(, "axis": )" + axis + "}, " + when + "}";
+    };
+    const char* drive = R"(drive": {"torque": 1e-4, "inertia": 1e-5, "speed_at_most": 10)";
+    const char* rotate = R"(rotate": {"speed": 1)";
+    const std::string driven = turning(drive, "[0, 0, 1]", R"("from": "push")");
+    EXPECT_EQ(refusal_of_two(driven, driven),
+              "$.walls.plate.motion: a wall is driven about one axis by one drive; add the torques.");
+    EXPECT_EQ(refusal_of_two(turning(rotate, "[0, 0, -1]", R"("from": "wait")"), driven),
+              "$.walls.plate.motion: about the axis of a drive only its torque and the powder turn a wall; a rotation "
+              "about it must act at another time.");
+    EXPECT_EQ(refusal_of_two(turning(rotate, "[0, 0, 1]", R"("to": "wait")"), driven), "accepted");
+    EXPECT_EQ(refusal_of_two(turning(rotate, "[1, 0, 0]", R"("from": "push")"), driven), "accepted");
+    EXPECT_EQ(refusal_of_two(turning(drive, "[0, 0, 1]", R"("to": "wait")"), driven),
+              "$.walls.plate.motion: nothing may turn a wall after a drive, or after it moves freely.");
 }
 
 }  // namespace grainsweep::tests::machine_loads_test

@@ -70,6 +70,19 @@ TEST(MachinePlan, WarnsOfPowderThatStillFalls) {
     EXPECT_EQ(kinds(long_fall), Kinds{});
 }
 
+TEST(MachinePlan, WarnsOfAMotionThatStartsAfterAllPhases) {
+    const auto from = [](const char* time) {
+        return kinds(
+            (R"([{"op": "replace", "path": "/walls/paddle/motion/0/from", "value": )" + std::string(time) + "}]")
+                .c_str());
+    };
+    EXPECT_EQ(from(R"("5 s")"), Kinds{"a motion that never starts"});
+    EXPECT_EQ(from(R"("0.1 s")"), Kinds{});  // of 0.12 s
+    EXPECT_EQ(kinds(R"([{"op": "replace", "path": "/walls/paddle/motion/0", "value":
+                         {"follow": {"times": [0, 0.1, 5], "positions": [[0, 0, 0], [0, 0, 0.001], [0, 0, 0]]}}}])"),
+              Kinds{});
+}
+
 TEST(MachinePlan, WarnsOfAFillingThatDoesNotFit) {
     const char* many = R"([{"op": "replace", "path": "/fill/0/count", "value": 400}])";
     EXPECT_EQ(kinds(many), Kinds{"a filling that does not fit"});
