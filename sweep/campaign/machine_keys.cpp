@@ -267,7 +267,7 @@ constexpr auto until_keys = std::to_array<Field>({
     holding({"known", MachineKey::object,
              "the standard error of a measurement in this phase is below a value, or it has not changed at all"},
             known_keys),
-    {"measure", MachineKey::text, "a measurement passes a value: above or below"},
+    {"measure", MachineKey::text, "a measurement passes a value, whatever its \"during\": above or below"},
     {"above", MachineKey::quantity, "of measure"},
     {"below", MachineKey::quantity, "of measure"},
 });

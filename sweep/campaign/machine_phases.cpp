@@ -21,6 +21,8 @@ machine::Known read_known(const Section& section, const MachineReading& reading)
     known.measure = measure_named(measure, reading);
     if (machine::find_reduction(reading.spec.measures[known.measure].reduction)->error == nullptr)
         measure.refuse("it has no standard error");
+    if (!machine::holds(reading.spec.measures[known.measure].during, reading.spec.phases.size()))
+        measure.refuse("its \"during\" lacks this phase: its error is never known here");
     if (const auto every = section.find("every")) known.every = reading.scope.whole(*every, {1, 1e6});
     return known;
 }
@@ -125,6 +127,7 @@ void read_start(const Section& top, MachineReading& reading) {
     const Section section(*place, machine_keys::start());
     const Cursor end = section.at("phase");
     spec.start.phases = reading.copies[reading.scope.place_in(end, reading.phases, "phase")].front() + 1;
+    if (spec.start.phases == spec.phases.size()) end.refuse("the start is not measured: a phase must follow it");
     if (const double seed = reading.scope.number(section, "seed", "1", 0, {0, 9.0e15}); seed > 0)
         spec.start.seed = seed;
     const auto within = [&](std::size_t phase) { return phase > 0 && phase < spec.start.phases; };
