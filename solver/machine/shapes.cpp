@@ -101,10 +101,13 @@ constexpr std::array shape_rows = {
         "perforated", "a flat plate with round holes in rows, as many as fit; it has no thickness", perforated_fields),
     fields::alternative<StatedShape, Disc>("disc", "a flat disc or ring of 64 facets", disc_fields),
     fields::alternative<StatedShape, Box>("box", "the faces of a box", box_fields),
-    fields::alternative<StatedShape, Cylinder>("cylinder", "a drum from inside, a roller from outside",
-                                               cylinder_fields),
-    fields::alternative<StatedShape, Cone>("cone", "a funnel from inside, a solid from outside", cone_fields),
-    fields::alternative<StatedShape, Tube>("tube", "the wall between two cylinders, with flat ends", tube_fields),
+    fields::alternative<StatedShape, Cylinder>(
+        "cylinder", "a drum from inside, or with a length a bore in a plate without end; a roller from outside",
+        cylinder_fields),
+    fields::alternative<StatedShape, Cone>("cone", "from inside a funnel in a plate without end, from outside a solid",
+                                           cone_fields),
+    fields::alternative<StatedShape, Tube>(
+        "tube", "the wall between two cylinders, with flat ends: grains on both sides", tube_fields),
     fields::alternative<StatedShape, Bar>("bar", "a bar without end along y, its lower edges rounded", bar_fields),
 };
 
