@@ -45,9 +45,16 @@ constexpr std::array contact_rows = {
                                        {0, largest_bridge, true, false}),
 };
 constexpr std::array law_rows = {
-    fields::choice<&Material::rolling_law>("rolling_law", "how rolling is resisted", rolling_words, "\"epsd\""),
-    fields::choice<&Material::cohesion_law>("cohesion_law", "how bodies attract each other", cohesion_words,
-                                            "\"sjkr\""),
+    fields::choice<&Material::rolling_law>(
+        "rolling_law",
+        "how rolling is resisted: epsd by an elastic-plastic spring with a dashpot, epsd_liggghts by the same with "
+        "LIGGGHTS 3.8's angle at walls, cdt by a constant torque",
+        rolling_words, "\"epsd\""),
+    fields::choice<&Material::cohesion_law>(
+        "cohesion_law",
+        "attraction: cohesion times an area, sjkr cut of the spheres, sjkr2 4 pi R* d, paper pi (2 R* d - d^2)/4; by "
+        "surface_energy, jkr Johnson, Kendall & Roberts, dmt Derjaguin, Muller & Toporov; capillary: by liquid bridges",
+        cohesion_words, "\"sjkr\""),
     fields::choice<&Material::friction_limit>(
         "friction_limit", "contact: friction of the contact force without cohesion; net: of the net force", limit_words,
         "\"contact\""),

@@ -13,15 +13,18 @@
 #include "sweep/campaign/sections.hpp"
 #include "sweep/files/whole_file.hpp"
 
+#include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
+#include "solver/particles/size_distribution.hpp"
 #include "solver/scenes/kit/pace.hpp"
-#include "solver/scenes/kit/powder.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -32,22 +35,106 @@ namespace fs = std::filesystem;
 constexpr std::size_t largest_powder_file = 16ULL << 20U;
 constexpr double earth = 9.81;  // m/s2
 
-/// Parameters that a powder file may give, as the scenes have them by default.
+constexpr double standard_diameter = 0.002, standard_step_fraction = 0.2;
+
+/// Values of what a powder file leaves open.
+dem::Material standard_powder() {
+    dem::Material material;
+    material.density = 7980;
+    material.youngs_modulus = 21e6;
+    material.poisson_ratio = 0.3;
+    material.restitution = 0.5;
+    material.friction = 0.2;
+    return material;
+}
+
+constexpr std::array elasticity = {
+    fields::quantity<&dem::Material::density>("density", "kg/m3", "density of the particles", {100, 25000}),
+    fields::quantity<&dem::Material::youngs_modulus>("youngs_modulus", "Pa", "Young's modulus", {1e5, 1e12}),
+    fields::quantity<&dem::Material::poisson_ratio>("poisson_ratio", "1", "Poisson's ratio", {0, 0.49}),
+};
+
+/// Calls visit(field) for the members of a material that a powder file may give.
+template <class Visit>
+void for_each_member(const Visit& visit) {
+    for (const Field& field : elasticity) visit(field);
+    for (const auto fields : {dem::contact_fields(), dem::law_fields()})
+        for (const Field& field : fields)
+            if (std::ranges::find(powder_keys::contacts(), field.name, &Field::name) != powder_keys::contacts().end())
+                visit(field);
+}
+
+/// Parameters that a powder file may give.
 const std::vector<ParameterSpec>& powder_parameters() {
     static const std::vector<ParameterSpec> all = [] {
-        constexpr kit::Powder p;
-        constexpr auto area = kit::if_word("cohesion_law", "sjkr", "sjkr2", "paper");
-        constexpr auto energy = kit::if_word("cohesion_law", "jkr", "dmt");
-        constexpr auto at_walls = [](std::string_view name, std::string_view unit, double most, kit::When when = {}) {
-            return kit::Real{name, unit, "the same at walls; -1: as in the powder", -1, {-1, most}, {when}};
-        };
-        return kit::declared(
-            p.density, p.youngs_modulus, p.poisson_ratio, p.restitution, p.friction, p.rolling_friction, p.rolling_law,
-            p.tangential_limit, p.cohesion, p.cohesion_law, p.surface_energy, at_walls("wall_friction", "1", 2),
-            at_walls("wall_rolling_friction", "1", 1), at_walls("wall_restitution", "1", 1),
-            at_walls("wall_cohesion", "J/m3", 1e6, area), at_walls("wall_surface_energy", "J/m2", 10, energy));
+        std::vector<ParameterSpec> specs;
+        dem::Material standard = standard_powder();
+        for_each_member([&](const Field& field) {
+            ParameterSpec spec{
+                std::string(field.name), std::string(field.unit), std::string(field.meaning), 0.0, field.bounds, {}};
+            if (field.words.empty()) {
+                spec.default_value = *static_cast<const double*>(field.at(&standard));
+            } else {
+                Words words{{field.words.begin(), field.words.end()}};
+                std::erase(words.allowed, "capillary");  // a powder file states no liquid
+                spec.default_value = words.allowed.front();
+                spec.bounds = std::move(words);
+            }
+            specs.push_back(std::move(spec));
+        });
+        for (const char* name : {"friction", "rolling_friction", "restitution", "cohesion", "surface_energy"}) {
+            ParameterSpec spec = *std::ranges::find(specs, name, &ParameterSpec::name);
+            spec.name.insert(0, "wall_");
+            spec.meaning = "the same at walls; -1: as in the powder";
+            spec.default_value = -1.0;
+            auto& bounds = std::get<Interval>(spec.bounds);
+            bounds.low = -1, bounds.low_open = false;
+            specs.push_back(std::move(spec));
+        }
+        return specs;
     }();
     return all;
+}
+
+/// Returns the material of complete inputs; a cohesion that its law does not take is 0.
+dem::Material material_of(const Inputs& inputs) {
+    dem::Material material;
+    for_each_member([&](const Field& field) {
+        const Value& value = inputs.find(field.name)->second;
+        if (field.words.empty())
+            *static_cast<double*>(field.at(&material)) = std::get<double>(value);
+        else
+            field.choose(&material,
+                         static_cast<std::size_t>(std::ranges::find(field.words, std::get<std::string>(value)) -
+                                                  field.words.begin()));
+    });
+    (dem::acts_by_surface_energy(material.cohesion_law) ? material.cohesion : material.surface_energy) = 0;
+    return material;
+}
+
+/// Returns the largest attraction of two equal spheres at rest, N; for cohesion by area, to first order in the overlap.
+double pull_off_force(const dem::Material& material, double diameter) {
+    using std::numbers::pi;
+    const double radius = diameter / 2, radius_of_pair = radius / 2;
+    double area = pi;  // of the contact over R d
+    switch (material.cohesion_law) {
+        case dem::CohesionLaw::jkr:
+            return 1.5 * pi * material.surface_energy * radius_of_pair;
+        case dem::CohesionLaw::dmt:
+            return 2 * pi * material.surface_energy * radius_of_pair;
+        case dem::CohesionLaw::sjkr2:
+            area = 2 * pi;
+            break;
+        case dem::CohesionLaw::paper:
+            area = pi / 4;
+            break;
+        default:
+            break;
+    }
+    // The largest value of a d - b d^(3/2), b = 4/3 E* sqrt(R*): 4 a^3/(27 b^2), R* = R/2.
+    const double a = material.cohesion * area * radius;
+    const double modulus = dem::effective_modulus(material);
+    return a * a * a / (6 * modulus * modulus * radius);
 }
 
 /// Calls visit(name, place) for every value of "material" and "contacts".
@@ -224,23 +311,20 @@ PowderUse apply_powder(const Powder& powder, ParameterSpace& space) {
 PowderNumbers numbers_of(const Powder& powder) {
     Inputs inputs;
     for (const auto& parameter : powder_parameters()) inputs.emplace(parameter.name, parameter.default_value);
-    for (const auto& parameter : kit::declared(kit::Powder{}.precision))
-        inputs.emplace(parameter.name, parameter.default_value);
     for_each_property(top_of(powder), [&](const std::string& name, const Cursor& place) {
         inputs.insert_or_assign(name, read_value(place, powder_parameter(name), {}));
     });
-    constexpr kit::Powder block;
     constexpr double impact = 1;  // m/s
     constexpr double particles = 1000;
-    const dem::Material material = block.material(inputs);
-    const double diameter = powder.unit().value_or(block.diameter.standard);
+    const dem::Material material = material_of(inputs);
+    const double diameter = powder.unit().value_or(standard_diameter);
     const double smallest = powder.sizes ? powder.sizes->smallest : diameter;
     PowderNumbers numbers;
     const double weight = material.density * particles::sphere_volume(diameter) * earth;
-    numbers.bond_number = kit::pull_off_force(material, diameter) / weight;
+    numbers.bond_number = pull_off_force(material, diameter) / weight;
     numbers.rayleigh_time = dem::rayleigh_time(material, smallest / 2);
-    numbers.time_step = block.time_step_fraction.standard * dem::shortest_time(material, smallest / 2, impact);
-    numbers.seconds = kit::estimate(block.method(inputs), material, particles, 1 / numbers.time_step).seconds;
+    numbers.time_step = standard_step_fraction * dem::shortest_time(material, smallest / 2, impact);
+    numbers.seconds = kit::estimate(dem::Method{}, material, particles, 1 / numbers.time_step).seconds;
     return numbers;
 }
 

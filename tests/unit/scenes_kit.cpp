@@ -1,7 +1,6 @@
-// The kit of scenes: what a handle declares is what it reads, and the powder block means what it says.
+// Observables of scenes are recorded under the names that they declare; the Bond number of a machine.
 #include "solver/dem/material.hpp"
 #include "solver/scenes/kit/observable.hpp"
-#include "solver/scenes/kit/powder.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 
@@ -15,38 +14,8 @@
 
 namespace grainsweep::tests::scenes_kit_test {
 
-constexpr kit::Powder powder;
-constexpr kit::Whole count{"count", "how many", 3, {0, 10}, {kit::if_set("friction"), kit::if_zero("cohesion")}};
 constexpr kit::Scalar seen{"seen", "m", "what is seen"};
 constexpr kit::Series course{"course", "m", "what is seen", "time (s)"};
-
-Inputs defaults(const std::vector<ParameterSpec>& specs) {
-    Inputs inputs;
-    for (const auto& spec : specs) inputs.emplace(spec.name, spec.default_value);
-    return inputs;
-}
-
-TEST(Kit, HandlesReadWhatTheyDeclare) {
-    const auto specs = kit::declared(powder.friction, powder.cohesion_law, powder.size_file, count);
-    auto inputs = defaults(specs);
-    EXPECT_EQ(powder.friction(inputs), 0.2);
-    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionLaw::sjkr);
-    EXPECT_FALSE(powder.size_file(inputs));
-    EXPECT_EQ(count(inputs), 3);
-    inputs["cohesion_law"] = std::string("paper");
-    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionLaw::paper);
-    inputs["cohesion_law"] = std::string("glue");
-    EXPECT_THROW((void)powder.cohesion_law(inputs), std::invalid_argument);
-    EXPECT_THROW((void)powder.density(inputs), std::logic_error) << "not declared";
-
-    ASSERT_EQ(specs[3].relevant_if.size(), 2U);
-    EXPECT_EQ(specs[3].relevant_if[0].other, "friction");
-    EXPECT_EQ(specs[3].relevant_if[1].condition, Relevance::Condition::zero);
-    ASSERT_EQ(specs[2].relevant_if.size(), 1U);
-    EXPECT_EQ(specs[2].relevant_if[0].words, std::vector<std::string>{"file"});
-    EXPECT_TRUE(std::get<Words>(specs[2].bounds).file_allowed);
-    EXPECT_THROW(std::get<Words>(specs[2].bounds).check_file("no table"), std::invalid_argument);
-}
 
 TEST(Kit, HandlesRecordWhatTheyDeclare) {
     const auto specs = kit::observed(seen, course);
