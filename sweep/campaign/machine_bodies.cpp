@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -55,12 +56,42 @@ machine::Again read_again(const Section& section, const MachineReading& reading)
     return again;
 }
 
+/// Amount of an attraction: the laws that use it.
+struct Attraction {
+    const char* key;
+    double dem::Material::*amount;
+    bool (*acts_by)(dem::CohesionLaw);
+    const char* laws;
+};
+
+constexpr std::array attractions = {
+    Attraction{"cohesion", &dem::Material::cohesion, dem::acts_over_area, "laws 'sjkr', 'sjkr2' and 'paper'"},
+    Attraction{"surface_energy", &dem::Material::surface_energy, dem::acts_by_surface_energy, "laws 'jkr' and 'dmt'"},
+    Attraction{"surface_tension", &dem::Material::surface_tension,
+               [](dem::CohesionLaw law) { return law == dem::CohesionLaw::capillary; }, "law 'capillary'"},
+};
+
+/// Refuses an amount of attraction in a section that the cohesion law does not use. 0 is allowed: a machine may choose
+/// the law by a word.
+void require_used_attraction(const Section& section, const dem::Material& contact) {
+    const auto words = std::ranges::find(dem::law_fields(), std::string_view("cohesion_law"), &Field::name)->words;
+    const auto law = contact.cohesion_law;
+    const auto used = std::ranges::find_if(attractions, [&](const auto& one) { return one.acts_by(law); });
+    for (const Attraction& one : attractions)
+        if (const auto place = section.find(one.key); place && !one.acts_by(law) && contact.*one.amount > 0)
+            place->refuse(
+                fmt::format("{:.4g} has no effect: it belongs to the cohesion {}, and \"cohesion_law\" "
+                            "is '{}' here, which uses \"{}\"",
+                            contact.*one.amount, one.laws, words[static_cast<std::size_t>(law)], used->key));
+}
+
 /// Reads "glued" of "contacts". A property as in other contacts is none of its own.
 void read_glued(const Section& contacts, MachineReading& reading, const dem::Material& others) {
     dem::Surface& glued = reading.spec.glued;
     const auto place = reading.scope.read(contacts, "glued", &glued);
     if (place && reading.of_particles.size() > 1)
         place->place().refuse("glued particles differ by their material if there are several");
+    if (place) require_used_attraction(*place, dem::at_surface(others, glued));
     const auto keep = [](std::optional<double>& own, double other) {
         if (own == other) own.reset();
     };
@@ -93,6 +124,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
     if (const auto place = top.find("contacts")) {
         const Section section(*place, machine_keys::contacts());
         reading.scope.read(section, machine_keys::contacts(), &standard);
+        require_used_attraction(section, standard);
         read_glued(section, reading, standard);
         if (const auto pairs = section.find("pairs")) {
             if (!pairs->json().is_object()) pairs->refuse("must be an object of pairs: \"glass steel\"");
@@ -109,17 +141,17 @@ void read_contacts(const Section& top, MachineReading& reading) {
     for (std::size_t a = 0; a < count; ++a)
         for (std::size_t b = 0; b < count; ++b) {
             dem::Material contact = standard;
-            if (own[a][b])
-                reading.scope.read(Section(*own[a][b], dem::contact_fields()), dem::contact_fields(), &contact);
+            if (own[a][b]) {
+                const Section pair(*own[a][b], dem::contact_fields());
+                reading.scope.read(pair, dem::contact_fields(), &contact);
+                require_used_attraction(pair, contact);
+            }
             const bool linear = contact.normal_law == dem::NormalLaw::linear;
             if (linear != (contact.stiffness > 0))
                 throw input_error(top.find("contacts")->path(), "",
                                   fmt::format("between {} and {}: {}", reading.materials[a], reading.materials[b],
                                               linear ? "key 'stiffness' is missing: the linear law needs it"
                                                      : "'stiffness' belongs to \"normal_law\": \"linear\""));
-            if (contact.surface_tension > 0 && contact.cohesion_law != dem::CohesionLaw::capillary)
-                throw input_error(top.find("contacts")->path(), "",
-                                  "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
             contact.stiffness *= reading.stiffness_scale;
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;

@@ -76,7 +76,18 @@ constexpr WrongMachine wrong[] = {
     {"/contacts/pairs", R"(["glass steel"])", "$.contacts.pairs: ", R"(must be an object of pairs: "glass steel".)"},
     {"/contacts/frictoin", "0.1", "$.contacts.frictoin: unknown key", "Did you mean 'friction'?"},
     {"/contacts/surface_tension", "\"72 mN/m\"",
-     "$.contacts: ", "'surface_tension' belongs to \"cohesion_law\": \"capillary\"."},
+     "$.contacts.surface_tension: ", "0.072 has no effect: it belongs to the cohesion law 'capillary', and"},
+    {"/contacts/surface_energy", "\"10 J/m2\"", "$.contacts.surface_energy: ",
+     "10 has no effect: it belongs to the cohesion laws 'jkr' and 'dmt', and \"cohesion_law\" is 'sjkr' here, which "
+     "uses \"cohesion\"."},
+    {"PATCH",
+     R"([{"op":"add","path":"/contacts/cohesion_law","value":"jkr"},{"op":"add","path":"/contacts/cohesion","value":1e6}])",
+     "$.contacts.cohesion: ", "is 'jkr' here, which uses \"surface_energy\"."},
+    {"PATCH",
+     R"([{"op":"add","path":"/contacts/cohesion_law","value":"capillary"},{"op":"add","path":"/contacts/surface_energy","value":1}])",
+     "$.contacts.surface_energy: ", "is 'capillary' here, which uses \"surface_tension\"."},
+    {"/contacts/pairs/glass steel", R"({"surface_energy": 0.1})", R"($.contacts.pairs["glass steel"].surface_energy: )",
+     "0.1 has no effect: it belongs to the cohesion laws"},
     {"/contacts/surface_energy", "-1", "$.contacts.surface_energy: ", "must be a number from 0 to 100, J/m2."},
     {"PATCH",
      R"([{"op":"add","path":"/contacts/cohesion_law","value":"jkr"},{"op":"add","path":"/contacts/pairs/glass steel","value":{"surface_energy":0.1}}])",
@@ -215,3 +226,23 @@ TEST(MachineErrors, OfBodiesHaveOneSentence) {
 }
 
 }  // namespace grainsweep::tests::machine_errors_bodies_test
+TEST(MachineErrors, AnAttractionMayBeZeroWhereItsLawIsAbsent) {
+    nlohmann::json machine = small_machine();
+    machine["parameters"]["energy"] = {{"unit", "J/m2"}, {"default", 0}};
+    machine["parameters"]["law"] = {{"words", {"sjkr", "dmt"}}, {"default", "sjkr"}};
+    machine["contacts"]["cohesion_law"] = "{law}";
+    machine["contacts"]["surface_energy"] = "energy";
+    const Inputs some = {{"energy", 0.01}}, dmt = {{"energy", 0.01}, {"law", std::string("dmt")}};
+    EXPECT_EQ(refusal_of(machine), "accepted");
+    EXPECT_NE(
+        refusal_of(machine, some).find("$.contacts.surface_energy: got \"energy\"; 0.01 has no effect: it belongs"),
+        std::string::npos)
+        << refusal_of(machine, some);
+    EXPECT_EQ(refusal_of(machine, dmt), "accepted");
+    machine["species"]["heavy"]["material"] = "glass";
+    machine["contacts"]["glued"] = {{"surface_energy", 0.1}};
+    EXPECT_NE(refusal_of(machine).find("$.contacts.glued.surface_energy: got 0.1; 0.1 has no effect"),
+              std::string::npos)
+        << refusal_of(machine);
+}
+
