@@ -225,7 +225,6 @@ TEST(MachineErrors, OfBodiesHaveOneSentence) {
     for (const WrongMachine& one : wrong) expect_refusal(one);
 }
 
-}  // namespace grainsweep::tests::machine_errors_bodies_test
 TEST(MachineErrors, AnAttractionMayBeZeroWhereItsLawIsAbsent) {
     nlohmann::json machine = small_machine();
     machine["parameters"]["energy"] = {{"unit", "J/m2"}, {"default", 0}};
@@ -246,3 +245,4 @@ TEST(MachineErrors, AnAttractionMayBeZeroWhereItsLawIsAbsent) {
         << refusal_of(machine);
 }
 
+}  // namespace grainsweep::tests::machine_errors_bodies_test
