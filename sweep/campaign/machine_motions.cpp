@@ -1,7 +1,6 @@
 // "motion" of a wall.
 #include "sweep/campaign/machine_reading.hpp"
 
-#include "solver/geometry/lines.hpp"
 #include "solver/machine/shapes.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +13,10 @@
 namespace grainsweep::campaign {
 namespace {
 
+using geometry::cross;
+using geometry::norm;
 using geometry::operator+;
+using geometry::operator-;
 using geometry::operator*;
 using machine::Vec3;
 
@@ -169,7 +171,7 @@ bool moves_along(const geometry::Motion& motion, const Vec3& way) {
 
 bool turns_about(const geometry::Motion& motion, const geometry::Drive& drive) {
     const auto same_line = [&](const auto& m) {
-        return geometry::parallel(m.axis, drive.axis) && geometry::on_line(m.point, drive.point, drive.axis, 1);
+        return norm(cross(m.axis, drive.axis)) <= 1e-9 && norm(cross(m.point - drive.point, drive.axis)) <= 1e-9;
     };
     if (const auto* m = std::get_if<geometry::Rotation>(&motion)) return same_line(*m);
     const auto* m = std::get_if<geometry::Drive>(&motion);
