@@ -80,6 +80,20 @@ std::vector<std::string> scenes_of(const Store& archive, const Store::QueryLimit
     return scenes;
 }
 
+/// Returns "cases of this database without results: 2 unstable; of a completed one "; empty: all are completed.
+std::string cases_without_results(const Store& archive, const Store::QueryLimits& limits) {
+    std::string listed;
+    archive.query(
+        "SELECT coalesce(outcome, 'waiting'), count(*) FROM sim_case WHERE outcome IS NOT 'completed' GROUP BY outcome",
+        limits, [](const auto&) {},
+        [&](const auto& row) {
+            listed += fmt::format("{}{} {}", listed.empty() ? "" : ", ", std::get<std::int64_t>(row[1]),
+                                  std::get<std::string>(row[0]));
+        });
+    return listed.empty() ? listed
+                          : fmt::format("cases of this database without results: {}; of a completed one ", listed);
+}
+
 /// Columns of a query that are named as a scalar of a scene, and their rows without a value.
 class Gaps {
 public:
@@ -102,11 +116,14 @@ public:
         for (Gap& gap : gaps_)
             if (std::holds_alternative<std::monostate>(row[gap.column])) ++gap.rows;
     }
-    void print() const {
+    /// `others`: returns the cases that are not completed, in words, which rows without outcomes may be of.
+    template <class Others>
+    void print(const Others& others) const {
         for (const Gap& gap : gaps_)
             if (gap.rows > 0)
-                std::cerr << fmt::format("note: {} of {} rows{} have no {}: it is undefined where {}\n", gap.rows,
-                                         rows_, outcome_ ? " of completed cases" : "", gap.name, gap.why);
+                std::cerr << fmt::format("note: {} of {} rows{} have no {}: {}it is undefined where {}\n", gap.rows,
+                                         rows_, outcome_ ? " of completed cases" : "", gap.name,
+                                         outcome_ ? "" : others(), gap.why);
     }
 
 private:
@@ -237,7 +254,7 @@ int query(const QueryRequest& request, Format format) {
         ask([&](const auto& columns) { rows.begin(columns); }, [&](const auto& row) { rows.add(row); });
         rows.end();
     }
-    gaps.print();
+    gaps.print([&] { return cases_without_results(archive, limits); });
     return 0;
 }
 

@@ -165,6 +165,34 @@ TEST(Outcomes, AnUnstableCaseIsSettledWithItsReasonAndWithoutNumbers) {
     }
 }
 
+// A plate appears beside a grain, or in it: these cases are unstable. The note blamed the measurement for their gaps.
+TEST(Outcomes, ANoteOnGapsNamesTheOutcomes) {
+    const auto machine = nlohmann::json::parse(R"json({
+      "name": "m", "gravity": [0, 0, 0], "domain": {"low": [-0.01, -0.01, -0.01], "high": [0.01, 0.01, 0.01]},
+      "parameters": {"place": {"unit": "mm", "default": 5, "bounds": [0, 10]}},
+      "materials": {"rock": {"density": 2500, "youngs_modulus": "5 MPa", "poisson_ratio": 0.25}},
+      "species": {"sand": {"diameter": "3 mm"}},
+      "walls": {"plate": {"plane": {"point": [0, 0, "0 - place"], "normal": [0, 0, 1]}, "during": "late"}},
+      "fill": [{"species": "sand", "spheres": [{"at": [0, 0, 0]}]}],
+      "phases": [{"name": "early", "for": 1e-3, "frames": 1}, {"name": "late", "for": 1e-3, "frames": 1}],
+      "measure": {"height": {"mean_height": {}, "as": "last"}}
+    })json");
+    const Folder folder;
+    folder.write("c.json", nlohmann::json{{"campaign", "m"},
+                                          {"scene", "machine"},
+                                          {"machine", machine},
+                                          {"factors", {{{"name", "place"}, {"levels", {0, 5}}}}},
+                                          {"design", {{"kind", "lattice"}, {"levels", {2}}}}}
+                               .dump());
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 1);
+    const auto note = [&](const char* sql) { return run_program({"query", "m.db", sql}, folder.path()).err; };
+    EXPECT_EQ(
+        note("SELECT height FROM m"),
+        "note: 1 of 2 rows have no height: cases of this database without results: 1 unstable; of a completed one "
+        "it is undefined where there was nothing to measure\n");
+    EXPECT_EQ(note("SELECT height, outcome FROM m"), "");
+}
+
 TEST(Outcomes, AHugeAnswerArrivesWhole) {
     const Folder folder;
     folder.write("c.json", config("\"huge\""));
