@@ -128,6 +128,24 @@ machine::Vec3 gravity_of(const Section& top, const MachineScope& scope) {
             0 - size * std::cos(tilt)};
 }
 
+/// Warns of plain numbers that were meant as degrees: no machine is tilted by more than a turn.
+void warn_of_degrees(const Section& top, machine::Spec& spec) {
+    const auto look = [&](const Cursor& object, const char* key) {
+        if (!object.json().is_object() || !object.json().contains(key) || !object.json().at(key).is_number()) return;
+        const Cursor place = object[key];
+        const double angle = place.json().get<double>();
+        if (std::abs(angle) > 2 * std::numbers::pi)
+            spec.warnings.push_back(
+                {"an angle beyond a turn",
+                 fmt::format("{0}: {1:.4g} rad are {2:.4g} degrees; write \"{1:.4g} deg\" for degrees", place.path(),
+                             angle, angle * 180 / std::numbers::pi)});
+    };
+    if (const auto gravity = top.find("gravity")) look(*gravity, "tilt"), look(*gravity, "azimuth");
+    if (const auto walls = top.find("walls"))
+        for (const auto& [name, wall] : walls->members("must be an object of walls by name"))
+            if (wall.json().is_object() && wall.json().contains("turned")) look(wall["turned"], "angle");
+}
+
 double input_number(const Inputs& inputs, std::string_view name) {
     return std::get<double>(inputs.find(name)->second);
 }
@@ -171,6 +189,7 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     read_checks(top, reading);
     read_contacts(top, reading);
     read_walls(top, reading);
+    warn_of_degrees(top, reading.spec);
     read_fills(top, reading);
     read_removals(top, reading);
     read_feeds(top, reading);

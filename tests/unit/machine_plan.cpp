@@ -83,6 +83,19 @@ TEST(MachinePlan, WarnsOfAMotionThatStartsAfterAllPhases) {
               Kinds{});
 }
 
+TEST(MachinePlan, WarnsOfDegreesThatLackTheirUnit) {
+    const auto gravity = [](const char* tilt) {
+        return kinds(
+            (R"([{"op": "add", "path": "/gravity", "value": {"size": 9.81, "tilt": )" + std::string(tilt) + "}}]")
+                .c_str());
+    };
+    EXPECT_EQ(gravity("30"), Kinds{"an angle beyond a turn"});
+    EXPECT_EQ(gravity("6.28"), Kinds{});
+    EXPECT_EQ(gravity(R"("370 deg")"), Kinds{});
+    EXPECT_TRUE(kinds(R"([{"op": "add", "path": "/walls/paddle/turned", "value": {"axis": [0, 0, 1], "angle": 90}}])")
+                    .contains("an angle beyond a turn"));
+}
+
 TEST(MachinePlan, WarnsOfAFillingThatDoesNotFit) {
     const char* many = R"([{"op": "replace", "path": "/fill/0/count", "value": 400}])";
     EXPECT_EQ(kinds(many), Kinds{"a filling that does not fit"});
