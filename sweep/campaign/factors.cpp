@@ -88,6 +88,8 @@ std::optional<Formula> read_formula(const Cursor& place, const ParameterSpec& pa
     auto formula = parse_expression(text, scene);
     if (auto* sound = std::get_if<Formula>(&formula)) return std::move(*sound);
     if (resembles_quantity(text)) return std::nullopt;
+    if (const auto pointed = with_decimal_point(text); !pointed.empty())
+        place.refuse(fmt::format("the decimal sign is a point: '{}'", pointed));
     place.refuse(fmt::format("{}, or an expression of other parameters: {}", rule_of(parameter),
                              std::get<std::string>(formula)));
 }

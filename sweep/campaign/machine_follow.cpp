@@ -2,6 +2,7 @@
 // constant velocity from time to time, so that the wall is at the stated place at every stated time. The load of a
 // press or a drive changes along straight lines between its values.
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
 #include <fmt/format.h>
@@ -94,6 +95,16 @@ Course course_of_expression(const Section& follow, const MachineScope& outer) {
     return course;
 }
 
+/// Returns whether an expression is sound if t is the time.
+bool is_of_time(const Cursor& load, std::string_view unit, const MachineScope& scope) {
+    if (!load.json().is_string()) return false;
+    const auto text = value_text(load.text(), unit);
+    const auto parsed =
+        Formula::of(text->given, [&](std::string_view name) { return name == "t" || scope.has_number(name); });
+    const auto* formula = std::get_if<Formula>(&parsed);
+    return formula != nullptr && std::ranges::count(formula->names(), "t") > 0;
+}
+
 /// A wall starts where it is drawn.
 void require_start(const Course& course, const Section& follow) {
     double largest = 0;
@@ -120,6 +131,8 @@ geometry::LoadCourse read_load(const Section& motion, std::string_view name, std
         if (place && values) place->refuse(fmt::format("it belongs to an expression of t: \"{}\"", name));
     if (times && load) times->refuse(fmt::format("it belongs to \"{}s\"", name));
     if (load && !every && !until) {
+        if (!outer.knows("t") && is_of_time(*load, unit, outer))
+            load->refuse("an expression of the time t needs \"every\" and \"until\" beside it");
         constant = outer.number(*load, unit);
         return nullptr;
     }
@@ -149,6 +162,9 @@ std::vector<machine::WallMotion> read_follow(const Section& motion, MachineReadi
     for (const auto& type : geometry::motion_types())
         if (const auto place = motion.find(type.name)) place->refuse("beside \"follow\": a motion is one of the two");
     const auto from = motion.find("from");
+    if (from && from->json().is_string() && !scope.knows(from->text()) &&
+        std::ranges::find(reading.phases, from->text()) != reading.phases.end())
+        from->refuse("of \"follow\" it is a time, s, not a phase");
     const double start = from ? scope.number(*from, "s", no_negative_number) : 0;
     reading.timed.emplace_back(motion.place().path(), start);
     const Course course = follow.find("times") ? course_of_table(follow, scope) : course_of_expression(follow, scope);

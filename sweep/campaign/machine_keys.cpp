@@ -251,8 +251,8 @@ constexpr std::array quiet_keys = {
 using machine::Known;
 constexpr std::array known_keys = {
     needed({"measure", MachineKey::text, "a measurement with a standard error"}),
-    needed(fields::quantity<&Known::error>("error", "1", "below which it is known, in the unit in which it is shown",
-                                           no_negative_number)),
+    needed({"error", MachineKey::quantity,
+            "below which it is known: a quantity, or a number in the unit in which it is shown"}),
     fields::quantity<&Known::from>("from", "1", "share of the phase from which on it is looked at", {0, 1}),
     Field{"every", MachineKey::quantity, "frames from look to look: rare ones are no chance", "10"},
 };
@@ -392,7 +392,7 @@ std::span<const Field> motion() {
         {
             holding({"follow", MachineKey::object, "a table of times, or an expression of the time"}, follow()),
             {"from", MachineKey::quantity,
-             "a phase, at whose beginning it starts, or a time, s; default: at the start"},
+             "a phase, at whose beginning it starts, or a time, s; of follow a time; default: at the start"},
             {"to", MachineKey::quantity, "a phase, at whose end it ends, or a time, s; default: never"},
             {"during", MachineKey::words, "phases in which it acts, one after the other"},
             {"repeat", MachineKey::quantity, "so many of it: a motion that comes again", "1"},

@@ -525,7 +525,9 @@ std::string with_si_numbers(std::string_view expression) {
             while (is(behind, letter, digit) ||
                    (behind > unit && behind < expression.size() && expression[behind] == '/'))
                 ++behind;
-        const bool alone = behind > unit && expression.find_first_not_of(" \t+-") == at &&
+        const auto slash = expression.substr(unit, behind - unit).rfind('/');  // "5 mm/2" is a quotient
+        const bool halved = slash != std::string_view::npos && is(unit + slash + 1, digit);
+        const bool alone = behind > unit && !halved && expression.find_first_not_of(" \t+-") == at &&
                            expression.find_first_not_of(" \t", behind) == std::string_view::npos;
         if (alone) return {};
         std::string why, word(expression.substr(unit, behind - unit));

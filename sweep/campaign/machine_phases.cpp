@@ -1,5 +1,6 @@
 // "phases" of a machine: their order, groups that repeat, lengths and conditions.
 #include "sweep/campaign/machine_reading.hpp"
+#include "sweep/campaign/quantity.hpp"
 
 #include "solver/machine/reduction.hpp"
 
@@ -19,9 +20,18 @@ machine::Known read_known(const Section& section, const MachineReading& reading)
     reading.scope.read(section, machine_keys::known(), &known);
     const Cursor measure = section.at("measure");
     known.measure = measure_named(measure, reading);
-    if (machine::find_reduction(reading.spec.measures[known.measure].reduction)->error == nullptr)
-        measure.refuse("it has no standard error");
-    if (!machine::holds(reading.spec.measures[known.measure].during, reading.spec.phases.size()))
+    const auto& measured = reading.spec.measures[known.measure];
+    const auto* reduction = machine::find_reduction(measured.reduction);
+    if (reduction->error == nullptr) measure.refuse("it has no standard error");
+    const Cursor error = section.at("error");
+    const bool united = error.json().is_string() && !unit_of_quantity(error.text()).empty() && !measured.relative;
+    known.error = united
+                      ? reading.scope.number(
+                            error, std::string(unit_of_measure(reading, known.measure)) + std::string(reduction->unit),
+                            no_negative_number) /
+                            measured.scale.value
+                      : reading.scope.number(error, "1", no_negative_number);
+    if (!machine::holds(measured.during, reading.spec.phases.size()))
         measure.refuse("its \"during\" lacks this phase: its error is never known here");
     if (const auto every = section.find("every")) known.every = reading.scope.whole(*every, {1, 1e6});
     return known;

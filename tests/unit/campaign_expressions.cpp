@@ -246,7 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     InFixedValues, WrongQuantity,
-    testing::Values(Wrong{GAP("60 Pa"), "$.fixed.gap: got \"60 Pa\"; 'gap' must be a number"},
+    testing::Values(Wrong{GAP("30,5 um"), "$.fixed.gap: got \"30,5 um\"; the decimal sign is a point: '30.5 um'."},
+                    Wrong{GAP("60 Pa"), "$.fixed.gap: got \"60 Pa\"; 'gap' must be a number"},
                     Wrong{GAP("60 Pa"), "'Pa' does not fit 'm'"},
                     Wrong{GAP("60 parsnips"), "'parsnips' is no unit, these fit: um, mm, m, nm."},
                     Wrong{GAP("60 mm um"), "'mm um' does not fit 'm'"}, Wrong{GAP("30 deg"), "'deg' does not fit 'm'"},

@@ -72,6 +72,9 @@ TEST(MachineChoices, ExpressionsTakeQuantities) {
     EXPECT_EQ(plain("0.5*(high + 3 mm)/2 s"), "0.5*(high + (0.003))/(2)");
     EXPECT_EQ(plain("2 mm/hub + 60 rpm"), "(0.002)/hub + (6.283185307179586)");
     EXPECT_EQ(plain("3 mm/s*t"), "(0.003)*t");
+    EXPECT_EQ(plain("5 mm/2"), "(0.005)/2");
+    EXPECT_EQ(plain("5 m/s2"), "");
+    EXPECT_EQ(plain("5 mm/hub"), "");
     EXPECT_EQ(plain("29 mm"), "");
     EXPECT_EQ(plain("1e-3 N m"), "");
     EXPECT_EQ(plain("5 kg m-3"), "");
