@@ -252,10 +252,12 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
 std::shared_ptr<const Machine> make_machine(Json document, std::string root, const FileReader& read_file) {
     std::map<std::string, std::string, std::less<>> made;
     document = with_powders(std::move(document), root, read_file, made);
-    return checked(std::move(document), root, [&](const std::string& name) {
+    auto machine = checked(std::move(document), root, [&](const std::string& name) {
         const auto found = made.find(name);
         return found == made.end() ? read_file(name) : found->second;
     });
+    require_used_parameters(Section(Cursor(*machine->document, root), machine_keys::top()), machine->parameters);
+    return machine;
 }
 
 FileReader beside(const fs::path& folder) {

@@ -371,7 +371,34 @@ void evaluate_lets(const Section& top, const std::set<std::string, std::less<>>&
     }
 }
 
+/// Returns the names in the texts of a machine, without texts for readers and what only sets or restricts parameters.
+std::set<std::string, std::less<>> names_in_texts(const Json& machine) {
+    static const std::regex name("[A-Za-z_][A-Za-z0-9_]*");
+    static const std::regex aside("/(name|summary|parameters/.*|accuracy/.*|measure/[^/]*/meaning)|.*/notes(/.*)?");
+    std::set<std::string, std::less<>> names;
+    const Json leaves = machine.flatten();
+    for (const auto& [place, leaf] : leaves.items()) {
+        if (!leaf.is_string() || std::regex_match(place, aside)) continue;
+        const auto& text = leaf.get_ref<const std::string&>();
+        for (std::sregex_iterator at(text.begin(), text.end(), name), end; at != end; ++at) names.insert(at->str());
+    }
+    return names;
+}
+
 }  // namespace
+
+void require_used_parameters(const Section& top, const std::vector<ParameterSpec>& parameters) {
+    const auto place = top.find("parameters");
+    if (!place) return;
+    std::vector<ParameterSpec> common;
+    add_common(common, takes_ratio(top.place().json()));
+    const auto named = names_in_texts(top.place().json());
+    for (const auto& parameter : parameters)
+        if (std::ranges::find(common, parameter.name, &ParameterSpec::name) == common.end() &&
+            std::ranges::none_of(names_in_expressions(parameter), [&](const auto& one) { return named.contains(one); }))
+            throw input_error(path_of(place->path(), parameter.name), "",
+                              "nothing in this machine uses this parameter: name it in an expression, or remove it");
+}
 
 void require_name(const Cursor& place, std::string_view name) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };

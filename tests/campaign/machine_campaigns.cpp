@@ -193,14 +193,21 @@ TEST(MachineCampaigns, WhatChangesNoAnswerChangesNoId) {
          {R"({"let": {"side": "21 mm"}})", R"({"let": {"meaning": 1}})", R"({"let": {"bounds": 1}})",
           R"({"walls": {"meaning": {"plane": {"normal": [0, 0, 1]}, "material": "steel"}}})",
           R"({"walls": {"bounds": {"plane": {"normal": [0, 0, 1]}, "material": "steel"}}})",
-          R"({"parameters": {"meaning": {"default": 1}}})", R"({"contacts": {"friction": 0.1}})",
-          R"({"measure": {"meaning": {"count": {}}}})", R"({"phases": [{"name": "fall", "for": 1},
+          R"({"contacts": {"friction": 0.1}})", R"({"measure": {"meaning": {"count": {}}}})",
+          R"({"phases": [{"name": "fall", "for": 1},
              {"name": "turn", "for": 1}, {"name": "stop", "for": 1}]})",
           R"({"gravity": [0, 0, -9.8]})"}) {
         json other = machine;
         other.merge_patch(json::parse(patch));
         EXPECT_NE(id_of(other), id) << patch;
     }
+    const auto with_default = [&](int value) {
+        json other = machine;
+        other["parameters"]["meaning"] = {{"default", value}};
+        other["let"]["meant"] = "meaning";
+        return id_of(other);
+    };
+    EXPECT_NE(with_default(1), with_default(2));
 }
 
 // A file that a word chooses: each of its contents is part of the identity, its name is not.
@@ -342,6 +349,12 @@ TEST(MachineCampaigns, AWrongMachineEndsWithOneSentence) {
                     m["fill"][0]["in"] = deep;
                 }),
                 HasSubstr("nested deeper"));
+    EXPECT_THAT(refusal([](json& m) {
+                    m["parameters"]["spare"] = {{"default", 1}};
+                }),
+                HasSubstr("machine.json: $.parameters.spare: nothing in this machine uses"));
+    EXPECT_THAT(refusal([](json& m) { m["contacts"]["surface_energy"] = "10 J/m2"; }),
+                HasSubstr("machine.json: $.contacts.surface_energy: got \"10 J/m2\"; 10 has no effect"));
     for (const char* text : {"1e400", "NaN", "[1, 2", "\"\\u0000\"", ""}) {
         const Workshop shop;
         std::string machine = machine_with_files().dump();

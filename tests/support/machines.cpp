@@ -21,7 +21,7 @@ json small_machine() {
         "bars": {"whole": true, "default": 1, "bounds": [0, 3]},
         "kind": {"words": ["coarse", "fine"], "default": "coarse"}
       },
-      "let": {"side": "20 mm", "half": "side/2"},
+      "let": {"side": "20 mm", "half": "side/2", "of_fine": "kind_is_fine"},
       "materials": {
         "glass": {"density": 2500, "youngs_modulus": "5 MPa", "poisson_ratio": 0.25},
         "steel": {"density": 7800, "youngs_modulus": "5 MPa", "poisson_ratio": 0.3}
