@@ -144,7 +144,7 @@ constexpr std::array again_keys = {
 using machine::Fill;
 constexpr std::array fill_keys = {
     Field{"species", MachineKey::text, "the species; or a mix"},
-    Field{"mix", MachineKey::object, "shares by species"},
+    Field{"mix", MachineKey::object, "shares by species; only their ratios count: their sum need not be 1"},
     Field{"by", MachineKey::word, "what the shares of a mix are of", "\"mass\"", {}, by_words},
     Field{"count", MachineKey::quantity, "number of particles, rounded"},
     Field{"mass", MachineKey::quantity, "or their mass, kg"},
@@ -206,7 +206,7 @@ using machine::Feed;
 constexpr std::array feed_keys = {
     Field{"name", MachineKey::text, "of its observables NAME_fed and NAME_waiting", "\"feed\""},
     Field{"species", MachineKey::text, "the species; or a mix"},
-    Field{"mix", MachineKey::object, "shares by species"},
+    Field{"mix", MachineKey::object, "shares by species; only their ratios count: their sum need not be 1"},
     Field{"by", MachineKey::word, "what the shares of a mix are of", "\"mass\"", {}, by_words},
     needed(fields::quantity<&Feed::rate>("rate", "kg/s", "", no_negative_number)),
     needed({"through", MachineKey::object,

@@ -108,6 +108,11 @@ machine::Mix read_mix(const Section& section, const MachineReading& reading) {
     return mix;
 }
 
+/// Returns whether a value is a number or a quantity, not an expression.
+bool is_literal(const Cursor& place) {
+    return place.json().is_number() || value_text(place.text())->quantity;
+}
+
 std::int64_t count_of(const Section& section, const MachineReading& reading, const machine::Mix& mix) {
     double volume = 0, mass = 0;  // of a particle, in the mean
     for (const auto& [number, share] : mix) {
@@ -122,10 +127,29 @@ std::int64_t count_of(const Section& section, const MachineReading& reading, con
     const char* unit = given("count") != 0 ? "1" : given("mass") != 0 ? "kg" : "m3";
     const double one = given("count") != 0 ? 1 : given("mass") != 0 ? mass : volume;
     const Cursor place = section.at(key);
-    const double count = std::round(reading.scope.number(place, unit, no_negative_number) / one);
+    const double stated = reading.scope.number(place, unit, no_negative_number), count = std::round(stated / one);
+    if (stated > 0 && !(count > 0) && !section.flag("exact", false))
+        place.refuse(fmt::format("it makes no particle: {:.3g} {} is less than half of {:.3g} {}, the mean of one",
+                                 stated, unit, one, unit));
+    if (!(stated > 0) && is_literal(place))
+        place.refuse("a filling needs at least one particle: remove it, or leave it out with \"when\": 0");
     if (count > most_particles)
         place.refuse(fmt::format("it makes {:.4g} particles; at most {:.4g} can be simulated", count, most_particles));
     return static_cast<std::int64_t>(count);
+}
+
+/// Warns of a filling, or a share of its mix, without a particle. An exact volume draws at least one.
+void warn_of_none(const Cursor& place, const machine::Fill& fill, MachineReading& reading) {
+    if (fill.drawn_to) return;
+    auto& warnings = reading.spec.warnings;
+    if (fill.count == 0)
+        warnings.push_back({"a filling without particles", fmt::format("{} has no particle here", place.path())});
+    for (const auto& [species, share] : fill.mix)
+        if (const double count = share * static_cast<double>(fill.count); fill.count > 0 && share > 0 && count < 0.5)
+            warnings.push_back({"a share of less than half a particle",
+                                fmt::format("{}: the share of '{}' in the mix is {:.2g} of a particle here, and there "
+                                            "may be none: fill more, or remove it from the mix",
+                                            place.path(), reading.species[species], count)});
 }
 
 /// Returns the volume that a filling states, m3.
@@ -388,6 +412,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             reading.scope.read(section, machine_keys::fill(), &fill);
             if (section.flag("exact", false)) fill.drawn_to = volume_of(section, reading, fill.mix);
             fill.at = phase;
+            warn_of_none(place, fill, reading);
             reading.spec.fills.emplace_back(std::move(fill));
         });
     }

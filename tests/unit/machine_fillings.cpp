@@ -236,7 +236,7 @@ TEST(MachineFillings, MixesAreByCountMassOrVolume) {
     const double v = std::numbers::pi / 6 * 1e-9, small = 8 * v, large = 27 * v;
     EXPECT_EQ(count_large("count", "volume", 10 * (small + large)).first, 20);
     EXPECT_EQ(count_large("count", "mass", 10 * (1000 * small + 3000 * large)).first, 20);
-    EXPECT_EQ(count_large("mass", "mass", 0).first, 0);
+    EXPECT_EQ(count_large("mass", "mass", "0*bars").first, 0);
 }
 
 }  // namespace grainsweep::tests::machine_fillings_test

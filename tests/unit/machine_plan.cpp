@@ -104,6 +104,14 @@ TEST(MachinePlan, WarnsOfAFillingThatDoesNotFit) {
     EXPECT_EQ(kinds(packed), Kinds{});
 }
 
+TEST(MachinePlan, WarnsOfFillingsAndSharesWithoutAParticle) {
+    EXPECT_EQ(kinds(R"([{"op": "replace", "path": "/fill/0/count", "value": "20*bars - 20"}])"),
+              Kinds{"a filling without particles"});
+    EXPECT_EQ(kinds(R"([{"op": "replace", "path": "/fill/0/mix/heavy", "value": 0.01}])"),
+              Kinds{"a share of less than half a particle"});
+    EXPECT_EQ(kinds(R"([{"op": "replace", "path": "/fill/0/mix/heavy", "value": 0}])"), Kinds{});
+}
+
 TEST(MachinePlan, WarnsOfWallsTooFastForTheStep) {
     const char* fast = R"([{"op": "add", "path": "/walls/paddle/motion/-",
                             "value": {"vibrate": {"amplitude": [0, 0, 1e-6], "frequency": 3124}}}])";
