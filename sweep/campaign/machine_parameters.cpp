@@ -194,7 +194,12 @@ void add_common(std::vector<ParameterSpec>& all, bool with_ratio) {
                        Interval{1, longest_row},
                        {}});
     all.push_back(
-        {"particles_scale", "1", "diameters times this: fewer, coarser particles", 1.0, Interval{0.1, 100}, {}});
+        {"particles_scale",
+         "1",
+         "diameters times this: coarser particles, fewer of the same mass or volume; a \"count\" of a filling stays",
+         1.0,
+         Interval{0.1, 100},
+         {}});
     all.push_back({std::string(stiffness_parameter),
                    "1",
                    "Young's moduli and the stiffness of the linear law times this: softer particles take longer steps",

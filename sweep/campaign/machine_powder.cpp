@@ -1,5 +1,6 @@
 // "species", "fill" and "feed" of a machine.
 #include "sweep/campaign/csv_table.hpp"
+#include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine_parameters.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
@@ -150,6 +151,29 @@ void warn_of_none(const Cursor& place, const machine::Fill& fill, MachineReading
                                 fmt::format("{}: the share of '{}' in the mix is {:.2g} of a particle here, and there "
                                             "may be none: fill more, or remove it from the mix",
                                             place.path(), reading.species[species], count)});
+}
+
+/// Warns of a stated number of particles that grow with particles_scale. An expression with particles_scale, a number
+/// of a species or a "let" may depend on it.
+void warn_of_kept_count(const Section& fill, MachineReading& reading) {
+    const auto count = fill.find("count");
+    if (!count || reading.particles_scale == 1) return;
+    const auto& scope = reading.scope;
+    const auto may_depend = [&](const std::string& name) {
+        const auto is_of = [&](const std::string& species) { return name.starts_with(species + "_"); };
+        return name == "particles_scale" || scope.is_let(name) || std::ranges::any_of(reading.species, is_of);
+    };
+    if (!is_literal(*count)) {
+        const auto known = [&](std::string_view name) { return scope.has_number(name); };
+        const auto parsed = Formula::of(value_text(count->text())->given, known);
+        const auto* formula = std::get_if<Formula>(&parsed);
+        if (formula == nullptr || std::ranges::any_of(formula->names(), may_depend)) return;
+    }
+    reading.spec.warnings.push_back(
+        {"a count that does not follow particles_scale",
+         fmt::format("{}: with particles_scale {:.4g} the count stays, so the mass is {:.3g} times as large: take "
+                     "\"mass\" or \"volume\", or divide the count by particles_scale^3",
+                     count->path(), reading.particles_scale, std::pow(reading.particles_scale, 3))});
 }
 
 /// Returns the volume that a filling states, m3.
@@ -405,6 +429,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             continue;
         }
         if (!section.find("in")) throw input_error(place.path(), "", "key 'in' is missing: the region they lie in");
+        warn_of_kept_count(section, reading);
         each_time(section, reading, [&](std::size_t phase) {
             machine::Fill fill;
             fill.mix = read_mix(section, reading);

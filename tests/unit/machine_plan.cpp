@@ -2,6 +2,7 @@
 #include "solver/machine/plan.hpp"
 #include "tests/support/machines.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -110,6 +111,20 @@ TEST(MachinePlan, WarnsOfFillingsAndSharesWithoutAParticle) {
     EXPECT_EQ(kinds(R"([{"op": "replace", "path": "/fill/0/mix/heavy", "value": 0.01}])"),
               Kinds{"a share of less than half a particle"});
     EXPECT_EQ(kinds(R"([{"op": "replace", "path": "/fill/0/mix/heavy", "value": 0}])"), Kinds{});
+}
+
+TEST(MachinePlan, WarnsOfACountThatDoesNotFollowTheScale) {
+    const Inputs finer = {{"particles_scale", 0.8}};
+    const auto of = [&](const char* count) {
+        return kinds(fmt::format(R"([{{"op": "replace", "path": "/fill/0/count", "value": {}}}])", count).c_str(),
+                     finer);
+    };
+    const Kinds warned{"a count that does not follow particles_scale"};
+    EXPECT_EQ(of("20"), warned);
+    EXPECT_EQ(of(R"("20*bars")"), warned);
+    EXPECT_EQ(of(R"("20/particles_scale^3")"), Kinds{});
+    EXPECT_EQ(of(R"("2.5e-7/light_volume")"), Kinds{});
+    EXPECT_EQ(kinds("[]"), Kinds{});
 }
 
 TEST(MachinePlan, WarnsOfWallsTooFastForTheStep) {
