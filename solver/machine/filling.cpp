@@ -392,13 +392,17 @@ Obstacles::Obstacles(const Spec& spec, const Mix& mix, const std::vector<dem::Wa
         if (!walls[w].present || !touches(spec, spec.walls[w], mix)) continue;
         walls_.emplace_back(walls[w], spec.domain, largest, searches);
         walls_.back().place(time);
+        numbers_.push_back(w);
     }
 }
 
-bool Obstacles::touch(const Vec3& centre, double radius) const {
+std::optional<std::size_t> Obstacles::touched(const Vec3& centre, double radius) const {
     std::vector<dem::WallTouch> touches;
-    for (const auto& wall : walls_) wall.find(0, centre, radius, touches);
-    return !touches.empty();
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+        walls_[w].find(0, centre, radius, touches);
+        if (!touches.empty()) return numbers_[w];
+    }
+    return std::nullopt;
 }
 
 Filled filled(const Spec& spec, std::uint64_t seed, Artefacts* artefacts) {

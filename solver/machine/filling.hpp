@@ -96,10 +96,13 @@ public:
     Obstacles(const Spec& spec, const Mix& mix, const std::vector<dem::Wall>& walls, double largest, double time,
               dem::MovingWall::Searches searches = dem::MovingWall::Searches::many);
     /// Returns whether a sphere touches a wall.
-    [[nodiscard]] bool touch(const Vec3& centre, double radius) const;
+    [[nodiscard]] bool touch(const Vec3& centre, double radius) const { return touched(centre, radius).has_value(); }
+    /// Returns the number of the first wall that a sphere touches.
+    [[nodiscard]] std::optional<std::size_t> touched(const Vec3& centre, double radius) const;
 
 private:
     std::vector<dem::MovingWall> walls_;
+    std::vector<std::size_t> numbers_;  ///< of each, in the spec
 };
 
 }  // namespace grainsweep::machine

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -145,8 +147,46 @@ std::vector<Vec3> sites_in(const Spec& spec, const Fill& fill, const Pitch& pitc
     return centres;
 }
 
+/// Throws if not one particle of a filling could find a place, from a grid of places: the region lies outside of the
+/// domain, is too small, or a wall takes it up.
+void require_some(const Spec& spec, const Fill& fill, const Obstacles& obstacles) {
+    constexpr int tried = 20;  // places along each axis
+    const Bounds bounds = bounds_in(spec, fill.in);
+    const auto periodic = periodic_in(spec, bounds);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const auto& [species, share] : fill.mix)
+        if (share > 0) smallest = std::min(smallest, spec.species[species].finest());
+    const double room = smallest / 2 * (1 - rounding);
+    const std::string name = name_of(spec, fill.mix) + ": the region of the filling ";
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double width = bounds.high[k] - bounds.low[k];
+        require(width > 0, name + "lies outside of the domain along " + "xyz"[k]);
+        require(periodic[k] || width >= 2 * room,
+                name + sentence("is %.3g m wide along ", width) + "xyz"[k] +
+                    sentence(" in the domain, and the smallest particle %.3g m", smallest));
+    }
+    std::map<std::size_t, int> taken;  // places by wall
+    for (int n = 0; n < tried * tried * tried; ++n) {
+        const std::array<int, 3> cell = {n % tried, n / tried % tried, n / tried / tried};
+        Vec3 centre{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double off = periodic[k] ? 0 : room, width = bounds.high[k] - bounds.low[k] - 2 * off;
+            centre[k] = bounds.low[k] + off + (cell[k] + 0.5) / tried * width;
+        }
+        if (fill.in.depth(centre) < room) continue;
+        const auto wall = obstacles.touched(centre, room);
+        if (!wall) return;
+        ++taken[*wall];
+    }
+    if (taken.empty()) return;  // a region of many parts may have places between
+    const auto most = std::ranges::max_element(taken, {}, [](const auto& one) { return one.second; });
+    require(false, name + "has no place for a particle: wall '" + spec.walls[most->first].name +
+                       "' takes it up; move the region, or let the wall face the other way");
+}
+
 /// Throws unless all particles of a filling have a place.
-void require_all(const Spec& spec, const Fill& fill, std::size_t places) {
+void require_all(const Spec& spec, const Fill& fill, std::size_t places, const Obstacles& obstacles) {
+    if (places == 0 && fill.count > 0) require_some(spec, fill, obstacles);
     const char* full =
         ": %.0f of %.0f particles fit into the region on a lattice of 1.15 diameters: make the region "
         "larger or the number smaller";
@@ -219,6 +259,7 @@ std::vector<Vec3> at_random(const Spec& spec, const Fill& fill, const Draws& dra
                                }};
     const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 1) * 0x1p53);
     auto centres = particles::random_addition(room, radii, seed);
+    if (!centres) require_some(spec, fill, obstacles);
     require(centres.has_value(), name_of(spec, fill.mix) +
                                      ": so many particles find no place at random without overlap: make the region "
                                      "larger, the number smaller, or fill \"as\": \"lattice\"");
@@ -372,7 +413,7 @@ std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& dra
     };
     if (fill.as != Fill::As::packed) try_members(ByMembers::at_random);
     try_members(ByMembers::lowest);
-    require_all(spec, fill, centres.size());
+    require_all(spec, fill, centres.size(), obstacles);
     return centres;
 }
 
@@ -383,7 +424,7 @@ void require_places(const Spec& spec) {
         if (has_shapes(spec, *fill)) continue;  // they may find a place at random
         const Obstacles obstacles(spec, fill->mix, walls_in(spec, 0, {{0.0}, {}}), widest_in(spec, fill->mix), 0,
                                   dem::MovingWall::Searches::few);
-        require_all(spec, *fill, sites_in(spec, *fill, Pitch(spec, fill->mix), obstacles).size());
+        require_all(spec, *fill, sites_in(spec, *fill, Pitch(spec, fill->mix), obstacles).size(), obstacles);
     }
 }
 

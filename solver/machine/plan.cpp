@@ -200,9 +200,10 @@ void warn_of_fillings(const Spec& spec, std::vector<Warning>& warnings) {
         if (solid > most && !fill->glued)
             warnings.push_back({"a filling that does not fit",
                                 spec.species[fill->mix.front().first].name +
-                                    sentence(": %.2g of the region would be spheres, and at most about %.2g can be: "
-                                             "enlarge the region or take fewer",
-                                             solid, most)});
+                                    sentence(": the region holds at most about %.3g particles filled in this way, and "
+                                             "the filling has %.3g: enlarge the region or take fewer",
+                                             std::floor(most / solid * static_cast<double>(fill->count)),
+                                             static_cast<double>(fill->count))});
     }
 }
 

@@ -122,9 +122,19 @@ TEST(MachineFillings, RefuseWhatDoesNotFit) {
     EXPECT_NE(refusal(spec).find("small and large: "), std::string::npos) << refusal(spec);
     EXPECT_NE(refusal(spec).find(" of 100000 particles fit"), std::string::npos) << refusal(spec);
     spec.fills = {filling(10, {Region::Box{{0, 0, 0}, {0.002, 0.04, 0.04}}}, Fill::As::lattice)};
-    EXPECT_NE(refusal(spec).find("0 of 10 particles"), std::string::npos) << "too thin";
+    EXPECT_NE(refusal(spec).find("0 of 10 particles"), std::string::npos) << "too thin for the largest";
+    spec.fills = {filling(10, {Region::Box{{0, 0, 0}, {0.001, 0.04, 0.04}}}, Fill::As::lattice)};
+    EXPECT_NE(refusal(spec).find("the region of the filling is 0.001 m wide along x"), std::string::npos)
+        << refusal(spec);
     spec.fills = {filling(10, {Region::Box{{1, 1, 1}, {2, 2, 2}}}, Fill::As::lattice)};
-    EXPECT_NE(refusal(spec).find("0 of 10 particles"), std::string::npos) << "outside of the domain";
+    EXPECT_NE(refusal(spec).find("the region of the filling lies outside of the domain along x"), std::string::npos);
+    for (const auto how : every_way) {
+        spec.fills = {filling(10, regions()[0], how)};
+        spec.walls = {{"lid", Plane{{0, 0, 0.035}, {0, 0, 1}}, {}, {{}, {}}, {}}};
+        EXPECT_NE(refusal(spec).find("has no place for a particle: wall 'lid' takes it up"), std::string::npos)
+            << refusal(spec);
+    }
+    spec.walls.clear();
     spec.fills = {filling(800, {Region::Box{{0, 0, 0}, {0.02, 0.02, 0.02}}}, Fill::As::random)};
     EXPECT_NE(refusal(spec).find("find no place at random"), std::string::npos);
     spec.fills = {filling(800, {Region::Box{{0, 0, 0}, {0.02, 0.02, 0.02}}}, Fill::As::rain)};
