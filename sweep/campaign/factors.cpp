@@ -1,7 +1,9 @@
 // "factors" and "fixed": varied parameters and fixed parameters.
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/joint_column.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
@@ -94,15 +96,21 @@ std::optional<Formula> read_formula(const Cursor& place, const ParameterSpec& pa
                              std::get<std::string>(formula)));
 }
 
+std::string no_parameter(const SceneInfo& scene) {
+    const auto named = scene_named(scene.shown());
+    const bool own = is_machine(scene.name) && (named == nullptr || named->name != scene.name);
+    return fmt::format("{} '{}' has no parameter of this name (grainsweep {} lists them)", own ? "machine" : "scene",
+                       scene.shown(), own ? "machines FILE" : "scenes " + scene.shown());
+}
+
 }  // namespace
 
 const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) {
     const auto* parameter = name.json().is_string() ? scene.find_parameter(name.json().get<std::string>()) : nullptr;
     if (parameter != nullptr) return *parameter;
-    name.refuse(
-        fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)", scene.shown(),
-                    scene.shown()),
-        name.json().is_string() ? nearest_word(name.json().get<std::string>(), names_of(scene.parameters)) : "");
+    name.refuse(no_parameter(scene), name.json().is_string()
+                                         ? nearest_word(name.json().get<std::string>(), names_of(scene.parameters))
+                                         : "");
 }
 
 Factor read_factor(const Section& section, const ParameterSpec& parameter, const std::filesystem::path& folder) {
@@ -150,9 +158,7 @@ void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesyste
     for (const auto& [key, here] : place.members("must be an object of parameter names and values")) {
         const auto* parameter = space.scene->find_parameter(key);
         if (parameter == nullptr) {
-            throw input_error(here.path(), "",
-                              fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)",
-                                          space.scene->shown(), space.scene->shown()),
+            throw input_error(here.path(), "", no_parameter(*space.scene),
                               nearest_word(key, names_of(space.scene->parameters)));
         }
         if (std::ranges::find(space.factors, key, &Factor::name) != space.factors.end()) {

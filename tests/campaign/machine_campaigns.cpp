@@ -367,6 +367,17 @@ TEST(MachineCampaigns, AWrongMachineEndsWithOneSentence) {
     }
 }
 
+TEST(MachineCampaigns, AnUnknownParameterNamesTheCommandThatListsThem) {
+    const Workshop shop;
+    json campaign = campaign_of("machine.json");
+    campaign["factors"][0]["name"] = "frictoin";
+    shop.write("c.json", campaign.dump());
+    const auto ended = shop.run({"plan", "c.json"});
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_THAT(ended.err, HasSubstr("machine 'bin' has no parameter of this name (grainsweep machines FILE lists "
+                                     "them). Did you mean 'friction'?"));
+}
+
 // What is wrong for a case's values only is the answer of that case.
 TEST(MachineCampaigns, AnImpossibleCaseIsRejected) {
     json machine = machine_with_files();
