@@ -207,6 +207,39 @@ void warn_of_fillings(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
+/// Returns whether no particle can lie in a region that does not move: the region lies outside of the domain, or its
+/// parts exclude each other.
+bool stays_empty(const Spec& spec, Region region) {
+    bool moves = false;
+    region.each_moving([&](Region::Moving&) { moves = true; });
+    const Bounds bounds = region.bounds();
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!moves &&
+            (bounds.low[k] > bounds.high[k] || (!spec.domain.periodic[k] && (bounds.low[k] > spec.domain.high[k] ||
+                                                                             bounds.high[k] < spec.domain.low[k]))))
+            return true;
+    return false;
+}
+
+void warn_of_empty_regions(const Spec& spec, std::vector<Warning>& warnings) {
+    std::string where;
+    const auto add = [&](const std::string& name) { where += (where.empty() ? "" : ", ") + name; };
+    for (const Measure& measure : spec.measures) {
+        const auto& options = measure.options.all();
+        if (std::ranges::any_of(options, [&](const auto& option) {
+                const auto* region = std::get_if<Region>(&option.second);
+                return region != nullptr && stays_empty(spec, *region);
+            }))
+            add(measure.name);
+    }
+    for (const Removal& removal : spec.removals)
+        if (stays_empty(spec, removal.in)) add("remove at " + spec.phases[removal.at].name);
+    if (!where.empty())
+        warnings.push_back({"a region without particles",
+                            where + ": the region lies outside of the domain, or its parts exclude each other, so that "
+                                    "no particle is ever in it"});
+}
+
 void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (const Species& species : spec.species)
@@ -474,6 +507,7 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     std::vector<Warning> warnings = spec.warnings;
     warn_of_softness(spec, warnings);
     warn_of_fillings(spec, warnings);
+    warn_of_empty_regions(spec, warnings);
     warn_of_falling(spec, warnings);
     warn_of_feeds(spec, warnings);
     warn_of_walls(spec, warnings);

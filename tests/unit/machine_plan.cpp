@@ -127,6 +127,23 @@ TEST(MachinePlan, WarnsOfACountThatDoesNotFollowTheScale) {
     EXPECT_EQ(kinds("[]"), Kinds{});
 }
 
+TEST(MachinePlan, WarnsOfRegionsThatStayEmpty) {
+    const Kinds warned{"a region without particles"};
+    const auto of = [&](const char* region) {
+        return kinds(
+            fmt::format(R"([{{"op": "add", "path": "/measure/none", "value": {{"mass": {{"in": {}}}}}}}])", region)
+                .c_str());
+    };
+    EXPECT_EQ(of(R"({"box": {"low": [1, 1, 1], "high": [2, 2, 2]}})"), warned);
+    EXPECT_EQ(of(R"({"all": [{"half_space": {"point": [0, 0, 0.02], "normal": [0, 0, 1]}},
+                             {"half_space": {"point": [0, 0, 0.01], "normal": [0, 0, -1]}}]})"),
+              warned);
+    EXPECT_EQ(of(R"({"box": {"low": [0, 0, 0], "high": [2, 2, 2]}})"), Kinds{});
+    EXPECT_EQ(kinds(R"([{"op": "add", "path": "/remove", "value": [
+                         {"at": "turn", "in": {"box": {"low": [1, 1, 1], "high": [2, 2, 2]}}}]}])"),
+              warned);
+}
+
 TEST(MachinePlan, WarnsOfWallsTooFastForTheStep) {
     const char* fast = R"([{"op": "add", "path": "/walls/paddle/motion/-",
                             "value": {"vibrate": {"amplitude": [0, 0, 1e-6], "frequency": 3124}}}])";
