@@ -193,7 +193,7 @@ TEST(MachineCampaigns, WhatChangesNoAnswerChangesNoId) {
          {R"({"let": {"side": "21 mm"}})", R"({"let": {"meaning": 1}})", R"({"let": {"bounds": 1}})",
           R"({"walls": {"meaning": {"plane": {"normal": [0, 0, 1]}, "material": "steel"}}})",
           R"({"walls": {"bounds": {"plane": {"normal": [0, 0, 1]}, "material": "steel"}}})",
-          R"({"contacts": {"friction": 0.1}})", R"({"measure": {"meaning": {"count": {}}}})",
+          R"({"contacts": {"friction": "friction/2"}})", R"({"measure": {"meaning": {"count": {}}}})",
           R"({"phases": [{"name": "fall", "for": 1},
              {"name": "turn", "for": 1}, {"name": "stop", "for": 1}]})",
           R"({"gravity": [0, 0, -9.8]})"}) {
