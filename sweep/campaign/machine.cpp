@@ -180,6 +180,10 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     reading.stiffness_scale = input_number(inputs, stiffness_parameter);
     if (takes_ratio(*machine.document)) reading.aspect_ratio = input_number(inputs, ratio_parameter);
     reading.spec.gravity = gravity_of(top, reading.scope);
+    if (!machine.unused.empty())
+        reading.spec.warnings.push_back(
+            {"parameters that nothing uses",
+             fmt::format("nothing in this machine uses {}: as a factor it changes nothing", in_words(machine.unused))});
     read_phase_names(top, reading);
     (void)reading.scope.read(top, "shaking", &reading.spec.shaking);
     reading.spec.method.rest_speed = reading.scope.number(top, "rest_speed", "m/s", 0, no_negative_number);
@@ -225,6 +229,7 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
     const auto summary = top.find("summary");
     machine->summary = summary ? summary->text() : machine->name;
     machine->parameters = read_machine_parameters(top);
+    machine->unused = unused_parameters(top.place().json(), machine->parameters);
     machine->accuracy = read_machine_accuracy(top, machine->parameters);
     machine->observables = machine_observables(top);
     machine->shown = shown_observables(top);
@@ -252,12 +257,10 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
 std::shared_ptr<const Machine> make_machine(Json document, std::string root, const FileReader& read_file) {
     std::map<std::string, std::string, std::less<>> made;
     document = with_powders(std::move(document), root, read_file, made);
-    auto machine = checked(std::move(document), root, [&](const std::string& name) {
+    return checked(std::move(document), root, [&](const std::string& name) {
         const auto found = made.find(name);
         return found == made.end() ? read_file(name) : found->second;
     });
-    require_used_parameters(Section(Cursor(*machine->document, root), machine_keys::top()), machine->parameters);
-    return machine;
 }
 
 FileReader beside(const fs::path& folder) {

@@ -34,6 +34,7 @@ struct Machine {
     std::shared_ptr<const nlohmann::json> document;         ///< the parsed file
     std::map<std::string, std::string, std::less<>> files;  ///< contents, by the name in the document
     std::vector<ParameterSpec> parameters;
+    std::vector<std::string> unused;  ///< parameters that nothing in the document names
     std::vector<ObservableSpec> observables;
     std::vector<MainObservable> shown;                    ///< in short tables; empty: the first ones
     std::map<std::string, Inputs, std::less<>> accuracy;  ///< as of SceneInfo

@@ -392,17 +392,16 @@ std::set<std::string, std::less<>> names_in_texts(const Json& machine) {
 
 }  // namespace
 
-void require_used_parameters(const Section& top, const std::vector<ParameterSpec>& parameters) {
-    const auto place = top.find("parameters");
-    if (!place) return;
+std::vector<std::string> unused_parameters(const Json& machine, const std::vector<ParameterSpec>& parameters) {
     std::vector<ParameterSpec> common;
-    add_common(common, takes_ratio(top.place().json()));
-    const auto named = names_in_texts(top.place().json());
+    add_common(common, takes_ratio(machine));
+    const auto named = names_in_texts(machine);
+    std::vector<std::string> unused;
     for (const auto& parameter : parameters)
         if (std::ranges::find(common, parameter.name, &ParameterSpec::name) == common.end() &&
             std::ranges::none_of(names_in_expressions(parameter), [&](const auto& one) { return named.contains(one); }))
-            throw input_error(path_of(place->path(), parameter.name), "",
-                              "nothing in this machine uses this parameter: name it in an expression, or remove it");
+            unused.push_back(parameter.name);
+    return unused;
 }
 
 void require_name(const Cursor& place, std::string_view name) {

@@ -21,8 +21,9 @@ inline constexpr std::string_view ratio_parameter = "aspect_ratio";
 
 /// Returns the parameters of the machine, and the parameters of every machine.
 [[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);
-/// Refuses a parameter of the machine that no text of it names: as a factor it would change nothing.
-void require_used_parameters(const Section& top, const std::vector<ParameterSpec>& parameters);
+/// Returns the names of parameters of the machine that no text of it names.
+[[nodiscard]] std::vector<std::string> unused_parameters(const Json& machine,
+                                                         const std::vector<ParameterSpec>& parameters);
 /// Returns whether the machine has the parameter for the shape of its particles that machines have.
 [[nodiscard]] bool takes_ratio(const Json& machine);
 /// Returns the values of parameters at each level of accuracy.

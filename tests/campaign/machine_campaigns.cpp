@@ -349,10 +349,6 @@ TEST(MachineCampaigns, AWrongMachineEndsWithOneSentence) {
                     m["fill"][0]["in"] = deep;
                 }),
                 HasSubstr("nested deeper"));
-    EXPECT_THAT(refusal([](json& m) {
-                    m["parameters"]["spare"] = {{"default", 1}};
-                }),
-                HasSubstr("machine.json: $.parameters.spare: nothing in this machine uses"));
     EXPECT_THAT(refusal([](json& m) { m["contacts"]["surface_energy"] = "10 J/m2"; }),
                 HasSubstr("machine.json: $.contacts.surface_energy: got \"10 J/m2\"; 10 has no effect"));
     for (const char* text : {"1e400", "NaN", "[1, 2", "\"\\u0000\"", ""}) {

@@ -61,6 +61,18 @@ TEST(MachinePlan, ASoundMachineHasNoWarning) {
     EXPECT_EQ(kinds("[]"), Kinds{});
 }
 
+TEST(MachinePlan, WarnsOfParametersThatNothingUses) {
+    const auto with = [](const char* spare) {
+        return kinds(
+            (R"([{"op": "add", "path": "/parameters/spare", "value": {"default": 1, "only_if": {"bars": "set"}}},
+                          {"op": "add", "path": "/notes", "value": "spare"}, )" +
+             std::string(spare) + "]")
+                .c_str());
+    };
+    EXPECT_EQ(with(R"({"op": "add", "path": "/let/one", "value": "2"})"), Kinds{"parameters that nothing uses"});
+    EXPECT_EQ(with(R"({"op": "add", "path": "/let/one", "value": "2*spare"})"), Kinds{});
+}
+
 TEST(MachinePlan, WarnsOfPowderThatStillFalls) {
     const char* short_fall = R"([{"op": "replace", "path": "/phases/0", "value": {"name": "fall", "for": 0.01}}])";
     EXPECT_EQ(kinds(short_fall), Kinds{"powder still falling"});
