@@ -376,18 +376,19 @@ void evaluate_lets(const Section& top, const std::set<std::string, std::less<>>&
     }
 }
 
-/// Returns the names in the texts of a machine, without texts for readers and what only sets or restricts parameters.
-std::set<std::string, std::less<>> names_in_texts(const Json& machine) {
-    static const std::regex name("[A-Za-z_][A-Za-z0-9_]*");
-    static const std::regex aside("/(name|summary|parameters/.*|accuracy/.*|measure/[^/]*/meaning)|.*/notes(/.*)?");
-    std::set<std::string, std::less<>> names;
+/// Returns the words in the texts of a machine, without texts for readers and what only sets or restricts parameters.
+std::set<std::string, std::less<>> words_in_texts(const Json& machine) {
+    const auto aside = [](std::string_view place) {
+        return place == "/name" || place == "/summary" || place.starts_with("/parameters/") ||
+               place.starts_with("/accuracy/") || (place.starts_with("/measure/") && place.ends_with("/meaning")) ||
+               place.find("/notes") != std::string_view::npos;
+    };
+    std::set<std::string, std::less<>> words;
+    const auto keep = [&](std::string_view word) { return words.emplace(word), false; };
     const Json leaves = machine.flatten();
-    for (const auto& [place, leaf] : leaves.items()) {
-        if (!leaf.is_string() || std::regex_match(place, aside)) continue;
-        const auto& text = leaf.get_ref<const std::string&>();
-        for (std::sregex_iterator at(text.begin(), text.end(), name), end; at != end; ++at) names.insert(at->str());
-    }
-    return names;
+    for (const auto& [place, leaf] : leaves.items())
+        if (leaf.is_string() && !aside(place)) (void)names_in(leaf.get_ref<const std::string&>(), keep);
+    return words;
 }
 
 }  // namespace
@@ -395,7 +396,7 @@ std::set<std::string, std::less<>> names_in_texts(const Json& machine) {
 std::vector<std::string> unused_parameters(const Json& machine, const std::vector<ParameterSpec>& parameters) {
     std::vector<ParameterSpec> common;
     add_common(common, takes_ratio(machine));
-    const auto named = names_in_texts(machine);
+    const auto named = words_in_texts(machine);
     std::vector<std::string> unused;
     for (const auto& parameter : parameters)
         if (std::ranges::find(common, parameter.name, &ParameterSpec::name) == common.end() &&

@@ -95,7 +95,7 @@ const std::vector<Rule>& rules() {
           "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
         {"sweep/campaign/powder",  // a powder file becomes parameters of scenes
          {"sweep/campaign/", "sweep/files/", "solver/plain_text.hpp", "solver/particles/size_",
-          "solver/dem/time_step.hpp", "solver/scenes/kit/", "solver/scenes/values.hpp"}},
+          "solver/dem/material.hpp", "solver/dem/time_step.hpp", "solver/scenes/kit/", "solver/scenes/values.hpp"}},
         {"sweep/campaign/",
          {"sweep/campaign/", "sweep/designs/", "sweep/files/", "stats/convergence_rule.hpp", "stats/distribution.hpp",
           "stats/levels.hpp", "solver/field.hpp", "solver/plain_text.hpp", "solver/scenes/values.hpp",
