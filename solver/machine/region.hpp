@@ -129,6 +129,10 @@ private:
     const BoxRegion* box_;
     const HalfRegion* half_;
 };
+/// Returns a region at this moment, if there is one.
+[[nodiscard]] inline std::optional<RegionNow> now(const std::optional<Region>& region) {
+    return region ? std::optional<RegionNow>(*region) : std::nullopt;
+}
 
 /// Returns the region with its images where it reaches beyond a periodic face of the domain. A box or an upright
 /// cylinder that is longer than a period ends at the faces. Of other regions longer than four periods only the five

@@ -27,8 +27,7 @@ public:
     }
     /// Returns holds(frame, i) as a function of i, for many particles of one frame.
     [[nodiscard]] auto at(const Frame& frame) const {
-        return [this, &frame, all = of_.species.empty() && of_.named.empty(),
-                in = in_ ? std::optional<RegionNow>(*in_) : std::nullopt](std::size_t i) {
+        return [this, &frame, all = of_.species.empty() && of_.named.empty(), in = now(in_)](std::size_t i) {
             if (in && !in->contains(frame.state.position[i])) return false;
             if (frame.state.mobile[i] != 0) return all || is_of(frame, frame.id(i));
             return !of_.named.empty() && is_named(frame, frame.id(i));

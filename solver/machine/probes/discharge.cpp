@@ -20,10 +20,11 @@ public:
 
     double look(const Frame& frame) override {
         double outside = 0, all = 0;
+        const auto from = now(from_);
         std::size_t i = 0;  // of the state, in which ids ascend
         for (std::size_t id = 0; id < frame.radius.size(); ++id) {
             const bool present = i < frame.size() && frame.id(i) == id;
-            const bool inside = present && (!from_ || from_->contains(frame.state.position[i]));
+            const bool inside = present && (!from || from->contains(frame.state.position[i]));
             if (present) ++i;
             if (!frame.is_particle(id)) continue;
             if (!of_species_.empty() && std::ranges::find(of_species_, frame.species[id]) == of_species_.end())

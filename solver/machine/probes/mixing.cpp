@@ -37,10 +37,11 @@ public:
     double look(const Frame& frame) override {
         std::map<std::array<std::int64_t, 3>, LaceyCell> cells;
         std::array<double, 2> volume{}, squares{};
+        const auto here = now(in_);
         for (std::size_t i = 0; i < frame.size(); ++i) {
             const std::size_t species = frame.species_of(i);
             if (species != of_[0] && species != of_[1]) continue;
-            if (in_ && !in_->contains(frame.state.position[i])) continue;
+            if (here && !here->contains(frame.state.position[i])) continue;
             const double v = frame.volume(i);
             const std::size_t which = species == of_[0] ? 0 : 1;
             volume[which] += v;
@@ -88,8 +89,9 @@ public:
     explicit MassShare(const Options& options) : of_(options), in_(options.region("in")) {}
     double look(const Frame& frame) override {
         double of_species = 0, all = 0;
+        const auto here = now(in_);
         for (std::size_t i = 0; i < frame.size(); ++i) {
-            if (in_ && !in_->contains(frame.state.position[i])) continue;
+            if (here && !here->contains(frame.state.position[i])) continue;
             all += frame.mass(i);
             if (of_.holds(frame, i)) of_species += frame.mass(i);
         }

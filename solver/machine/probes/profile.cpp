@@ -32,9 +32,10 @@ public:
     double look(const Frame&) override { return undefined; }
     void profile(const Frame& frame, std::vector<Sample>& into) override {
         std::vector<double> sum(bins_.count, 0), weight(bins_.count, 0);
+        const auto here = now(in_);
         for (std::size_t i = 0; i < frame.size(); ++i) {
             if (frame.state.mobile[i] == 0) continue;
-            if (in_ && !in_->contains(frame.state.position[i])) continue;
+            if (here && !here->contains(frame.state.position[i])) continue;
             const bool counts =
                 of_species_.empty() || std::ranges::find(of_species_, frame.species_of(i)) != of_species_.end();
             if (of_ != ProfileOf::share && !counts) continue;
