@@ -218,7 +218,9 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     return std::move(reading.spec);
 }
 
-std::shared_ptr<const Machine> checked(Json document, const std::string& root, const FileReader& read_file) {
+/// Returns the machine of a document. No case of it is checked: one in a database was checked when it was written,
+/// maybe by fewer rules.
+std::shared_ptr<const Machine> read_document(Json document, const std::string& root, const FileReader& read_file) {
     auto machine = std::make_shared<Machine>();
     machine->document = std::make_shared<const Json>(std::move(document));
     if (machine->document->is_object() && machine->document->contains("campaign"))
@@ -246,10 +248,14 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
             }
         }
     });
-    Inputs defaults;
-    for (const auto& parameter : machine->parameters) defaults.emplace(parameter.name, parameter.default_value);
-    (void)spec_of(top, *machine, defaults, {});
     return machine;
+}
+
+/// Refuses a machine whose case of defaults is none.
+void check_defaults(const Machine& machine, const std::string& root) {
+    Inputs defaults;
+    for (const auto& parameter : machine.parameters) defaults.emplace(parameter.name, parameter.default_value);
+    (void)spec_of(Section(Cursor(*machine.document, root), machine_keys::top()), machine, defaults, {});
 }
 
 }  // namespace
@@ -257,10 +263,12 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
 std::shared_ptr<const Machine> make_machine(Json document, std::string root, const FileReader& read_file) {
     std::map<std::string, std::string, std::less<>> made;
     document = with_powders(std::move(document), root, read_file, made);
-    return checked(std::move(document), root, [&](const std::string& name) {
+    auto machine = read_document(std::move(document), root, [&](const std::string& name) {
         const auto found = made.find(name);
         return found == made.end() ? read_file(name) : found->second;
     });
+    check_defaults(*machine, root);
+    return machine;
 }
 
 FileReader beside(const fs::path& folder) {
@@ -306,8 +314,9 @@ std::shared_ptr<const Machine> machine_in(std::string_view text, const FileReade
     try {
         const Json definition = parse_json(text);
         const Json& files = definition.at("files");
-        return checked(definition.at("machine"), "$",
-                       [&](const std::string& name) { return contents_of_hash(files.at(name).get<std::string>()); });
+        return read_document(definition.at("machine"), "$", [&](const std::string& name) {
+            return contents_of_hash(files.at(name).get<std::string>());
+        });
     } catch (const Json::exception& error) {
         throw std::invalid_argument(fmt::format("no definition of a machine: {}", error.what()));
     } catch (const InputError& wrong) {
