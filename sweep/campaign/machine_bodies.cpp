@@ -56,19 +56,18 @@ machine::Again read_again(const Section& section, const MachineReading& reading)
     return again;
 }
 
-/// Amount of an attraction: the laws that use it.
+/// Amount of an attraction, and which laws use it.
 struct Attraction {
     const char* key;
     double dem::Material::*amount;
     bool (*acts_by)(dem::CohesionLaw);
-    const char* laws;
 };
 
 constexpr std::array attractions = {
-    Attraction{"cohesion", &dem::Material::cohesion, dem::acts_over_area, "laws 'sjkr', 'sjkr2' and 'paper'"},
-    Attraction{"surface_energy", &dem::Material::surface_energy, dem::acts_by_surface_energy, "laws 'jkr' and 'dmt'"},
+    Attraction{"cohesion", &dem::Material::cohesion, dem::acts_over_area},
+    Attraction{"surface_energy", &dem::Material::surface_energy, dem::acts_by_surface_energy},
     Attraction{"surface_tension", &dem::Material::surface_tension,
-               [](dem::CohesionLaw law) { return law == dem::CohesionLaw::capillary; }, "law 'capillary'"},
+               [](dem::CohesionLaw law) { return law == dem::CohesionLaw::capillary; }},
 };
 
 /// Refuses an amount of attraction in a section that the cohesion law does not use. 0 is allowed: a machine may choose
@@ -77,12 +76,17 @@ void require_used_attraction(const Section& section, const dem::Material& contac
     const auto words = std::ranges::find(dem::law_fields(), std::string_view("cohesion_law"), &Field::name)->words;
     const auto law = contact.cohesion_law;
     const auto used = std::ranges::find_if(attractions, [&](const auto& one) { return one.acts_by(law); });
-    for (const Attraction& one : attractions)
-        if (const auto place = section.find(one.key); place && !one.acts_by(law) && contact.*one.amount > 0)
-            place->refuse(
-                fmt::format("{:.4g} has no effect: it belongs to the cohesion {}, and \"cohesion_law\" "
-                            "is '{}' here, which uses \"{}\"",
-                            contact.*one.amount, one.laws, words[static_cast<std::size_t>(law)], used->key));
+    for (const Attraction& one : attractions) {
+        const auto place = section.find(one.key);
+        if (!place || one.acts_by(law) || !(contact.*one.amount > 0)) continue;
+        std::vector<std::string_view> laws;
+        for (std::size_t k = 0; k < words.size(); ++k)
+            if (one.acts_by(static_cast<dem::CohesionLaw>(k))) laws.push_back(words[k]);
+        place->refuse(
+            fmt::format("{:.4g} has no effect: it belongs to \"cohesion_law\" {}; that is '{}' here, which uses "
+                        "\"{}\"",
+                        contact.*one.amount, in_words(laws), words[static_cast<std::size_t>(law)], used->key));
+    }
 }
 
 /// Reads "glued" of "contacts". A property as in other contacts is none of its own.

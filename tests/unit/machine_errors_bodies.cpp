@@ -1,5 +1,6 @@
 // Every wrong machine file gets one sentence: where, what value, which rule, the nearest right word. Here of
 // materials, contacts, walls, gravity and domain.
+#include "sweep/campaign/input_error.hpp"
 #include "tests/support/wrong_machines.hpp"
 
 #include <gtest/gtest.h>
@@ -78,10 +79,9 @@ constexpr WrongMachine wrong[] = {
     {"/contacts/pairs", R"(["glass steel"])", "$.contacts.pairs: ", R"(must be an object of pairs: "glass steel".)"},
     {"/contacts/frictoin", "0.1", "$.contacts.frictoin: unknown key", "Did you mean 'friction'?"},
     {"/contacts/surface_tension", "\"72 mN/m\"",
-     "$.contacts.surface_tension: ", "0.072 has no effect: it belongs to the cohesion law 'capillary', and"},
+     "$.contacts.surface_tension: ", "0.072 has no effect: it belongs to \"cohesion_law\" 'capillary'; that is"},
     {"/contacts/surface_energy", "\"10 J/m2\"", "$.contacts.surface_energy: ",
-     "10 has no effect: it belongs to the cohesion laws 'jkr' and 'dmt', and \"cohesion_law\" is 'sjkr' here, which "
-     "uses \"cohesion\"."},
+     "10 has no effect: it belongs to \"cohesion_law\" 'jkr' or 'dmt'; that is 'sjkr' here, which uses \"cohesion\"."},
     {"PATCH",
      R"([{"op":"add","path":"/contacts/cohesion_law","value":"jkr"},{"op":"add","path":"/contacts/cohesion","value":1e6}])",
      "$.contacts.cohesion: ", "is 'jkr' here, which uses \"surface_energy\"."},
@@ -89,7 +89,7 @@ constexpr WrongMachine wrong[] = {
      R"([{"op":"add","path":"/contacts/cohesion_law","value":"capillary"},{"op":"add","path":"/contacts/surface_energy","value":1}])",
      "$.contacts.surface_energy: ", "is 'capillary' here, which uses \"surface_tension\"."},
     {"/contacts/pairs/glass steel", R"({"surface_energy": 0.1})", R"($.contacts.pairs["glass steel"].surface_energy: )",
-     "0.1 has no effect: it belongs to the cohesion laws"},
+     "0.1 has no effect: it belongs to \"cohesion_law\""},
     {"/contacts/surface_energy", "-1", "$.contacts.surface_energy: ", "must be a number from 0 to 100, J/m2."},
     {"PATCH",
      R"([{"op":"add","path":"/contacts/cohesion_law","value":"jkr"},{"op":"add","path":"/contacts/pairs/glass steel","value":{"surface_energy":0.1}}])",
@@ -253,6 +253,19 @@ TEST(MachineErrors, AnAttractionMayBeZeroWhereItsLawIsAbsent) {
     EXPECT_NE(refusal_of(machine).find("$.contacts.glued.surface_energy: got 0.1; 0.1 has no effect"),
               std::string::npos)
         << refusal_of(machine);
+}
+
+// It stays known, so that its database is sound and its results have names; its cases say why they are refused.
+TEST(MachineErrors, AStoredMachineIsReadWhereLaterRulesRefuseItsCases) {
+    nlohmann::json document = small_machine();
+    document["contacts"]["surface_energy"] = 0.1;
+    const nlohmann::json stored = {{"machine", document}, {"files", nlohmann::json::object()}};
+    const auto machine =
+        campaign::machine_in(stored.dump(), [](const std::string&) -> std::string { throw std::logic_error("none"); });
+    Inputs defaults;
+    for (const auto& parameter : machine->parameters) defaults.emplace(parameter.name, parameter.default_value);
+    EXPECT_EQ(campaign::machine_text(*machine), stored.dump());
+    EXPECT_THROW((void)campaign::machine_spec(*machine, defaults, {}), campaign::InputError);
 }
 
 }  // namespace grainsweep::tests::machine_errors_bodies_test
