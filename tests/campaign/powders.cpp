@@ -165,7 +165,6 @@ TEST_F(Powders, AreSpeciesOfMachines) {
     machine["species"] = {{"light", {{"powder", "beads.json"}}},
                           {"heavy", {{"material", "light"}, {"diameter", "2.5 mm"}}}};
     machine["contacts"] = {{"restitution", 0.5}};
-    machine["parameters"].erase("friction");
     folder.write("bin.json", machine.dump());
     folder.write("c.json", json{{"campaign", "m"},
                                 {"scene", "machine"},

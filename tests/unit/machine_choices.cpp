@@ -28,7 +28,7 @@ json box() {
         "particles": {"whole": true, "default": 60, "bounds": [0, 1000]},
         "held": {"default": 0, "only_if": {"particles": "set"}}
       },
-      "let": {"room": "20*bead_largest", "double_room": "2*room", "held_of_all": "held + particles"},
+      "let": {"room": "20*bead_largest", "double_room": "2*room"},
       "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}},
       "species": {"bead": {"diameter": "2 mm", "sizes": {"spread": "{law}", "half_width": "spread", "sigma": "spread",
                            "file": "{measured}"}}},

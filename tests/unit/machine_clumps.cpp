@@ -336,7 +336,6 @@ TEST(MachineClumps, AMachineMayHaveAnAspectRatioOfItsOwn) {
     json machine = pour({{"aspect_ratio", 1}});
     machine["species"]["rice"].erase("shape");
     machine["parameters"] = {{"aspect_ratio", {{"default", 7}, {"meaning", "of the box"}}}};
-    machine["let"] = {{"long_side", "aspect_ratio*0.01"}};
     EXPECT_FALSE(spec_of(machine).species[0].shape);
 }
 

@@ -15,7 +15,6 @@ json press_machine() {
     return json::parse(R"({
       "name": "press",
       "parameters": {"force": {"unit": "N", "default": 2}},
-      "let": {"half_force": "force/2"},
       "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}},
       "contacts": {"restitution": 0.5, "friction": 0.3},
       "species": {"bead": {"diameter": "3 mm"}},
