@@ -315,7 +315,7 @@ double fastest_of(const Spec& spec) {
     for (const MachineWall& wall : spec.walls) {
         std::vector<Motion> motions;
         for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
-        if (motions.empty() && spec.domain.periodic == std::array<bool, 3>{}) continue;  // else it may not be possible
+        if (motions.empty() && spec.domain.periodic == std::array<bool, 3>{}) continue;  // it cannot exceed a period
         try {
             const dem::MovingWall moving(dem::Wall(wall.shape, motions), spec.domain, largest,
                                          dem::MovingWall::Searches::few);

@@ -468,9 +468,8 @@ std::span<const Field> top() {
                 shaking_keys),
         Field{"rest_speed", MachineKey::quantity,
               "m/s: powder slower than this for 256 time steps, and as long as a free fall takes to turn that speed "
-              "around, "
-              "with nothing faster near and no net force of half its weight, is not advanced; only in precision mixed, "
-              "without moving walls and shaking",
+              "around, with nothing faster near and no net force of half its weight, is not advanced; only in "
+              "precision mixed, without moving walls and shaking",
               "0"},
         Field{
             "impact_speed", MachineKey::quantity,
