@@ -1,6 +1,7 @@
 #include "solver/dem/fast/contact_reader.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -74,7 +75,8 @@ ContactForce ContactReader::read(const AnyContact& laws, Touch<partner> t, std::
                         id_[i], second);
 }
 
-bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const {
+/// Returns whether two particles are within the reach of their laws; sets the geometry of the touch.
+inline bool ContactReader::near(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
     const Record &a = field_.records[i], &b = field_.records[j];
     Vec3 branch{};
     for (std::size_t axis = 0; axis < 3; ++axis)  // the difference is between the nearest images
@@ -95,7 +97,20 @@ bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory
     t.normal = (1 / t.distance) * branch;
     t.effective_radius = t.radius_i * t.radius_j / sum;
     t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
-    return laws_of(i, j).begin(t, memory.data());
+    return true;
+}
+
+bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const {
+    return near(i, j, t) && laws_of(i, j).begin(t, memory.data());
+}
+
+template <class Visit>
+void ContactReader::for_each_parked(Visit&& visit) const {
+    for (const ParkedContact& p : parked_) {
+        const Memory of_pair = memory(p);
+        Touch<Partner::particle> t;
+        if (touches(p.first, p.second, of_pair, t)) visit(p.first, p.second, t, of_pair);
+    }
 }
 
 template <class Visit>
@@ -107,15 +122,30 @@ void ContactReader::for_each_pair(Visit&& visit) const {
         const bool remembered = (field_.touching[k / width_] >> (k % width_) & 1) != 0;
         const std::int64_t at = remembered ? stream++ : 0;
         if (i >= field_.count || j >= field_.count) continue;  // they fill the list up
+        Touch<Partner::particle> t;
+        if (!near(i, j, t)) continue;
         const Memory of_pair = remembered ? memory(field_.history, at) : Memory{};
-        Touch<Partner::particle> t;
-        if (touches(i, j, of_pair, t)) visit(i, j, t, of_pair);
+        if (laws_of(i, j).begin(t, of_pair.data())) visit(i, j, t, of_pair);
     }
-    for (const ParkedContact& p : parked_) {
-        const Memory of_pair = memory(p);
-        Touch<Partner::particle> t;
-        if (touches(p.first, p.second, of_pair, t)) visit(p.first, p.second, t, of_pair);
-    }
+    for_each_parked(visit);
+}
+
+template <class Visit>
+void ContactReader::for_each_remembered(Visit&& visit) const {
+    std::int64_t stream = 0;
+    for (std::int32_t batch = 0; batch * width_ < field_.inner_count; ++batch)
+        for (unsigned left = field_.touching[batch]; left != 0; left &= left - 1) {
+            const std::int32_t k = batch * width_ + std::countr_zero(left);
+            const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
+            const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
+            const std::int64_t at = stream++;
+            if (i >= field_.count || j >= field_.count) continue;
+            Touch<Partner::particle> t;
+            if (!near(i, j, t)) continue;
+            const Memory of_pair = memory(field_.history, at);
+            if (laws_of(i, j).begin(t, of_pair.data())) visit(i, j, t, of_pair);
+        }
+    for_each_parked(visit);
 }
 
 ContactReader::Memory ContactReader::memory(const ParkedContact& contact) const {
@@ -232,12 +262,16 @@ void ContactReader::network(const Walls& walls, double time, const std::vector<s
         t.damping_root = std::sqrt(t.root * t.reduced_mass);
         return bond_of(laws, t, memory.data(), key, i, j, slides, rounding_at_rest);
     };
-    for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
+    const auto add = [&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
         const std::uint64_t key = key_of(id_[i], id_[j]);
         if (!into.takes(key)) return;
         complete(i, j, t);
         into.add(bond(laws_of(i, j), t, i, j, key, memory));
-    });
+    };
+    if (field_.histories > 0)
+        for_each_remembered(add);
+    else
+        for_each_pair(add);
     for (std::size_t w = 0; w < walls.count(); ++w) {
         if (!walls[w].present()) continue;
         const std::vector<Freedom> freedoms = freedoms_of(walls[w], time);

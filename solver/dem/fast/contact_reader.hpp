@@ -64,10 +64,17 @@ private:
     /// Returns 1/m* of a particle's side of a contact, 1/kg.
     [[nodiscard]] double inverse_mass_at(std::int32_t i, const Vec3& normal) const;
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
+    [[nodiscard]] bool near(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
     [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const;
     /// Calls visit(i, j, touch, memory) for touching pairs; only the geometry of the touch is set.
     template <class Visit>
     void for_each_pair(Visit&& visit) const;
+    /// As for_each_pair(), for laws with memory, of the pairs that touched in the last step: the others of the list are
+    /// not read, so that a pair whose overlap is within rounding may be missing.
+    template <class Visit>
+    void for_each_remembered(Visit&& visit) const;
+    template <class Visit>
+    void for_each_parked(Visit&& visit) const;
     /// Calls visit(i, point, touch, memory) for the particles that touch the wall.
     template <class Visit>
     void for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const;
