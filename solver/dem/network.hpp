@@ -97,7 +97,8 @@ public:
     /// Returns an upper bound of the largest eigenvalue for a time step, s: that of the single contacts with the masses
     /// of their partners shared out among all their contacts (Fried 1972, Comput. Struct. 2, 125).
     [[nodiscard]] double bound(double time_step) const;
-    /// Returns the share, from below to about 2 %, by Lanczos's iteration with a fixed start. Call bound() before.
+    /// Returns the share, from below to about 2 %, by Lanczos's iteration with a fixed start, of the contacts about
+    /// those with the largest bound. Call bound() before.
     [[nodiscard]] StepShare share(double time_step) const;
 
 private:
@@ -122,10 +123,18 @@ private:
     struct Moved {
         Vec3 velocity, turning;
     };
+    /// Motion of the two sides of a contact against each other.
+    struct Relative {
+        double along;
+        Vec3 sliding, rolling;
+    };
+    struct Energies {
+        double springs = 0, dampers = 0;
+    };
+    struct Weighted;
 
     /// Returns the number of spheres and clumps: six degrees of freedom each.
     [[nodiscard]] std::size_t nodes() const { return inverse_mass_.size() + bodies_.size(); }
-    [[nodiscard]] std::size_t size() const { return 6 * nodes() + freedoms_.size(); }
     [[nodiscard]] const Carrier* carrier(std::int32_t sphere) const {
         if (bodies_.empty() || carriers_[static_cast<std::size_t>(sphere)].body < 0) return nullptr;
         return &carriers_[static_cast<std::size_t>(sphere)];
@@ -135,6 +144,17 @@ private:
         return by == nullptr ? static_cast<std::size_t>(sphere)
                              : inverse_mass_.size() + static_cast<std::size_t>(by->body);
     }
+    /// Returns the sum of the loads of a contact's partners.
+    [[nodiscard]] double load_at(const Bond& bond) const;
+    /// Finds the stiffest part of the network: the contacts with 0.7 of the largest sum of loads or more, and those
+    /// that are up to two contacts away. The fastest mode dies out within them. Sets places_ and part_.
+    void find_part() const;
+    /// Returns the place of a node's coordinates.
+    template <bool clumped>
+    [[nodiscard]] std::size_t place_of(std::int32_t sphere) const {
+        const std::size_t node = clumped ? node_of(sphere) : static_cast<std::size_t>(sphere);
+        return 6 * static_cast<std::size_t>(places_[node]);
+    }
     template <bool clumped>
     [[nodiscard]] Moved motion_of(std::int32_t sphere, const double* speeds) const;
     template <bool clumped>
@@ -142,9 +162,14 @@ private:
     /// Returns the load of a contact on a node, for bound(): `strength` divided by its mass for a sphere.
     [[nodiscard]] double load_of(const Bond& bond, std::int32_t sphere, double strength, double normal,
                                  double tangential, double rolling) const;
-    /// Adds A u to `force`, A = `of_springs` K + `of_dampers` C. Without clumps a node is a sphere.
+    /// Adds A u of the part to `force`; the entries of A in `weighted`. Without clumps a node is a sphere.
     template <bool clumped>
-    void apply(double of_springs, double of_dampers, const double* speeds, double* force) const;
+    void apply(const std::vector<Weighted>& weighted, const double* speeds, double* force) const;
+    /// Returns `of_springs` u K u and `of_dampers` u C u of the part.
+    template <bool clumped>
+    [[nodiscard]] Energies energies(double of_springs, double of_dampers, const double* speeds) const;
+    template <bool clumped>
+    [[nodiscard]] Relative relative(const Bond& bond, const double* speeds) const;
 
     std::vector<double> inverse_mass_, inverse_inertia_;
     std::vector<Freedom> freedoms_;
@@ -154,7 +179,11 @@ private:
     std::vector<Bond> bonds_;
     std::vector<std::uint64_t> lasting_;
     std::vector<Column> columns_;
-    mutable std::vector<double> load_;  ///< of each sphere, scratch of bound(): strengths of its contacts
+    // Scratch.
+    mutable std::vector<double> load_;          ///< of each node and freedom, by bound(): strengths of its contacts
+    mutable std::vector<std::uint32_t> part_;   ///< contacts of the stiffest part
+    mutable std::vector<std::int32_t> places_;  ///< of nodes in that part; -1: none
+    mutable std::vector<std::size_t> in_part_;  ///< nodes of that part
 };
 
 }  // namespace grainsweep::dem

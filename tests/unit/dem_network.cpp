@@ -101,24 +101,30 @@ struct Dense {
                             .tangential_damper = 2 * random.uniform(draw++),
                             .rolling_damper = 1e-5 * random.uniform(draw++)};
             network.add(between(i, j, n, s));
-            // Rows: motion along n, slip, relative rotation across n, of twelve coordinates.
+            // Motion along n, slip, and relative rotation across n, of the twelve coordinates of two spheres.
+            using Row = Eigen::Matrix<double, 12, 1>;
+            const auto add_to = [&](Eigen::MatrixXd& whole, double weight, const Row& row) {
+                for (int a = 0; a < 12; ++a)
+                    for (int b = 0; b < 12; ++b)
+                        whole(a < 6 ? 6 * i + a : 6 * j + a - 6, b < 6 ? 6 * i + b : 6 * j + b - 6) +=
+                            weight * row[a] * row[b];
+            };
             for (int axis = 0; axis < 3; ++axis) {
                 Vec3 e{};
                 e[static_cast<std::size_t>(axis)] = 1;
-                Eigen::VectorXd along = Eigen::VectorXd::Zero(6 * count), slip = along, turn = along;
+                Row along = Row::Zero(), slip = along, turn = along;
                 const Vec3 across = e - geometry::dot(e, n) * n;
                 const Vec3 lever = cross(n, e);  // e . (w x n) = w . (n x e)
                 for (int a = 0; a < 3; ++a) {
                     const auto q = static_cast<std::size_t>(a);
-                    along[6 * i + a] = n[q], along[6 * j + a] = -n[q];
-                    slip[6 * i + a] = across[q], slip[6 * j + a] = -across[q];
-                    slip[6 * i + 3 + a] = slip[6 * j + 3 + a] = -radius * lever[q];
-                    turn[6 * i + 3 + a] = across[q], turn[6 * j + 3 + a] = -across[q];
+                    along[a] = n[q], along[6 + a] = -n[q];
+                    slip[a] = across[q], slip[6 + a] = -across[q];
+                    slip[3 + a] = slip[9 + a] = -radius * lever[q];
+                    turn[3 + a] = across[q], turn[9 + a] = -across[q];
                 }
-                if (axis == 0) stiffness += s.normal * along * along.transpose();
-                if (axis == 0) damping += s.normal_damper * along * along.transpose();
-                stiffness += s.tangential * slip * slip.transpose() + s.rolling * turn * turn.transpose();
-                damping += s.tangential_damper * slip * slip.transpose() + s.rolling_damper * turn * turn.transpose();
+                if (axis == 0) add_to(stiffness, s.normal, along), add_to(damping, s.normal_damper, along);
+                add_to(stiffness, s.tangential, slip), add_to(damping, s.tangential_damper, slip);
+                add_to(stiffness, s.rolling, turn), add_to(damping, s.rolling_damper, turn);
             }
         };
         const auto at = [side](int x, int y, int z) { return (x * side + y) * side + z; };
@@ -148,9 +154,10 @@ struct Dense {
 };
 
 // At the longest step the largest eigenvalue is 4. A share that is too small by 3 % gives up to 4.25.
+// The larger networks have contacts that are too far from the stiffest ones to be read.
 TEST(DemNetwork, EqualsTheDenseEigenvalueFromBelowWithinThreePercent) {
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-        const Dense dense(2, seed);
+    for (const auto& [side, seed] : {std::pair{2, 1U}, {2, 2U}, {2, 3U}, {2, 4U}, {2, 5U}, {2, 6U}, {4, 1U}, {5, 1U}}) {
+        const Dense dense(side, seed);
         // The mode depends on the step a little: the share is exact where it is 1.
         const double near = 2e-3 / share_of(dense.network, 2e-3);
         const double eigenvalue = dense.eigenvalue(near / share_of(dense.network, near));
