@@ -1,16 +1,19 @@
 #include "solver/dem/material.hpp"
 
+#include "solver/dem/laws/compiled.hpp"
 #include "solver/dem/walls/wall.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace grainsweep::dem {
 namespace {
 
-constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggghts", "cdt"};
-constexpr std::array<std::string_view, 6> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt", "capillary"};
 constexpr std::array<std::string_view, 2> normal_words = {"hertz", "linear"};
 constexpr std::array<std::string_view, 2> limit_words = {"contact", "net"};
 constexpr std::array<std::string_view, 2> tangential_words = {"sum", "spring"};
@@ -33,28 +36,27 @@ constexpr std::array contact_rows = {
                       "tangential_ratio", "1",
                       "of the linear law: stiffness of the tangential spring over the normal one", {0, 1, true, false}),
                   "2/7"),
-    quantity<&Material::cohesion>("cohesion", "J/m3", "cohesion energy density of sjkr, sjkr2, paper", {0, 1e9}),
-    quantity<&Material::surface_energy>("surface_energy", "J/m2", "work of adhesion of jkr and dmt", {0, 100}),
-    quantity<&Material::surface_tension>("surface_tension", "N/m", "of the liquid of capillary", {0, 10}),
-    quantity<&Material::contact_angle>("contact_angle", "rad", "of the liquid of capillary",
-                                       {0, std::numbers::pi / 2, false, true}),
-    quantity<&Material::bridge_volume>("bridge_volume", "1",
-                                       "of capillary: volume of a liquid bridge divided by that of a sphere of the "
-                                       "mean radius 2 R1 R2/(R1 + R2), at a "
-                                       "wall of the sphere",
-                                       {0, largest_bridge, true, false}),
 };
-constexpr std::array law_rows = {
-    fields::choice<&Material::rolling_law>(
-        "rolling_law",
-        "how rolling is resisted: epsd by an elastic-plastic spring with a dashpot, epsd_liggghts by the same with "
-        "LIGGGHTS 3.8's angle at walls, cdt by a constant torque",
-        rolling_words, "\"epsd\""),
-    fields::choice<&Material::cohesion_law>(
-        "cohesion_law",
-        "attraction: cohesion times an area, sjkr cut of the spheres, sjkr2 4 pi R* d, paper pi (2 R* d - d^2)/4; by "
-        "surface_energy, jkr Johnson, Kendall & Roberts, dmt Derjaguin, Muller & Toporov; capillary: by liquid bridges",
-        cohesion_words, "\"sjkr\""),
+
+/// Returns the field of a law; its words, in the order of the enumeration, and their meanings are those of the rows.
+template <auto member, class Row>
+Field law_of(std::span<const Row> rows, std::string_view name, std::string_view begins, std::string_view standard) {
+    static std::vector<std::string_view> words;
+    static std::string meaning(begins);
+    for (const Row& row : rows) {
+        meaning.append(words.empty() ? " " : "; ").append(row.word).append(" ").append(row.meaning);
+        words.push_back(row.word);
+    }
+    return fields::choice<member>(name, meaning, words, standard);
+}
+
+/// Returns the row of a law, which a damaged checkpoint may have falsified.
+const auto& chosen_row(const auto& rows, std::size_t law) {
+    if (law >= rows.size()) throw std::invalid_argument("a material has a law that does not exist");
+    return rows[law];
+}
+
+constexpr std::array other_laws = {
     fields::choice<&Material::friction_limit>(
         "friction_limit", "contact: friction of the contact force without cohesion; net: of the net force", limit_words,
         "\"contact\""),
@@ -68,12 +70,36 @@ constexpr std::array law_rows = {
 
 }  // namespace
 
+std::span<const Attraction> attractions() {
+    return attraction_rows;
+}
+
+const Attraction& attraction_of(const Material& m) {
+    return chosen_row(attraction_rows, static_cast<std::size_t>(m.cohesion_law));
+}
+
+const Resistance& resistance_of(const Material& m) {
+    return chosen_row(resistance_rows, static_cast<std::size_t>(m.rolling_law));
+}
+
 std::span<const Field> contact_fields() {
-    return contact_rows;
+    static const auto all = [] {
+        std::vector<Field> fields(contact_rows.begin(), contact_rows.end());
+        for (const Attraction& one : attractions())
+            if (std::ranges::find(fields, one.key(), &Field::name) == fields.end())
+                fields.insert(fields.end(), one.members.begin(), one.members.end());
+        return fields;
+    }();
+    return all;
 }
 
 std::span<const Field> law_fields() {
-    return law_rows;
+    static const std::vector<Field> all = {
+        law_of<&Material::rolling_law, Resistance>(resistance_rows, "rolling_law",
+                                                   "how rolling is resisted:", "\"epsd\""),
+        law_of<&Material::cohesion_law, Attraction>(attraction_rows, "cohesion_law", "attraction:", "\"sjkr\""),
+        other_laws[0], other_laws[1], other_laws[2]};
+    return all;
 }
 
 const Material& standard_contact() {

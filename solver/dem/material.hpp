@@ -26,9 +26,7 @@ inline constexpr unsigned materials_at_most = 8;
 /// (laws/linear.hpp). All contacts of a case have the same law.
 enum class NormalLaw { hertz, linear };
 
-/// Law of attraction. By cohesion energy density times a contact area, here to first order in the overlap d of equal
-/// spheres. sjkr: pi R d (LIGGGHTS 3.8 `sjkr`); sjkr2: 2 pi R d; paper: pi R d/4 (Gupta, eq. 15).
-/// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp). By liquid bridges: capillary (laws/capillary.hpp).
+/// Law of attraction, with the words of attractions().
 enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt, capillary };
 
 /// Normal force in Coulomb's limit: the contact force without the cohesive part, or the net force. An attractive one
@@ -39,21 +37,8 @@ enum class FrictionLimit { contact, net };
 /// together. spring: the spring alone, as in LIGGGHTS 3.8.
 enum class TangentialLimit { sum, spring };
 
-/// Law of rolling resistance. epsd: elastic-plastic spring with a dashpot (laws/rolling.hpp). epsd_liggghts: the same,
-/// with the relative rotation at walls of LIGGGHTS 3.8. cdt: torque of constant size against the relative rotation
-/// (laws/constant_torque.hpp).
+/// Law of rolling resistance, with the words of resistances().
 enum class RollingLaw { epsd, epsd_liggghts, cdt };
-
-[[nodiscard]] constexpr bool acts_by_surface_energy(CohesionLaw law) {
-    return law == CohesionLaw::jkr || law == CohesionLaw::dmt;
-}
-
-[[nodiscard]] constexpr bool acts_over_area(CohesionLaw law) {
-    return !acts_by_surface_energy(law) && law != CohesionLaw::capillary;
-}
-
-/// Largest volume of a liquid bridge divided by the volume of a sphere; larger bridges would merge.
-inline constexpr double largest_bridge = 0.03;
 
 /// Elastic constants of a body.
 struct Elasticity {
@@ -96,6 +81,40 @@ struct Material {
 
     bool operator==(const Material&) const = default;
 };
+
+/// Returns a number of a material.
+[[nodiscard]] inline double& part(Material& m, const Field& field) {
+    return *static_cast<double*>(field.at(&m));
+}
+[[nodiscard]] inline const double& part(const Material& m, const Field& field) {
+    return part(const_cast<Material&>(m), field);
+}
+
+/// Attraction that a file may choose: a row in the file of its law (laws/), listed in laws/compiled.hpp.
+struct Attraction {
+    std::string_view word, meaning;
+    std::span<const Field> members;  ///< that contacts have for it; the first is its amount, 0: no attraction
+    bool needs_hertz;
+    /// Returns the largest attraction of two equal spheres at rest, N; null: a powder file cannot state this law.
+    double (*pull_off)(const Material& m, double radius);
+    /// Returns why no case may have this material beside another one of the case; null: it may.
+    const char* (*flaw)(const Material& m, const Material& other) = nullptr;
+    /// Returns the largest gap over which it acts, m.
+    double (*gap)(const Material& m, double effective_radius) = nullptr;
+
+    [[nodiscard]] std::string_view key() const { return members.front().name; }
+    [[nodiscard]] auto& amount(auto& m) const { return part(m, members.front()); }
+};
+
+/// Rolling law that a file may choose: a row in the file of the law.
+struct Resistance {
+    std::string_view word, meaning;
+    double cost = 1;  ///< time of a step divided by the time without rolling resistance
+};
+
+[[nodiscard]] std::span<const Attraction> attractions();
+[[nodiscard]] const Attraction& attraction_of(const Material& material);
+[[nodiscard]] const Resistance& resistance_of(const Material& material);
 
 /// Returns the members that every pair of materials may state. Defaults: those of standard_contact().
 [[nodiscard]] std::span<const Field> contact_fields();

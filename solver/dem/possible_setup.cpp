@@ -1,5 +1,4 @@
 #include "solver/dem/kinds.hpp"
-#include "solver/dem/laws/capillary.hpp"
 #include "solver/dem/shaking.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/particles/neighbour_list.hpp"
@@ -26,18 +25,25 @@ bool not_negative(double x) {
     return std::isfinite(x) && x >= 0;
 }
 
+/// Refuses a material whose attraction is impossible beside another material of the case.
+void check_attraction(const Material& m, const Material& other) {
+    for (const Attraction& one : attractions()) {
+        for (const Field& of : one.members)
+            require(of.bounds.contains(part(m, of)), std::string(of.name) + " lies outside of its bounds");
+        if (const char* flaw = one.flaw == nullptr ? nullptr : one.flaw(m, other)) throw std::invalid_argument(flaw);
+    }
+    const Attraction& own = attraction_of(m);
+    require(m.normal_law == NormalLaw::hertz || !own.needs_hertz || !(own.amount(m) > 0),
+            std::string(own.word) + " needs the normal law hertz");
+}
+
 void check(const Material& m) {
     require(positive(m.youngs_modulus), "Young's modulus must be positive");
     require(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5, "Poisson's ratio must lie in (-1, 0.5]");
     require(positive(m.density), "the density must be positive");
     require(m.restitution > 0 && m.restitution <= 1, "the restitution must lie in (0, 1]");
     require(not_negative(m.friction), "the friction must not be negative");
-    require(not_negative(m.cohesion), "the cohesion energy density must not be negative");
-    require(not_negative(m.surface_energy), "the surface energy must not be negative");
-    require(not_negative(m.surface_tension), "the surface tension must not be negative");
-    require(m.contact_angle >= 0 && m.contact_angle < std::numbers::pi / 2, "the contact angle must lie in [0, pi/2)");
-    require(m.bridge_volume > 0 && m.bridge_volume <= largest_bridge,
-            "the volume of a bridge over that of a sphere must lie in (0, 0.03]");
+    check_attraction(m, m);
     // Beyond 1 the rolling spring would be stiffer than those the time step is judged by.
     if (m.partner) {
         require(positive(m.partner->youngs_modulus), "Young's modulus must be positive");
@@ -97,7 +103,9 @@ void check_spheres(const Setup& setup) {
 void check_bridges(const Setup& setup, const std::vector<Material>& materials) {
     const double largest = radii_of(setup).largest;
     double longest = 0;
-    for (const Material& m : materials) longest = std::max(longest, Capillary<double>::beyond(m, largest / 2));
+    for (const Attraction& one : attractions())
+        for (const Material& m : materials)
+            if (one.gap != nullptr) longest = std::max(longest, one.gap(m, largest / 2));
     for (std::size_t k = 0; k < 3; ++k)
         require(!(longest > 0) || !setup.domain.periodic[k] ||
                     setup.domain.high[k] - setup.domain.low[k] > 2.02 * (2 * largest + longest),
@@ -175,14 +183,7 @@ void require_possible(const Setup& setup) {
     const std::vector<Material> all = materials_of(setup);
     for (const Material& m : all) {
         require(m.normal_law == all.front().normal_law, "all contacts of a case must have the same normal law");
-        require(m.normal_law == NormalLaw::hertz || !(m.surface_energy > 0 && acts_by_surface_energy(m.cohesion_law)),
-                "jkr and dmt deform elastic spheres: with the linear law take sjkr, sjkr2 or paper");
-        require(m.normal_law == NormalLaw::hertz || m.cohesion_law != CohesionLaw::capillary,
-                "liquid bridges need the normal law hertz");
-        require((m.cohesion_law == CohesionLaw::capillary) == (all.front().cohesion_law == CohesionLaw::capillary),
-                "all contacts of a case have the law capillary or none: without surface tension where no bridges are");
-        require(m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (all.front().surface_energy > 0),
-                "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none");
+        check_attraction(m, all.front());
     }
     check_bridges(setup, all);
     require(positive(setup.time_step), "the time step must be positive");

@@ -56,36 +56,20 @@ machine::Again read_again(const Section& section, const MachineReading& reading)
     return again;
 }
 
-/// Amount of an attraction, and which laws use it.
-struct Attraction {
-    const char* key;
-    double dem::Material::*amount;
-    bool (*acts_by)(dem::CohesionLaw);
-};
-
-constexpr std::array attractions = {
-    Attraction{"cohesion", &dem::Material::cohesion, dem::acts_over_area},
-    Attraction{"surface_energy", &dem::Material::surface_energy, dem::acts_by_surface_energy},
-    Attraction{"surface_tension", &dem::Material::surface_tension,
-               [](dem::CohesionLaw law) { return law == dem::CohesionLaw::capillary; }},
-};
-
 /// Refuses an amount of attraction in a section that the cohesion law does not use. 0 is allowed: a machine may choose
 /// the law by a word.
 void require_used_attraction(const Section& section, const dem::Material& contact) {
-    const auto words = std::ranges::find(dem::law_fields(), std::string_view("cohesion_law"), &Field::name)->words;
-    const auto law = contact.cohesion_law;
-    const auto used = std::ranges::find_if(attractions, [&](const auto& one) { return one.acts_by(law); });
-    for (const Attraction& one : attractions) {
-        const auto place = section.find(one.key);
-        if (!place || one.acts_by(law) || !(contact.*one.amount > 0)) continue;
+    const dem::Attraction& used = dem::attraction_of(contact);
+    for (const dem::Attraction& one : dem::attractions()) {
+        const auto place = section.find(one.key());
+        if (!place || one.key() == used.key() || !(one.amount(contact) > 0)) continue;
         std::vector<std::string_view> laws;
-        for (std::size_t k = 0; k < words.size(); ++k)
-            if (one.acts_by(static_cast<dem::CohesionLaw>(k))) laws.push_back(words[k]);
+        for (const dem::Attraction& other : dem::attractions())
+            if (other.key() == one.key()) laws.push_back(other.word);
         place->refuse(
             fmt::format("{:.4g} has no effect: it belongs to \"cohesion_law\" {}; that is '{}' here, which uses "
                         "\"{}\"",
-                        contact.*one.amount, in_words(laws), words[static_cast<std::size_t>(law)], used->key));
+                        one.amount(contact), in_words(laws), used.word, used.key()));
     }
 }
 

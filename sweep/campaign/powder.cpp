@@ -21,10 +21,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -37,27 +35,10 @@ constexpr double earth = 9.81;  // m/s2
 
 constexpr double standard_diameter = 0.002, standard_step_fraction = 0.2;
 
-/// Values of what a powder file leaves open.
-dem::Material standard_powder() {
-    dem::Material material;
-    material.density = 7980;
-    material.youngs_modulus = 21e6;
-    material.poisson_ratio = 0.3;
-    material.restitution = 0.5;
-    material.friction = 0.2;
-    return material;
-}
-
-constexpr std::array elasticity = {
-    fields::quantity<&dem::Material::density>("density", "kg/m3", "density of the particles", {100, 25000}),
-    fields::quantity<&dem::Material::youngs_modulus>("youngs_modulus", "Pa", "Young's modulus", {1e5, 1e12}),
-    fields::quantity<&dem::Material::poisson_ratio>("poisson_ratio", "1", "Poisson's ratio", {0, 0.49}),
-};
-
 /// Calls visit(field) for the members of a material that a powder file may give.
 template <class Visit>
 void for_each_member(const Visit& visit) {
-    for (const Field& field : elasticity) visit(field);
+    for (const Field& field : powder_keys::material()) visit(field);
     for (const auto fields : {dem::contact_fields(), dem::law_fields()})
         for (const Field& field : fields)
             if (std::ranges::find(powder_keys::contacts(), field.name, &Field::name) != powder_keys::contacts().end())
@@ -68,7 +49,7 @@ void for_each_member(const Visit& visit) {
 const std::vector<ParameterSpec>& powder_parameters() {
     static const std::vector<ParameterSpec> all = [] {
         std::vector<ParameterSpec> specs;
-        dem::Material standard = standard_powder();
+        dem::Material standard;
         for_each_member([&](const Field& field) {
             ParameterSpec spec{
                 std::string(field.name), std::string(field.unit), std::string(field.meaning), 0.0, field.bounds, {}};
@@ -76,7 +57,8 @@ const std::vector<ParameterSpec>& powder_parameters() {
                 spec.default_value = *static_cast<const double*>(field.at(&standard));
             } else {
                 Words words{{field.words.begin(), field.words.end()}};
-                std::erase(words.allowed, "capillary");  // a powder file states no liquid
+                for (const dem::Attraction& one : dem::attractions())
+                    if (one.pull_off == nullptr) std::erase(words.allowed, one.word);
                 spec.default_value = words.allowed.front();
                 spec.bounds = std::move(words);
             }
@@ -108,33 +90,9 @@ dem::Material material_of(const Inputs& inputs) {
                          static_cast<std::size_t>(std::ranges::find(field.words, std::get<std::string>(value)) -
                                                   field.words.begin()));
     });
-    (dem::acts_by_surface_energy(material.cohesion_law) ? material.cohesion : material.surface_energy) = 0;
+    for (const dem::Attraction& one : dem::attractions())
+        if (one.key() != dem::attraction_of(material).key()) one.amount(material) = 0;
     return material;
-}
-
-/// Returns the largest attraction of two equal spheres at rest, N; for cohesion by area, to first order in the overlap.
-double pull_off_force(const dem::Material& material, double diameter) {
-    using std::numbers::pi;
-    const double radius = diameter / 2, radius_of_pair = radius / 2;
-    double area = pi;  // of the contact over R d
-    switch (material.cohesion_law) {
-        case dem::CohesionLaw::jkr:
-            return 1.5 * pi * material.surface_energy * radius_of_pair;
-        case dem::CohesionLaw::dmt:
-            return 2 * pi * material.surface_energy * radius_of_pair;
-        case dem::CohesionLaw::sjkr2:
-            area = 2 * pi;
-            break;
-        case dem::CohesionLaw::paper:
-            area = pi / 4;
-            break;
-        default:
-            break;
-    }
-    // The largest value of a d - b d^(3/2), b = 4/3 E* sqrt(R*): 4 a^3/(27 b^2), R* = R/2.
-    const double a = material.cohesion * area * radius;
-    const double modulus = dem::effective_modulus(material);
-    return a * a * a / (6 * modulus * modulus * radius);
 }
 
 /// Calls visit(name, place) for every value of "material" and "contacts".
@@ -321,7 +279,7 @@ PowderNumbers numbers_of(const Powder& powder) {
     const double smallest = powder.sizes ? powder.sizes->smallest : diameter;
     PowderNumbers numbers;
     const double weight = material.density * particles::sphere_volume(diameter) * earth;
-    numbers.bond_number = pull_off_force(material, diameter) / weight;
+    numbers.bond_number = dem::attraction_of(material).pull_off(material, diameter / 2) / weight;
     numbers.rayleigh_time = dem::rayleigh_time(material, smallest / 2);
     numbers.time_step = standard_step_fraction * dem::shortest_time(material, smallest / 2, impact);
     numbers.seconds = kit::estimate(dem::Method{}, material, particles, 1 / numbers.time_step).seconds;

@@ -2,6 +2,9 @@
 
 #include "sweep/campaign/powder_export.hpp"
 
+#include "solver/dem/material.hpp"
+
+#include <algorithm>
 #include <array>
 
 namespace grainsweep::campaign::powder_keys {
@@ -22,11 +25,11 @@ constexpr auto top_keys = std::to_array<Field>({
     {"posterior", PowderKind::text, "CSV file of settings that a calibration found, beside the powder file"},
 });
 
-constexpr auto material_keys = std::to_array<Field>({
-    {"density", PowderKind::value, "kg/m3"},
-    {"youngs_modulus", PowderKind::value, "Pa"},
-    {"poisson_ratio", PowderKind::value, "Poisson's ratio"},
-});
+constexpr std::array material_keys = {
+    fields::quantity<&dem::Material::density>("density", "kg/m3", "density of the particles", {100, 25000}),
+    fields::quantity<&dem::Material::youngs_modulus>("youngs_modulus", "Pa", "Young's modulus", {1e5, 1e12}),
+    fields::quantity<&dem::Material::poisson_ratio>("poisson_ratio", "1", "Poisson's ratio", {0, 0.49}),
+};
 
 constexpr auto contact_keys = std::to_array<Field>({
     {"restitution", PowderKind::value, "coefficient of restitution"},
@@ -34,9 +37,8 @@ constexpr auto contact_keys = std::to_array<Field>({
     {"rolling_friction", PowderKind::value, "tangent of the steepest slope a sphere stands on"},
     {"rolling_law", PowderKind::text, "how rolling is resisted, as in the scenes"},
     {"tangential_limit", PowderKind::text, "form of the limit of friction, as in the scenes"},
-    {"cohesion", PowderKind::value, "cohesion energy density, J/m3"},
-    {"cohesion_law", PowderKind::text, "attraction, as in the scenes"},
-    {"surface_energy", PowderKind::value, "work of adhesion of jkr and dmt, J/m2"},
+    {"cohesion_law", PowderKind::text,
+     "attraction, as in the scenes; beside it stands its amount, by the key of machine files"},
     {"wall_friction", PowderKind::value, "Coulomb friction at walls"},
     {"wall_rolling_friction", PowderKind::value, "rolling friction at walls"},
     {"wall_restitution", PowderKind::value, "restitution at walls"},
@@ -88,7 +90,16 @@ std::span<const Field> material() {
     return material_keys;
 }
 std::span<const Field> contacts() {
-    return contact_keys;
+    static const auto keys = [] {
+        std::vector<Field> all(contact_keys.begin(), contact_keys.end());
+        for (const Field& field : dem::contact_fields())
+            if (std::ranges::any_of(dem::attractions(), [&](const dem::Attraction& one) {
+                    return one.pull_off != nullptr && one.key() == field.name;
+                }))
+                all.push_back({field.name, PowderKind::value, field.meaning, {}, {}, {}, false, field.unit});
+        return all;
+    }();
+    return keys;
 }
 std::span<const Field> sizes() {
     return size_keys;

@@ -1,5 +1,6 @@
 // Tables of the documents that repeat what the program knows are generated from it and compared here. To write them
 // anew after a change: GRAINSWEEP_WRITE_DOCUMENTS=1 build/tests/test_documents --gtest_filter='Tables.*'
+#include "sweep/campaign/field_text.hpp"
 #include "sweep/campaign/powder_keys.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/store/store.hpp"
@@ -226,13 +227,15 @@ std::string options_table(const std::string& design) {
     return table;
 }
 
-/// The keys of a powder file, object by object.
+/// The keys of a powder file, object by object, without the amounts of attractions: the reference of machines has them.
 std::string powder_keys_table() {
     std::string table = head({"object", "key", "default", "meaning"});
     for (const auto& [object, keys] : campaign::powder_keys::all())
         for (const auto& key : keys)
-            table += row({code(std::string(object)), code(std::string(key.name)),
-                          key.required ? "required" : code(std::string(key.standard)), std::string(key.meaning)});
+            if (object != "contacts" || key.unit.empty())
+                table +=
+                    row({code(std::string(object)), code(std::string(key.name)),
+                         key.required ? "required" : code(std::string(key.standard)), campaign::meaning_text(key)});
     return table;
 }
 

@@ -227,7 +227,7 @@ TEST(GrossSliding, BooksTheLossOfStickyImpacts) {
                             s.material.tangential_limit = limit;
                             s.material.cohesion_law = law;
                             s.material.cohesion = law == CohesionLaw::sjkr ? 1e7 : 0;
-                            s.material.surface_energy = acts_by_surface_energy(law) ? 2 : 0;
+                            s.material.surface_energy = law == CohesionLaw::jkr || law == CohesionLaw::dmt ? 2 : 0;
                             s.material.surface_tension = law == CohesionLaw::capillary ? 0.02 : 0;
                             s.spheres[0].velocity[0] *= speed * std::tan(angle * std::numbers::pi / 180);
                             s.spheres[0].velocity[1] *= angle > 0 ? 1 : 0;

@@ -106,4 +106,26 @@ private:
     }
 };
 
+inline constexpr std::array liquid = {
+    fields::quantity<&Material::surface_tension>("surface_tension", "N/m", "of the liquid of capillary", {0, 10}),
+    fields::quantity<&Material::contact_angle>("contact_angle", "rad", "of the liquid of capillary",
+                                               {0, std::numbers::pi / 2, false, true}),
+    fields::quantity<&Material::bridge_volume>("bridge_volume", "1",
+                                               "of capillary: volume of a liquid bridge divided by that of a sphere of "
+                                               "the mean radius 2 R1 R2/(R1 + R2), at a wall of the sphere",
+                                               {0, 0.03, true, false})};  // larger ones would merge
+inline constexpr Attraction capillary_row{
+    "capillary",
+    "by liquid bridges",
+    liquid,
+    true,
+    nullptr,
+    [](const Material& m, const Material& other) {
+        return (m.cohesion_law == CohesionLaw::capillary) == (other.cohesion_law == CohesionLaw::capillary)
+                   ? nullptr
+                   : "all contacts of a case have the law capillary or none: without surface tension where no bridges "
+                     "are";
+    },
+    Capillary<double>::beyond};
+
 }  // namespace grainsweep::dem

@@ -28,6 +28,23 @@ namespace grainsweep::dem {
     }
 }
 
+/// Returns the largest value of a d - b d^(3/2), b = 4/3 E* sqrt(R*): 4 a^3/(27 b^2), R* = R/2. To first order in the
+/// overlap d, a = k A/d of equal spheres.
+inline double pull_off_over_area(const Material& m, double radius) {
+    const AreaForm area = area_of(m.cohesion_law);
+    const double a = m.cohesion * (4 * area.disc + area.band / 2 + area.cap) * radius;
+    const double modulus = effective_modulus(m);
+    return a * a * a / (6 * modulus * modulus * radius);
+}
+
+inline constexpr std::array cohesion = {fields::quantity<&Material::cohesion>(
+    "cohesion", "J/m3", "cohesion energy density of sjkr, sjkr2, paper", {0, 1e9})};
+inline constexpr Attraction sjkr_row{"sjkr", "cohesion times the cut of the spheres", cohesion, false,
+                                     pull_off_over_area};
+inline constexpr Attraction sjkr2_row{"sjkr2", "cohesion times 4 pi R* d", cohesion, false, pull_off_over_area};
+inline constexpr Attraction paper_row{"paper", "cohesion times pi (2 R* d - d^2)/4", cohesion, false,
+                                      pull_off_over_area};
+
 /// Cohesion by area. `lens`: sjkr without effect on friction, which is compiled as a separate law.
 template <class Real, bool lens>
 struct CohesionOver : LawTraits {
@@ -35,10 +52,10 @@ struct CohesionOver : LawTraits {
     static constexpr Aspect aspect = Aspect::cohesion;
     static constexpr int constants = 7;
 
-    static bool wanted(const Material& m) { return m.cohesion > 0 && acts_over_area(m.cohesion_law); }
+    static bool acts_over_area(const Material& m) { return attraction_of(m).key() == "cohesion"; }
+    static bool wanted(const Material& m) { return m.cohesion > 0 && acts_over_area(m); }
     static bool suits(const Material& m) {
-        if (acts_by_surface_energy(m.cohesion_law)) return !(m.surface_energy > 0);
-        if (m.cohesion_law == CohesionLaw::capillary) return !(m.surface_tension > 0);
+        if (!acts_over_area(m)) return !(attraction_of(m).amount(m) > 0);
         return !lens || (m.cohesion_law == CohesionLaw::sjkr && m.friction_limit == FrictionLimit::contact);
     }
     static std::array<Quantity, constants> constants_of(const Material& m) {

@@ -62,6 +62,10 @@ using Compiled = CombinationList<Combination<Columns::equal, Hertz>,            
                                  Combination<Columns::any, Hertz, Cohesion, Mindlin, ConstantTorque>,         //
                                  Combination<Columns::any, Hertz, Cohesion, Mindlin, RollingResistance>>;     //
 
+/// Laws that files choose by a word, in the order of their enumerations.
+inline constexpr std::array attraction_rows = {sjkr_row, sjkr2_row, paper_row, jkr_row, dmt_row, capillary_row};
+inline constexpr std::array resistance_rows = {epsd_row, epsd_liggghts_row, cdt_row};
+
 /// Calls visit.operator()<Combination>() for the combination with number `index`.
 template <class Visit, class... Combinations>
 void visit_combination(int index, CombinationList<Combinations...>, Visit&& visit) {

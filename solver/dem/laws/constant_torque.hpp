@@ -41,4 +41,6 @@ struct ConstantTorque : LawTraits {
     }
 };
 
+inline constexpr Resistance cdt_row{"cdt", "by a constant torque"};
+
 }  // namespace grainsweep::dem

@@ -7,8 +7,7 @@
 // uses the contact force without the attraction, or the net force where it repels (Material::friction_limit).
 #pragma once
 
-#include "solver/dem/laws/touch.hpp"
-#include "solver/dem/material.hpp"
+#include "solver/dem/laws/jkr.hpp"
 
 namespace grainsweep::dem {
 
@@ -43,5 +42,9 @@ struct Dmt : LawTraits {
         return -adhesion * t.effective_radius * t.overlap;
     }
 };
+
+inline constexpr Attraction dmt_row{
+    "dmt", "by surface_energy, Derjaguin, Muller & Toporov", surface_energy, true,
+    [](const Material& m, double radius) { return 2 * std::numbers::pi * m.surface_energy * (radius / 2); }};
 
 }  // namespace grainsweep::dem

@@ -112,4 +112,18 @@ private:
     }
 };
 
+inline constexpr std::array surface_energy = {
+    fields::quantity<&Material::surface_energy>("surface_energy", "J/m2", "work of adhesion of jkr and dmt", {0, 100})};
+inline constexpr Attraction jkr_row{
+    "jkr",
+    "by surface_energy, Johnson, Kendall & Roberts",
+    surface_energy,
+    true,
+    [](const Material& m, double radius) { return 1.5 * std::numbers::pi * m.surface_energy * (radius / 2); },
+    [](const Material& m, const Material& other) {
+        return m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (other.surface_energy > 0)
+                   ? nullptr
+                   : "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none";
+    }};
+
 }  // namespace grainsweep::dem

@@ -32,7 +32,8 @@ struct RollingSpring : LawTraits {
 
     static bool wanted(const Material& m) { return m.rolling_friction > 0; }
     static bool suits(const Material& m) {
-        return linear == (m.normal_law == NormalLaw::linear) && (m.rolling_law != RollingLaw::cdt || !wanted(m));
+        const bool spring = m.rolling_law == RollingLaw::epsd || m.rolling_law == RollingLaw::epsd_liggghts;
+        return linear == (m.normal_law == NormalLaw::linear) && (spring || !wanted(m));
     }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double mu_r = m.rolling_friction;
@@ -101,5 +102,8 @@ template <class Real>
 using RollingResistance = RollingSpring<Real, false>;
 template <class Real>
 using LinearRolling = RollingSpring<Real, true>;
+
+inline constexpr Resistance epsd_row{"epsd", "by an elastic-plastic spring with a dashpot", 1.4};
+inline constexpr Resistance epsd_liggghts_row{"epsd_liggghts", "by the same with LIGGGHTS 3.8's angle at walls", 1.4};
 
 }  // namespace grainsweep::dem

@@ -3,6 +3,8 @@
 
 #include "solver/dem/walls/wall.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <type_traits>
@@ -21,17 +23,19 @@ void for_each_part(Of& surface, Visit&& visit) {
 /// Calls visit(number) for every number of a material, with words as numbers.
 template <class Of, class Visit>
 void for_each_number(Of& m, Visit&& visit) {
-    for (auto* part :
-         {&m.youngs_modulus, &m.poisson_ratio, &m.density, &m.restitution, &m.friction, &m.rolling_friction,
-          &m.rolling_damping, &m.cohesion, &m.surface_energy, &m.stiffness, &m.tangential_ratio})
-        visit(*part);
+    const std::array always = {&m.youngs_modulus, &m.poisson_ratio,    &m.density,         &m.restitution,
+                               &m.friction,       &m.rolling_friction, &m.rolling_damping, &m.cohesion,
+                               &m.surface_energy, &m.stiffness,        &m.tangential_ratio};
+    for (auto* part : always) visit(*part);
     visit(m.normal_law);
     visit(m.rolling_law);
     visit(m.cohesion_law);
     visit(m.friction_limit);
     visit(m.tangential_limit);
-    if (m.cohesion_law != CohesionLaw::capillary) return;
-    visit(m.surface_tension), visit(m.contact_angle), visit(m.bridge_volume);
+    for (const Field& member : attraction_of(m).members) {
+        auto& number = part(m, member);
+        if (std::ranges::find(always, &number) == always.end()) visit(number);
+    }
 }
 
 /// Calls visit for the members of a shape or motion, or for the whole if it consists of numbers without padding.

@@ -26,7 +26,7 @@ double seconds_per_particle_step(const dem::Method& method) {
 }  // namespace
 
 double slower_by_rolling(const dem::Material& material) {
-    return material.rolling_friction > 0 && material.rolling_law != dem::RollingLaw::cdt ? 1.4 : 1;
+    return material.rolling_friction > 0 ? dem::resistance_of(material).cost : 1;
 }
 
 CostEstimate estimate(const dem::Method& method, const dem::Material& material, double mobile, double steps,
