@@ -1,5 +1,7 @@
 #include "sweep/campaign/synonyms.hpp"
 
+#include "sweep/designs/design.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -20,33 +22,6 @@ struct Synonym {
 
 // A word may stand more than once: the first of its names that exists in the place is meant.
 constexpr auto synonyms = std::to_array<Synonym>({
-    // designs
-    {"lhs", "latin_hypercube"},
-    {"lhd", "latin_hypercube"},
-    {"latin", "latin_hypercube"},
-    {"hypercube", "latin_hypercube"},
-    {"full_factorial", "lattice"},
-    {"factorial", "lattice"},
-    {"fullfact", "lattice"},
-    {"grid", "lattice"},
-    {"cartesian", "lattice"},
-    {"mesh", "lattice"},
-    {"monte_carlo", "random"},
-    {"montecarlo", "random"},
-    {"mc", "random"},
-    {"uniform", "random"},
-    {"quasi_monte_carlo", "halton"},
-    {"quasi_random", "halton"},
-    {"qmc", "halton"},
-    {"lds", "halton"},
-    {"low_discrepancy", "halton"},
-    {"hammersley", "halton"},
-    {"lptau", "sobol"},
-    {"elementary_effects", "morris"},
-    {"screening", "morris"},
-    {"csv", "list"},
-    {"table", "list"},
-    {"custom", "list"},
     // keys of a campaign file
     {"min", "between", range},
     {"max", "between", range},
@@ -289,11 +264,15 @@ bool same_letters(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string synonym_of(std::string_view word, const WordList& names) {
-    for (const auto& synonym : synonyms) {
-        const bool meant = word.size() == 1 ? synonym.word == word : same_letters(synonym.word, word);
-        if (meant && std::ranges::find(names, synonym.name) != names.end())
-            return std::string(synonym.shown.empty() ? synonym.name : synonym.shown);
-    }
+    const auto meant = [&](std::string_view other, std::string_view name) {
+        return (word.size() == 1 ? other == word : same_letters(other, word)) &&
+               std::ranges::find(names, name) != names.end();
+    };
+    for (const auto& design : designs::design_catalogue())
+        for (const auto other : design.other_names)
+            if (meant(other, design.name)) return design.name;
+    for (const auto& synonym : synonyms)
+        if (meant(synonym.word, synonym.name)) return std::string(synonym.shown.empty() ? synonym.name : synonym.shown);
     return {};
 }
 

@@ -9,18 +9,7 @@
 
 namespace grainsweep::designs {
 
-// One file each.
-DesignInfo halton_design(), sobol_design(), latin_hypercube_design(), random_design(), lattice_design(), list_design(),
-    saltelli_design(), morris_design(), refine_design();
 DesignInfo calibration_design();  // of the section "calibration"
-
-std::span<const DesignInfo> design_catalogue() {
-    static const std::vector<DesignInfo> kinds = {
-        halton_design(), sobol_design(),    latin_hypercube_design(), random_design(), lattice_design(),
-        list_design(),   saltelli_design(), morris_design(),          refine_design(),
-    };
-    return kinds;
-}
 
 const DesignInfo* find_design(std::string_view name) {
     const auto kinds = design_catalogue();

@@ -116,7 +116,8 @@ enum class Purpose { statistics, saltelli, morris };
 /// Traits of a kind of design; no other code compares names.
 struct DesignInfo {
     std::string name;
-    std::string summary;  ///< suitable and unsuitable uses, with numbers
+    std::string summary;                             ///< suitable and unsuitable uses, with numbers
+    std::vector<std::string_view> other_names = {};  ///< in other programs, for suggestions
     std::vector<OptionSpec> options;
     bool extends = false;  ///< a larger design begins with the same points
     /// Whether its sequences are independent replicates of one another, so that the convergence rule 'replicates' may

@@ -1,4 +1,4 @@
-// What the files of designs share. To add a design: its file, and two words in catalogue.cpp.
+// What the files of designs share. A design is a file in kinds/ (listed.cpp.in).
 #pragma once
 
 #include "sweep/designs/design.hpp"

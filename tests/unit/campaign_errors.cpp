@@ -286,10 +286,10 @@ TEST(CampaignText, TheNearestSceneAndDesignAreNamed) {
                 testing::AllOf(testing::StartsWith("$.scene: got \"rehersal\"; must be "),
                                testing::EndsWith(". Did you mean 'rehearsal'?")));
     EXPECT_THAT(sentence_of(patched(R"([{"op": "replace", "path": "/design/kind", "value": "haltn"}])")),
-                testing::AllOf(testing::StartsWith("$.design.kind: got \"haltn\"; must be 'halton', "),
+                testing::AllOf(testing::StartsWith("$.design.kind: got \"haltn\"; must be '"),
                                testing::EndsWith(". Did you mean 'halton'?")));
     EXPECT_THAT(sentence_of(patched(R"([{"op": "remove", "path": "/design/kind"}])")),
-                testing::StartsWith("$.design: key 'kind' is missing: 'halton', "));
+                testing::StartsWith("$.design: key 'kind' is missing: '"));
 }
 
 TEST(CampaignText, WhatIsNoJsonIsRefusedWithItsPlace) {

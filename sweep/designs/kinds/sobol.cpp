@@ -53,6 +53,7 @@ DesignInfo sobol_design() {
                 "The most even coverage where the number of points per sequence is a power of two; in between, random "
                 "halton is as good. Worst two-dimensional projection of 8 factors at 100 points (star discrepancy, "
                 "smaller is more even): 0.064 (random halton 0.079).",
+            .other_names = {"lptau"},
             .options = {points_option("number of points, all sequences together; best a power of two per sequence"),
                         {{"scramble", Field::Kind::word,
                           "none: begins in the corner where every factor is at its low end; random: Owen's nested "

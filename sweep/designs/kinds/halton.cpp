@@ -84,6 +84,7 @@ DesignInfo halton_design() {
             "'braaten_weller' 0.144 (sobol 0.064, random points 0.17). With 8 random sequences every statistic has "
             "an honest error bar, and mean, sd and kurtosis of a smooth response are known to 1 % at about 2400 "
             "points. It serves 1000 factors at most.",
+        .other_names = {"quasi_monte_carlo", "quasi_random", "qmc", "lds", "low_discrepancy", "hammersley"},
         .options = {points_option("number of points, all sequences together"),
                     {{"scramble", Field::Kind::word,
                       "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "

@@ -76,6 +76,7 @@ DesignInfo latin_hypercube_design() {
                 "cannot be extended, and for statistics it is far behind halton (24000 points for 1 % on mean, sd, "
                 "kurtosis and g1 together, random halton 650). With candidates its points keep their distance, as "
                 "models of a response like it.",
+            .other_names = {"lhs", "lhd", "latin", "hypercube"},
             .options = {points_option("number of points"),
                         {count_field("candidates", 1, most_hypercubes, "1",
                                      "hypercubes drawn; the one whose nearest two points are farthest apart is taken"),

@@ -27,6 +27,7 @@ DesignInfo random_design() {
                 "smooth response stays within 1 % from 23000 points on (random halton: 300). Worst "
                 "two-dimensional projection of 8 factors at 100 points (star discrepancy, smaller is more "
                 "even): 0.17.",
+            .other_names = {"monte_carlo", "montecarlo", "mc", "uniform"},
             .options = {points_option("number of points")},
             .extends = true,
             .independent_points = true,

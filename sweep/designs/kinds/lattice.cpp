@@ -96,6 +96,7 @@ DesignInfo lattice_design() {
                 "words. Points grow as levels^factors, and with placement 'endpoints' the spread of an evenly "
                 "varied factor comes out too large by sqrt((k+1)/(k-1)): 10.6 % at k = 10 levels; for "
                 "statistics take 'centred', or better a halton design.",
+            .other_names = {"full_factorial", "factorial", "fullfact", "grid", "cartesian", "mesh"},
             .options = {{{"levels", Field::Kind::value,
                           "one number for all factors, or one per factor; not needed where every factor declares its "
                           "levels",

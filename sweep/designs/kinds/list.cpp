@@ -32,6 +32,7 @@ DesignInfo list_design() {
             .summary =
                 "The rows you give, in physical values, one column a factor: validation series, corner cases, "
                 "points of another program. Statistics over a list describe the list, not the ranges.",
+            .other_names = {"csv", "table", "custom"},
             .options = {{{"rows", Field::Kind::array,
                           "rows of values, one a factor in the order of 'factors'; or give \"file\": a CSV beside the "
                           "campaign file"},

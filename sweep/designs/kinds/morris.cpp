@@ -152,6 +152,7 @@ DesignInfo morris_design() {
             "Screening of many factors with few cases: trajectories x (factors + 1) cases, groups counted as factors, "
             "tell which factors matter "
             "(mu*) and which act non-linearly or jointly (sigma). For shares of the variance use halton or saltelli.",
+        .other_names = {"elementary_effects", "screening"},
         .options = {{count_field("trajectories", 1, 1e6, "",
                                  "number of trajectories, 10 to 50 as a rule; each costs factors + 1 cases"),
                      true},
