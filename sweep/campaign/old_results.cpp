@@ -293,6 +293,10 @@ private:
     void read_scalar(std::size_t k, const std::string& cell, OldResult& result) const {
         const auto& observable = *campaign_.scene().find_observable(columns_[k].name);
         if (cell.empty() || cell == "NA" || cell == "nan" || cell == "NaN" || cell == "NULL") return;
+        if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected)
+            refuse(k, cell,
+                   fmt::format("the case is {}, and moments would count its value: leave the cell empty",
+                               to_string(result.outcome)));
         const auto number = number_of(k, cell, observable.unit, coarsest_output);
         if (const auto program = known_program(campaign_.scene().name)) {
             const auto declared = std::ranges::find(program->observables, observable.name, &ProgramObservable::name);

@@ -251,6 +251,7 @@ TEST_F(Imports, RefuseWrongFilesInOneSentence) {
         {"x;y\n0.1;0,2\n", "has a point, and --decimal comma is given", {"--decimal", "comma"}},
         {"x,y\n0.1,0.2\n0.1,0.3\n", "line 3, column 'y': got 0.3; line 2 has the same inputs and 0.2"},
         {"x,y,outcome\n0.1,0.2,complete\n", "line 2, column 'outcome': got \"complete\"; must be one of"},
+        {"x,y,outcome\n0.1,0.2,unstable\n", "line 2, column 'y': got \"0.2\"; the case is unstable"},
         {"x,y,replicate\n0.1,0.2,-1\n", "line 2, column 'replicate': got \"-1\"; must be a whole number from 0"},
         {"x,y,gap\n0.1,0.2,4\n", "line 2, column 'gap': got \"4\"; the campaign has gap = 3"},
         {"x,y\n0.98,1\n", "line 2: the campaign's `where`, x < 0.97, excludes this setting"},
