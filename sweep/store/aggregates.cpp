@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -24,18 +25,41 @@ double mean(std::span<const double> x) {
     return first + rest / static_cast<double>(x.size());
 }
 
-double central_moment(std::span<const double> x, int order) {
-    const double m = mean(x);
-    double sum = 0;
-    for (const double value : x) {
-        const double d = value - m;
-        sum += order == 2 ? d * d : (order == 3 ? d * d * d : d * d * d * d);
+/// Divides values by a power of two near the largest of them. Returns its exponent.
+int scale(std::vector<double>& x) {
+    double largest = 0;
+    for (const double value : x) largest = std::max(largest, std::abs(value));
+    const int exponent = largest > 0 && std::isfinite(largest) ? std::ilogb(largest) : 0;
+    for (double& value : x) value = std::ldexp(value, -exponent);
+    return exponent;
+}
+
+/// Deviations from the mean, divided by 2^exponent, in which their powers neither overflow nor vanish.
+struct Deviations {
+    std::vector<double> values;
+    int exponent = 0;
+
+    explicit Deviations(std::span<const double> x) : values(x.begin(), x.end()), exponent(scale(values)) {
+        const double m = mean(values);
+        for (double& value : values) value -= m;
+        exponent += scale(values);
     }
-    return sum / static_cast<double>(x.size());
+    [[nodiscard]] double moment(int order) const {
+        double sum = 0;
+        for (const double d : values) sum += order == 2 ? d * d : (order == 3 ? d * d * d : d * d * d * d);
+        return sum / static_cast<double>(values.size());
+    }
+};
+
+/// The number times 2^exponent; none where double precision does not reach so far.
+std::optional<double> in_range(double number, int exponent) {
+    const double value = std::ldexp(number, exponent);
+    return std::isfinite(value) && (value != 0 || number == 0) ? std::optional(value) : std::nullopt;
 }
 
 std::optional<double> sd(std::span<double> x) {
-    return std::sqrt(central_moment(x, 2));
+    const Deviations d(x);
+    return in_range(std::sqrt(d.moment(2)), d.exponent);
 }
 
 /// Asked of the values: the rounded second moment of equal values need not be zero.
@@ -47,41 +71,47 @@ std::optional<double> median(std::span<double> x) {
     const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
     std::nth_element(x.begin(), middle, x.end());
     if (x.size() % 2 == 1) return *middle;
-    return 0.5 * (*middle + *std::max_element(x.begin(), middle));
+    return std::midpoint(*middle, *std::max_element(x.begin(), middle));
 }
 
 std::optional<double> pearson_skewness(std::span<double> x) {
     if (all_equal(x)) return std::nullopt;
-    const double m = mean(x);
-    const double s = *sd(x);
-    return 3 * (m - *median(x)) / s;
+    Deviations d(x);
+    const double s = std::sqrt(d.moment(2));
+    return -3 * *median(d.values) / s;
 }
 
 std::optional<double> g1(std::span<double> x) {
     if (all_equal(x)) return std::nullopt;
-    const double variance = central_moment(x, 2);
-    return central_moment(x, 3) / (variance * std::sqrt(variance));
+    const Deviations d(x);
+    const double variance = d.moment(2);
+    return d.moment(3) / (variance * std::sqrt(variance));
 }
 
 std::optional<double> kurtosis(std::span<double> x) {
     if (all_equal(x)) return std::nullopt;
-    const double variance = central_moment(x, 2);
-    return central_moment(x, 4) / (variance * variance);
+    const Deviations d(x);
+    const double variance = d.moment(2);
+    return d.moment(4) / (variance * variance);
 }
 
 std::optional<double> var_pop(std::span<double> x) {
-    return central_moment(x, 2);
+    const Deviations d(x);
+    return in_range(d.moment(2), 2 * d.exponent);
 }
 
 std::optional<double> var_samp(std::span<double> x) {
     if (x.size() < 2) return std::nullopt;
     const auto n = static_cast<double>(x.size());
-    return central_moment(x, 2) * (n / (n - 1));
+    const Deviations d(x);
+    return in_range(d.moment(2) * (n / (n - 1)), 2 * d.exponent);
 }
 
 std::optional<double> stddev_samp(std::span<double> x) {
-    const auto variance = var_samp(x);
-    return variance ? std::optional(std::sqrt(*variance)) : std::nullopt;
+    if (x.size() < 2) return std::nullopt;
+    const auto n = static_cast<double>(x.size());
+    const Deviations d(x);
+    return in_range(std::sqrt(d.moment(2) * (n / (n - 1))), d.exponent);
 }
 
 /// Rows of two numbers as two columns.
@@ -168,30 +198,32 @@ std::optional<double> below_error(std::span<double> rows) {
     });
 }
 
-double product_moment(std::span<const double> x, std::span<const double> y) {
-    const double mx = mean(x), my = mean(y);
+double product_moment(const Deviations& x, const Deviations& y) {
     double sum = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) sum += (x[k] - mx) * (y[k] - my);
-    return sum / static_cast<double>(x.size());
+    for (std::size_t k = 0; k < x.values.size(); ++k) sum += x.values[k] * y.values[k];
+    return sum / static_cast<double>(x.values.size());
+}
+
+std::optional<double> covariance(std::span<const double> rows, double factor) {
+    const auto [first, second] = transposed(rows);
+    const Deviations x(first), y(second);
+    return in_range(product_moment(x, y) * factor, x.exponent + y.exponent);
 }
 
 std::optional<double> covar_pop(std::span<double> rows) {
-    const auto [x, y] = transposed(rows);
-    return product_moment(x, y);
+    return covariance(rows, 1);
 }
 
 std::optional<double> covar_samp(std::span<double> rows) {
-    const auto [x, y] = transposed(rows);
-    if (x.size() < 2) return std::nullopt;
-    const auto n = static_cast<double>(x.size());
-    return product_moment(x, y) * (n / (n - 1));
+    const auto n = static_cast<double>(rows.size() / 2);
+    return n < 2 ? std::nullopt : covariance(rows, n / (n - 1));
 }
 
 std::optional<double> corr(std::span<double> rows) {
-    const auto [x, y] = transposed(rows);
-    if (all_equal(x) || all_equal(y)) return std::nullopt;
-    const double spread = std::sqrt(central_moment(x, 2)) * std::sqrt(central_moment(y, 2));
-    return std::clamp(product_moment(x, y) / spread, -1.0, 1.0);
+    const auto [first, second] = transposed(rows);
+    if (all_equal(first) || all_equal(second)) return std::nullopt;
+    const Deviations x(first), y(second);
+    return std::clamp(product_moment(x, y) / (std::sqrt(x.moment(2)) * std::sqrt(y.moment(2))), -1.0, 1.0);
 }
 
 struct Aggregate {

@@ -309,6 +309,28 @@ TEST_F(StoreQuery, StatisticsAreTheirDefinitions) {
     EXPECT_THAT(refusal("SELECT percentile(column1, -1)" + rows), HasSubstr("P is one number from 0 to 100"));
 }
 
+TEST_F(StoreQuery, StatisticsDoNotDependOnTheUnit) {
+    const std::string rows = " FROM (VALUES (1, 2), (2, 1), (3, 4), (4, 3), (10, 7))";
+    for (const std::string unit : {"1e305", "1e200", "1e-90", "1e-200", "1e-300"}) {
+        const std::string x = "column1 * " + unit;
+        const auto ratio = [&](const std::string& statistic) {
+            const auto of = [&](const std::string& values) {
+                return std::stod(only_cell(store, "SELECT " + statistic + "(" + values + ")" + rows));
+            };
+            return of(x) / of("column1");
+        };
+        for (const char* same : {"pearson_skewness", "g1", "kurtosis"}) EXPECT_NEAR(ratio(same), 1, 1e-13) << unit;
+        for (const char* as_values : {"sd", "stddev", "median"})
+            EXPECT_NEAR(ratio(as_values) / std::stod(unit), 1, 1e-13) << unit;
+        EXPECT_NEAR(std::stod(only_cell(store, "SELECT corr(" + x + ", column2)" + rows)), 0.92144, 1e-5) << unit;
+        EXPECT_NEAR(std::stod(only_cell(store, "SELECT covar_pop(" + x + ", column2)" + rows)) / std::stod(unit), 6,
+                    1e-12)
+            << unit;
+    }
+    EXPECT_EQ(only_cell(store, "SELECT var_pop(column1 * 1e200)" + rows), "NULL") << "beyond double precision";
+    EXPECT_EQ(only_cell(store, "SELECT var_pop(column1 * 1e-200)" + rows), "NULL");
+}
+
 TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
     EXPECT_EQ(refusal("SELECT sequenc FROM first"),
               "SQL: no such column: sequenc; first has point, sequence, replicate, case_id, seed, outcome, attempts, "
