@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <iostream>
 #include <limits>
 #include <utility>
@@ -24,10 +25,17 @@ struct Batch {
     std::int64_t cases = 0;
 };
 
+/// Returns whether a campaign has a name of `name_of_next`.
+bool is_next(std::string_view name, const std::string& campaign) {
+    const auto stem = campaign + "_next";
+    return name.starts_with(stem) &&
+           std::ranges::all_of(name.substr(stem.size()), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
 /// A batch that was begun and has cases that are not settled.
 std::optional<Batch> unfinished_batch(const Store& store, const std::string& campaign) {
     for (const auto& record : store.campaigns()) {
-        if (!record.name.starts_with(campaign + "_next")) continue;
+        if (!is_next(record.name, campaign)) continue;
         const auto responses = study::read_responses(store, record);
         const auto open = responses.rows() - responses.finished();
         if (open > 0) return Batch{record.name, record.text, static_cast<std::int64_t>(open)};

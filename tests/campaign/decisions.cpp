@@ -256,6 +256,22 @@ TEST(Window, ABatchThatWasInterruptedIsFinishedFirst) {
     EXPECT_EQ(found["models"][0]["cases"], 105);
 }
 
+TEST(Window, LeavesOtherCampaignsAlone) {
+    const Ran ran("spreading_a", 2, 40);
+    auto other = json::parse(campaign_of("spreading_a", 2, 40));
+    other.merge_patch({{"campaign", "c_next_week"}, {"seed", 4}});
+    ran.write("other.json", other.dump());
+    EXPECT_EQ(ran.ask({"run", "other.json", "--db", "c.db", "-j", "1", "--max-cases", "2", "--quiet"}).code, 1);
+    const auto ended = ran.ask({"window", "c.db", "--campaign", "c", "--maximize", "y", "--run", "--max-cases", "3",
+                                "--width", "1e-9", "-j", "1"});
+    EXPECT_EQ(ended.code, 1) << ended.err;
+    const auto counts = ran.answer({"query", "c.db",
+                                    "SELECT count(y) AS other, (SELECT count(y) FROM c_next) AS next "
+                                    "FROM c_next_week"});
+    EXPECT_EQ(counts[0]["other"], 2) << "no batch of the window";
+    EXPECT_EQ(counts[0]["next"], 3);
+}
+
 TEST(Window, SaysWhereNothingMeetsTheCondition) {
     const Ran ran("spreading_a", 4, 120);
     const auto found = ran.answer({"window", "c.db", "--where", "y > 5", "--maximize", "y"});
