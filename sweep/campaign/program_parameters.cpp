@@ -264,6 +264,12 @@ void read_notes(const std::string& name, const Cursor& here, const Given& given,
                         name));
 }
 
+/// Returns whether two names are one in SQL, where upper case does not count.
+bool is_one_name_in_sql(const std::string& a, const std::string& b) {
+    const auto folded = [](unsigned char c) { return std::tolower(c); };
+    return std::ranges::equal(a, b, {}, folded, folded);
+}
+
 }  // namespace
 
 void check_program_name(const Cursor& place, const std::string& name) {
@@ -274,12 +280,15 @@ void check_program_name(const Cursor& place, const std::string& name) {
                                       longest_plain_name));
     if (std::ranges::find(names_of_the_case, name) != names_of_the_case.end())
         throw input_error(place.path(), name, "is the program's name for something else; take another");
+    const std::array<std::string, 2> truths = {"true", "false"};
+    const auto is_name = [&](const std::string& truth) { return is_one_name_in_sql(truth, name); };
+    if (std::ranges::any_of(truths, is_name))  // SQLite renames such a column of a view to column9
+        throw input_error(place.path(), name, "is a number in SQL, where it cannot name a column; take another");
 }
 
 void check_name_in_sql(const Cursor& place, const std::string& name, const std::vector<std::string>& others) {
-    const auto folded = [](unsigned char c) { return std::tolower(c); };
     for (const std::string& other : others)
-        if (other != name && std::ranges::equal(other, name, {}, folded, folded))
+        if (other != name && is_one_name_in_sql(other, name))
             throw input_error(place.path(), name,
                               fmt::format("{} and {} are one name in SQL; rename one", other, name));
 }

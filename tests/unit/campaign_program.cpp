@@ -170,6 +170,8 @@ TEST(ProgramSection, RefusesWithOneSentence) {
         {{{"program", {{"observables", {{"energy", {{"shape", "profile"}}}}}}}}, "needs \"over\""},
         {{{"program", {{"protocol", "lines"}}}}, "comes in the reply"},
         {{{"fixed", {{"seed", 1}}}}, "is the program's name for something else"},
+        {{{"fixed", {{"True", 1}}}}, "is a number in SQL"},
+        {{{"program", {{"observables", {{"false", {{"from", {{"output", "(x)"}}}}}}}}}}, "is a number in SQL"},
         {{{"fixed", {{"law2", "a\tb"}}}}, "no control characters"},
         {{{"fixed", {{"law2", "file:x"}}}}, "does not begin with 'file:'"},
         {{{"fixed", {{"mu", 0.5}}}}, "is also a factor"},
