@@ -135,7 +135,9 @@ int predict(const PredictRequest& request, Format format) {
     const auto& observable = cases.observable(request.observable);
     auto settings = settings_of(request, cases);
     if (!request.extrapolate) refuse_extrapolation(store, cases, settings);
-    const auto model = study::learn_or_refuse(cases, observable);
+    auto model = study::learn_or_refuse(cases, observable);
+    if (auto note = study::between_levels_text(cases.factors, settings); !note.empty())
+        model.notes.push_back(std::move(note));
     const auto predicted = study::predict(cases, model, std::move(settings), request.extrapolate);
     report::write(std::cout, report::predictions_document(cases, model, predicted), format);
     return 0;

@@ -237,4 +237,19 @@ std::string outside_text(std::span<const ModelFactor> factors, const Setting& se
     return text;
 }
 
+std::string between_levels_text(std::span<const ModelFactor> factors, std::span<const Setting> settings) {
+    for (const auto& setting : settings)
+        for (std::size_t j = 0; j < factors.size(); ++j) {
+            const auto& factor = factors[j];
+            const auto& levels = factor.numbers;
+            const double x = setting[j];
+            if (levels.empty() || std::isnan(x) || std::ranges::find(levels, x) != levels.end()) continue;
+            return fmt::format(
+                "{} = {} is no level of the campaign: between levels the model assumes a smooth "
+                "response, and its errors do not cover what was not run there",
+                factor.name, factor.text(x));
+        }
+    return {};
+}
+
 }  // namespace grainsweep::study

@@ -67,5 +67,7 @@ struct ModelCases {
 /// Returns a text such as "gap = 0.006 is above 0.001 to 0.005" for every factor outside its range; empty: inside the
 /// box.
 [[nodiscard]] std::string outside_text(std::span<const ModelFactor> factors, const Setting& setting);
+/// Returns a sentence on the first number of the settings that is no level of its factor; empty: there is none.
+[[nodiscard]] std::string between_levels_text(std::span<const ModelFactor> factors, std::span<const Setting> settings);
 
 }  // namespace grainsweep::study

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <future>
 #include <limits>
+#include <set>
 
 namespace grainsweep::study {
 namespace {
@@ -185,6 +186,25 @@ void note_quality(ObservableModel& learned) {
                                             quality.rests_on, quality.cases));
 }
 
+/// Notes factors that could have any number and have few in the cases: their response between these is a guess.
+void note_few_values(ObservableModel& learned, const ModelCases& cases) {
+    constexpr std::size_t few = 8;
+    std::vector<std::string> names;
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) {
+        const auto& factor = cases.factors[j];
+        if (factor.is_word() || !factor.numbers.empty() || factor.step) continue;
+        std::set<double> values;
+        for (const auto& setting : cases.settings)
+            if (!std::isnan(setting[j])) values.insert(setting[j]);
+        if (values.size() < few) names.push_back(fmt::format("{} ({})", factor.name, values.size()));
+    }
+    if (!names.empty())
+        learned.notes.push_back(
+            fmt::format("the cases have few values of {}: between them the model assumes that '{}' is smooth, and its "
+                        "errors do not cover what was not run there",
+                        campaign::listed(names), learned.observable));
+}
+
 }  // namespace
 
 std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, const ResponseColumn& observable,
@@ -215,6 +235,7 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
                             std::nullopt};
     if (undefined > 0) learned.has_a_value = has_a_value.get();
     note_quality(learned);
+    note_few_values(learned, cases);
     if (learned.undefined > 0)
         learned.notes.push_back(fmt::format("'{}' is undefined in {} of {} answered cases, which the model leaves out",
                                             learned.observable, learned.undefined, observable.values.size()));

@@ -328,6 +328,31 @@ TEST_F(Learned, AWindowOfAResponseThatOnlyScattersIsAllOrNothing) {
                                                                          "cases, left-out ones predicted with an")));
 }
 
+TEST_F(Learned, FewValuesOfAFactorAreNoted) {
+    const auto lattice = [](int levels) {
+        return R"("scene": "rehearsal", "design": {"kind": "lattice", "levels": [)" + std::to_string(levels) +
+               R"(, 12]}, "factors": [)";
+    };
+    const std::string x2 = R"({"name": "x2", "between": [0, 1]}]})";
+    const auto sum = [](const Inputs& inputs) { return input(inputs, "x1") + input(inputs, "x2"); };
+    answer_by(store, R"({"campaign": "few", )" + lattice(5) + R"({"name": "x1", "between": [0, 1]}, )" + x2, sum);
+    answer_by(store,
+              R"({"campaign": "levels", )" + lattice(4) + R"({"name": "x1", "levels": [0, 0.25, 0.5, 1]}, )" + x2, sum);
+    const auto of = [&](const char* name) {
+        const auto cases = read_model_cases(store, name);
+        return std::pair(cases, learn_or_refuse(cases, cases.observable("y")));
+    };
+    const auto [few, model] = of("few");
+    EXPECT_THAT(model.notes, testing::Contains(HasSubstr("few values of x1 (5): between them")));
+    const auto [levels, of_levels] = of("levels");
+    EXPECT_THAT(of_levels.notes, Not(testing::Contains(HasSubstr("few values"))))
+        << "a campaign's levels are all it asks";
+    const std::vector<Setting> asked = {{0.5, 0.3}, {0.3, 0.3}};
+    EXPECT_THAT(between_levels_text(levels.factors, asked), HasSubstr("x1 = 0.3 is no level of the campaign"));
+    EXPECT_EQ(between_levels_text(levels.factors, std::span(asked).first(1)), "");
+    EXPECT_EQ(between_levels_text(few.factors, asked), "");
+}
+
 TEST_F(Learned, RefusesWhatNoSumOfSquaresHolds) {
     answer_by(store, campaign_of("c"), [](const Inputs& inputs) { return 1e160 * (1 + input(inputs, "x1")); });
     const auto cases = read_model_cases(store, "c");
