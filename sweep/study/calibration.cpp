@@ -207,6 +207,12 @@ std::string failures_text(const designs::Calibration& found) {
         count, names, p);
 }
 
+/// Returns whether each target can be met, and not all of them together.
+bool contradict(const CalibrationReport& report) {
+    return report.targets.size() > 1 &&
+           std::ranges::all_of(report.targets, [](const auto& target) { return target.beyond <= out_of_reach; });
+}
+
 /// Returns notes for users who quote the posterior.
 std::vector<std::string> notes_of(const CalibrationReport& report) {
     std::vector<std::string> notes;
@@ -236,10 +242,11 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
                                         last.excluded));
         if (const auto text = failures_text(found); !text.empty()) notes.push_back(text);
         if (last.kept == 0 && found.least_implausibility > 3)
-            notes.push_back(
-                fmt::format("the targets contradict each other: no setting is within 3 standard deviations of all "
-                            "of them, the nearest is {:.1f} off. A larger discrepancy, or another model, is needed",
-                            found.least_implausibility));
+            notes.push_back(fmt::format(
+                "{}no setting is within 3 standard deviations of {}, the nearest is {:.1f} off. A larger discrepancy, "
+                "or another model, is needed",
+                contradict(report) ? "the targets contradict each other: " : "",
+                report.targets.size() > 1 ? "all measurements" : "the measurement", found.least_implausibility));
     }
     if (!found.posterior) return notes;
     for (std::size_t j = 0; j < report.factors.size(); ++j) {
