@@ -106,6 +106,7 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
             "all values are equal after {} points ({} values): their scatter is unknown, and up to {} of "
             "the box may have other values",
             check.points, check.count, percent(stats::largest_unseen_share(check.runs)));
+    if (check.count == 0) return fmt::format("none of {} points has a value", check.points);
     if (check.fresh == 0)
         return fmt::format("no new value since the check before {} points: the {} different cases are known",
                            check.points, check.count);

@@ -242,6 +242,13 @@ TEST(Judge, EqualValuesAreNamed) {
               "may have other values");
 }
 
+TEST(Judge, NamesThatNoCaseHasAValue) {
+    const auto placed = place(80);
+    Judge judge(wanted(40), placed, sequences, std::vector<double>(80, std::numeric_limits<double>::quiet_NaN()));
+    (void)judge.judge(80);
+    EXPECT_EQ(judge.verdict(), "none of 80 points has a value");
+}
+
 TEST(Judge, NamesWhatHoldsItBackAndHowFarItIs) {
     const auto placed = place(80);
     auto rule = wanted(40, 1e-6);
