@@ -245,7 +245,10 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     check_readable(file);
     Connection db(file, Connection::Access::read);
     const std::int64_t version = schema_version(db, file);
-    if (version == 0) throw InputError(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
+    if (version == 0)
+        throw InputError(
+            fmt::format("'{0}' is empty: no campaign has been run into it, or it was copied without its log, {0}-wal.",
+                        file.string()));
     check_tables(db, file);
     // An older schema is read unchanged; the next run migrates it. So queries for data that a migration added first
     // check whether they exist (keeps_extents).
