@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "stats/confidence.hpp"
+#include "stats/moments.hpp"
 #include "stats/spread.hpp"
 #include "stats/trend.hpp"
 #include "sweep/campaign/stored_request.hpp"
@@ -92,6 +93,12 @@ std::vector<FactorInfluence> add_saltelli(Influence& influence, const Responses&
         influence.notes.push_back(
             fmt::format("every total index holds the scatter of single runs: its share is at most the smallest, {}",
                         index_text(*least)));
+    const auto repeats = responses.campaign.stored.replicates;
+    const double spread = stats::summarise(grid.values).sd;
+    if (const double scatter = influence.split.pure.variance; scatter > 0 && spread > 0)
+        influence.notes.push_back(fmt::format(
+            "total indices are of means over {} replicates, and every one holds their scatter, about {:.2g}", repeats,
+            scatter / static_cast<double>(repeats) / (spread * spread)));
     return groups;
 }
 
@@ -128,6 +135,12 @@ std::vector<FactorInfluence> add_morris(Influence& influence, const Responses& r
             influence.used = fewest->count;
             influence.excluded = fewest->excluded;
         }
+        const auto least = std::ranges::min_element(effects, {}, &stats::ElementaryEffects::mu_star);
+        if (least != effects.end() && least->mu_star > 0)
+            influence.notes.push_back(
+                fmt::format("every mu* holds the scatter of runs, and no more of it than the smallest, {}: a factor "
+                            "without effect has the mu* of the scatter, and a mu near 0",
+                            with_error(least->mu_star, least->mu_star_half_width)));
     } catch (const std::invalid_argument& error) {  // two grid levels of a factor with levels may be the same level
         influence.notes.push_back(fmt::format("no elementary effects: {}", error.what()));
     }

@@ -85,6 +85,21 @@ TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
 
     EXPECT_THAT(saltelli.notes, Contains(HasSubstr("every total index holds the scatter of single runs")));
 
+    // With a scatter of variance 1/144 about y, of variance 7/576, means of two runs have 2/9 of theirs from the
+    // scatter.
+    std::uint64_t run = 0;
+    answer_by(store,
+              R"({"campaign": "r", )" + factors +
+                  R"("design": {"kind": "saltelli", "base_points": 512}, "replicates": 2, "seed": 2})",
+              [&](const Inputs& inputs) {
+                  const double u = stats::Stream(7, 0).uniform(++run);
+                  return input(inputs, "x1") * input(inputs, "x2") + std::sqrt(12.0) / 12 * (u - 0.5);
+              });
+    responses = ask("r");
+    EXPECT_THAT(influence_of(responses, responses.observable("y")).notes,
+                Contains(HasSubstr("total indices are of means over 2 replicates, and every one holds their scatter, "
+                                   "about 0.2")));
+
     answer_by(store, R"({"campaign": "m", )" + factors + R"("design": {"kind": "morris", "trajectories": 12}})",
               [](const Inputs& inputs) { return linear(inputs); });
     responses = ask("m");
@@ -95,6 +110,8 @@ TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
     EXPECT_NEAR(morris.factors[0].effects->mu_star, 2, 1e-12);  // per unit of the range
     EXPECT_NEAR(morris.factors[1].effects->mu_star, 1, 1e-12);
     EXPECT_NEAR(morris.factors[1].effects->sigma, 0, 1e-12);
+    EXPECT_THAT(morris.notes, Contains(HasSubstr("every mu* holds the scatter of runs, and no more of it than the "
+                                                 "smallest, 1")));
 }
 
 TEST_F(Study, APointThatRepeatsCoordinatesOfItsBlockIsNotBinned) {
