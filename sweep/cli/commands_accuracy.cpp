@@ -144,7 +144,7 @@ std::vector<Numerics> numerics_of(const Campaign& campaign, const std::string& a
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
     if (offered.empty())
         throw campaign::input_error("CONFIG", campaign.name,
-                                    fmt::format("scene '{}' has no accuracy settings", scene.name));
+                                    fmt::format("scene '{}' has no accuracy settings", shown_scene(scene.name)));
     const auto reference = scene.accuracy.find(against);
     if (reference == scene.accuracy.end())
         throw campaign::input_error("--against", against, fmt::format("must be one of {}", campaign::listed(offered)),

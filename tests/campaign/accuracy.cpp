@@ -196,6 +196,10 @@ TEST(Accuracy, WrongQuestionsAreOneSentence) {
     };
     EXPECT_THAT(says({"accuracy", "a.json", "--against", "refernce"}), HasSubstr("Did you mean 'reference'?"));
     EXPECT_THAT(says({"accuracy", "r.json"}), HasSubstr("has no accuracy settings"));
+    folder.write("p.json", R"({"campaign": "p", "scene": "program", "factors": [{"name": "x", "between": [0, 1]}],
+        "program": {"command": ["awk", "{x}"], "observables": {"y": {"from": {"json": "out.json", "path": "/y"}}}},
+        "design": {"kind": "halton", "points": 8}})");
+    EXPECT_THAT(says({"accuracy", "p.json"}), HasSubstr("scene 'program awk' has no accuracy settings"));
     EXPECT_THAT(says({"accuracy", "a.json", "--tolerance", "2"}), HasSubstr("--tolerance"));
     EXPECT_THAT(says({"accuracy", "a.json", "--points", "1"}), HasSubstr("from 2"));
     folder.write("a_fast.json", "{}");
