@@ -17,11 +17,18 @@ constexpr double most_widened = 3;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns whether repetitions of a statistic differ by more than rounding; only then can an error be estimated from
-/// them. False if one of them is undefined.
-bool differ(std::span<const double> repetitions) {
+/// them. `scale`: a size of which they are sums or differences. False if one of them is undefined.
+bool differ(std::span<const double> repetitions, double scale) {
     if (repetitions.empty() || std::ranges::any_of(repetitions, [](double x) { return std::isnan(x); })) return false;
     const auto [low, high] = std::ranges::minmax(repetitions);
-    return high - low > 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
+    return high - low > 16 * std::numeric_limits<double>::epsilon() * std::max({std::abs(low), std::abs(high), scale});
+}
+
+/// Size of which a statistic of values up to `largest` is a sum or difference: a mean or a skewness of 0 is rounded
+/// as they are.
+double scale_of(Statistic statistic, double largest) {
+    if (statistic == Statistic::mean) return largest;
+    return statistic == Statistic::sd ? 0 : 1;
 }
 
 /// Returns, for each part, the statistics of all values outside of it. Medians are not computed.
@@ -240,10 +247,12 @@ void Convergence::find_errors(Checkpoint& now) {
     const bool too_few =
         !sequences_.empty() && std::ranges::any_of(summaries, [](const Summary& x) { return x.count < fewest_values; });
     std::vector<double> repetitions(summaries.size());
+    const auto sorted = pooled_.sample.sorted();
+    const double largest = sorted.empty() ? 0 : std::max(std::abs(sorted.front()), std::abs(sorted.back()));
     for (std::size_t s = 0; s < statistics.size(); ++s) {
         if (now.all_equal || (too_few && statistics[s] != Statistic::mean)) continue;
         std::ranges::transform(summaries, repetitions.begin(), [&](const Summary& x) { return x.of(statistics[s]); });
-        if (!differ(repetitions)) continue;
+        if (!differ(repetitions, scale_of(statistics[s], largest))) continue;
         now.estimates[s].error =
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
     }
@@ -300,7 +309,8 @@ void Convergence::doubt_agreement(Checkpoint& now) const {
         for (const Statistic statistic : statistics) {
             double& error = now.estimates[static_cast<std::size_t>(statistic)].error;
             std::ranges::transform(halves, repetitions.begin(), [&](const Summary& x) { return x.of(statistic); });
-            if (differ(repetitions)) error = std::max(error, fall * student_half_width(repetitions));
+            if (differ(repetitions, scale_of(statistic, 0)))
+                error = std::max(error, fall * student_half_width(repetitions));
         }
     }
 }

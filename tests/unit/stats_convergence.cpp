@@ -201,6 +201,21 @@ TEST(Convergence, EqualRepetitionsOfAStatisticTellNoError) {
     EXPECT_FALSE(checks[1].converged);
 }
 
+TEST(Convergence, RepetitionsThatDifferByRoundingTellNoError) {
+    // Each sequence lies evenly about its middle: its skewness is 0 up to rounding, and no gate passes by that.
+    const std::vector<double> offsets = {0.1, -0.3, 0.2, -0.1, 0.3, -0.2};
+    Convergence convergence(replicates({Statistic::skewness}, 0.01, 48));
+    for (std::int64_t point = 0; point < 48; ++point)
+        convergence.add(point,
+                        0.41 + 0.0137 * static_cast<double>(point % 8) + offsets[static_cast<std::size_t>(point / 8)]);
+    convergence.settle(48);
+    ASSERT_EQ(convergence.checkpoints().size(), 1U);
+    const auto& check = convergence.checkpoints().front();
+    EXPECT_TRUE(std::isnan(check.of(Statistic::skewness).error)) << check.of(Statistic::skewness).error;
+    EXPECT_FALSE(check.passes);
+    EXPECT_GT(check.of(Statistic::mean).error, 0.001);
+}
+
 TEST(Convergence, ACheckWithoutANewValueConfirmsNothing) {
     // A design of 40 different values that asks for the same again: rows of point numbers without values.
     const auto values = uniform(40, 3);
