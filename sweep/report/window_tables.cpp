@@ -251,10 +251,11 @@ Result<results::window> window_json(const ModelCases& cases, const WindowRequest
 Document window_document(const ModelCases& cases, const WindowRequest& request, const Window& window) {
     Document shown{.rows = window_rows(cases, window), .value = window_json(cases, request, window)};
     shown.say(fmt::format("{}: {}", cases.campaign.name, request.where.empty() ? "no condition" : request.where));
+    const std::string part = cases.campaign.condition.empty() ? "" : "the part that `where` leaves of ";
     shown.say(fmt::format(
-        "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of {} ({} settings looked at)\n\n",
+        "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of {}{} ({} settings looked at)\n\n",
         1 - request.risk, request.judged == stats::Judged::mean ? "for the mean" : "for a single run",
-        100 * window.share_of_box, 100 * window.share_error, share_of(cases.factors), window.searched.size()));
+        100 * window.share_of_box, 100 * window.share_error, part, share_of(cases.factors), window.searched.size()));
     const auto goal = request.objectives.empty() ? "where the condition is surest" : goal_text(request) + " there";
     say_settings(shown, goal, cases, window, list_of(window.best));
     say_settings(shown, "where the condition is likeliest", cases, window, list_of(window.surest));

@@ -272,6 +272,17 @@ TEST(Window, LeavesOtherCampaignsAlone) {
     EXPECT_EQ(counts[0]["next"], 3);
 }
 
+TEST(Window, SharesAreOfWhatTheConditionOfTheCampaignLeaves) {
+    const Folder folder;
+    auto half = json::parse(campaign_of("sum", 2, 80));
+    half["where"] = "x1 < 0.5";
+    folder.write("c.json", half.dump());
+    ASSERT_EQ(run_program({"run", "c.json", "-j", "1", "--quiet"}, folder.path()).code, 0);
+    const auto found = run_program({"window", "c.db", "--where", "x2 >= 0.5", "--wide"}, folder.path());
+    EXPECT_NE(found.out.find("in 50.0 +- "), std::string::npos) << found.out;
+    EXPECT_NE(found.out.find("% of the part that `where` leaves of the box"), std::string::npos) << found.out;
+}
+
 TEST(Window, SaysWhereNothingMeetsTheCondition) {
     const Ran ran("spreading_a", 4, 120);
     const auto found = ran.answer({"window", "c.db", "--where", "y > 5", "--maximize", "y"});
