@@ -4,6 +4,7 @@
 #include "stats/spread.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
@@ -226,6 +227,12 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
                             "without a value; plain estimates use the cases with a value",
                             history.all.excluded));
     }
+    const auto goal = campaign::remarks_in(record.text).goal;
+    if (goal && goal->setting && *goal->setting != campaign::AccuracyGoal::measure)
+        history.warnings.push_back(
+            fmt::format("moments and quantiles are of the setting '{}' and contain its error: the result is the "
+                        "corrected mean and sd of {} at the end",
+                        *goal->setting, goal->observable));
     if (record.convergence && record.convergence->observable != response.name) {
         history.warnings.push_back(
             fmt::format("the campaign was judged on {}, not on {}", record.convergence->observable, response.name));

@@ -56,6 +56,8 @@ TEST(AccuracyGoal, EndsWithinTheToleranceByPairsOfEqualSeeds) {
     const auto& corrected = found.at(0).at("corrected");
     EXPECT_TRUE(corrected.at("within").get<bool>());
     EXPECT_NE(corrected.at("setting"), "reference");
+    EXPECT_THAT(found.at(0).at("notes").dump(),
+                HasSubstr("contain its error: the result is the corrected mean and sd"));
     const auto& mean = corrected.at("statistics").at("mean");
     EXPECT_LT(mean.at("error"), 0.2 * mean.at("value").get<double>());
     const auto by_hand = json::parse(output_of(
