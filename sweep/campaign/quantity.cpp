@@ -318,17 +318,14 @@ std::variant<double, std::string> with_unit(std::string_view number, double x, s
     if (!database.found())
         return "no unit can be read without the file udunits2.xml (package libudunits2-data; UDUNITS2_XML_PATH can "
                "name the file)";
+    if (given.starts_with(',')) return "the decimal sign is a point";
     const auto* place = unit.empty() ? nullptr : database.parsed(unit);
     if (place == nullptr || !sound_unit(unit)) {
         return unit.empty() ? fmt::format("the parameter has no unit, and '{}' is one", given)
                             : fmt::format("'{}' cannot be converted to '{}'", given, unit);
     }
     const auto* parsed = sound_unit(given) ? database.parsed(given) : nullptr;
-    if (parsed == nullptr) {
-        const bool comma = given.starts_with(',');
-        return comma ? "the decimal sign is a point"
-                     : fmt::format("'{}' is no unit{}", given, advice(database, given, place));
-    }
+    if (parsed == nullptr) return fmt::format("'{}' is no unit{}", given, advice(database, given, place));
     const auto conversion = database.conversion(parsed, place);
     if (!conversion) {
         return fmt::format("'{}' does not fit '{}'{}", given, unit, advice(database, given, place));

@@ -183,6 +183,7 @@ TEST(Quantities, ThatAreNoneAreRefused) {
     EXPECT_THAT(refusal_of("5 s since 2000-01-01", "s"), HasSubstr("is no unit"));
     EXPECT_THAT(refusal_of("5 s @ 3", "s"), HasSubstr("is no unit"));
     EXPECT_EQ(refusal_of("1,5 mm", "m"), "the decimal sign is a point");
+    EXPECT_EQ(refusal_of("1,5", ""), "the decimal sign is a point");
     EXPECT_EQ(refusal_of("1e400 m", "m"), "the number is beyond double precision");
     EXPECT_EQ(refusal_of("1e300 Gm", "um"), "the number in 'um' is beyond double precision");
     EXPECT_EQ(refusal_of("1e-400 m", "m"), "the number is beyond double precision");
