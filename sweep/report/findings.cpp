@@ -204,9 +204,19 @@ std::string brackets_line(const Brackets& brackets) {
         if (n == 0) continue;
         counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", n, designs::to_string(state));
     }
-    return fmt::format("where {} passes {} along {}, to {}: {} of {}", brackets.observable, brackets.threshold,
+    const auto is_undecided = [&](const RefinedLevel& end) {
+        return std::abs(end.mean() - brackets.threshold) <= end.half_width();
+    };
+    const auto undecided = std::ranges::count_if(brackets.found, [&](const Bracket& one) {
+        return one.state == found && (is_undecided(one.low) || is_undecided(one.high));
+    });
+    return fmt::format("where {} passes {} along {}, to {}: {} of {}{}", brackets.observable, brackets.threshold,
                        brackets.factor, measured(fmt::format("{:.4g}", brackets.width), brackets.factor_unit), counts,
-                       brackets.found.size());
+                       brackets.found.size(),
+                       undecided == 0 ? std::string()
+                                      : fmt::format("; {} of them with an end whose 95 % interval contains the "
+                                                    "threshold: the crossing may lie beyond it",
+                                                    undecided));
 }
 
 store::Table brackets_table(const Brackets& brackets) {

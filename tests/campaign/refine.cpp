@@ -56,6 +56,15 @@ TEST(RefineCampaign, EveryCombinationFindsItsCliffAndSaysSo) {
     }
 }
 
+TEST(RefineCampaign, AnEndThatScattersAcrossTheThresholdIsNamed) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "cliff", "scene": "rehearsal",
+        "factors": [{"name": "x1", "between": [0, 1]}], "fixed": {"response": "sum", "noise": 0.05},
+        "design": {"kind": "refine", "factor": "x1", "observable": "y", "threshold": 8, "width": 0.01, "replicates": 2}})");
+    EXPECT_THAT(refine(folder, "a.db", {"-j", "1", "--wide"}).out,
+                HasSubstr("1 found of 1; 1 of them with an end whose 95 % interval contains the threshold"));
+}
+
 TEST(RefineCampaign, InterruptedAndWithOneWorkerItEndsInTheSameDump) {
     const Folder folder;
     folder.write("c.json", config(R"("width": 0.01, "replicates": 4)"));
