@@ -42,6 +42,22 @@ TEST(MachineProbes, AmountsAreSumsOverSpeciesAndRegion) {
     EXPECT_NE(flaw(with("in", Region{Region::Half{}})), "");
 }
 
+TEST(MachineProbes, GluedParticlesCountForNothing) {
+    Bed bed, glued;
+    for (Bed* one : {&bed, &glued})
+        for (int k = 0; k < 40; ++k) one->add({0.003 * (k % 10), 0.004 * (k / 10), 0}, k % 3 == 0 ? 0 : 1);
+    for (int k = 0; k < 5; ++k) {
+        glued.add({0.003 * k, 0, 0.01}, 0);
+        glued.setup.spheres.back().mobile = false;
+    }
+    const auto lacey = with("of", of({0, 1}), "cell", 0.012, "least", 0.0);
+    EXPECT_EQ(glued.look("mass_share", with("of", of({0}))), bed.look("mass_share", with("of", of({0}))));
+    EXPECT_FALSE(std::isnan(bed.look("lacey", lacey)));
+    EXPECT_EQ(glued.look("lacey", lacey), bed.look("lacey", lacey));
+    EXPECT_EQ(glued.look("radius", with("axis", ex, "about", word("bed"))),
+              bed.look("radius", with("axis", ex, "about", word("bed"))));
+}
+
 TEST(MachineProbes, TheShareOfASizeCountsParticlesWhereTheyWereLastSeen) {
     Bed bed;
     for (int k = 0; k < 3; ++k) bed.add({0, 0, -0.01}, 0);

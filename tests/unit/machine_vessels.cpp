@@ -42,6 +42,15 @@ TEST(MachineVessels, WhatHasLeftIsBelowOrGone) {
     EXPECT_EQ(none.look("discharged_mass"), 0);
 }
 
+TEST(MachineVessels, GluedParticlesHaveNotLeft) {
+    Bed bed;
+    bed.add({0, 0, 0.1}, 0), bed.add({0, 0, -0.1}, 1), bed.add({0.1, 0, -0.1}, 0), bed.add({0.2, 0, 0.1}, 1);
+    for (const std::size_t glued : {2, 3}) bed.setup.spheres[glued].mobile = false;
+    const double a = 1000 * volume(0.002), b = 3000 * volume(0.004);
+    EXPECT_EQ(bed.look("discharged_number", with("from", above())), 1);
+    EXPECT_DOUBLE_EQ(bed.look("discharged_share", with("from", above())), b / (a + b));
+}
+
 // A lattice of spheres of 2 mm, one per cube of 3 mm, in a vessel of 15 x 15 mm, 60 mm high.
 TEST(MachineVessels, ABedHasItsFractionClearOfItsEnds) {
     Bed bed, lying;

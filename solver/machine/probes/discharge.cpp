@@ -1,5 +1,5 @@
 // Discharge from a region, or from the domain: all particles filled in or fed whose centres are not in the region now.
-// Gone particles count with the size that they had.
+// Gone particles count with the size that they had, glued ones never.
 //
 //     share = mass outside / mass of all
 #include "solver/machine/probe.hpp"
@@ -24,9 +24,10 @@ public:
         std::size_t i = 0;  // of the state, in which ids ascend
         for (std::size_t id = 0; id < frame.radius.size(); ++id) {
             const bool present = i < frame.size() && frame.id(i) == id;
+            const bool glued = present && frame.state.mobile[i] == 0;
             const bool inside = present && (!from || from->contains(frame.state.position[i]));
             if (present) ++i;
-            if (!frame.is_particle(id)) continue;
+            if (glued || !frame.is_particle(id)) continue;
             if (!of_species_.empty() && std::ranges::find(of_species_, frame.species[id]) == of_species_.end())
                 continue;
             const double amount = amount_of(frame, id);

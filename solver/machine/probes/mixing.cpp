@@ -40,7 +40,7 @@ public:
         const auto here = now(in_);
         for (std::size_t i = 0; i < frame.size(); ++i) {
             const std::size_t species = frame.species_of(i);
-            if (species != of_[0] && species != of_[1]) continue;
+            if (frame.state.mobile[i] == 0 || (species != of_[0] && species != of_[1])) continue;
             if (here && !here->contains(frame.state.position[i])) continue;
             const double v = frame.volume(i);
             const std::size_t which = species == of_[0] ? 0 : 1;
@@ -91,7 +91,7 @@ public:
         double of_species = 0, all = 0;
         const auto here = now(in_);
         for (std::size_t i = 0; i < frame.size(); ++i) {
-            if (here && !here->contains(frame.state.position[i])) continue;
+            if (frame.state.mobile[i] == 0 || (here && !here->contains(frame.state.position[i]))) continue;
             all += frame.mass(i);
             if (of_.holds(frame, i)) of_species += frame.mass(i);
         }

@@ -34,6 +34,7 @@ private:
         Vec3 moment{};
         double volume = 0;
         for (std::size_t i = 0; i < frame.size(); ++i) {
+            if (frame.state.mobile[i] == 0) continue;
             moment += frame.volume(i) * frame.state.position[i];
             volume += frame.volume(i);
         }
