@@ -230,9 +230,13 @@ void end_at_faces(Region& region, const Bounds& faces, std::size_t k) {
     if (auto* box = std::get_if<Region::Box>(&region.is)) {
         box->low[k] = faces.low[k], box->high[k] = faces.high[k];
     } else if (auto* round = std::get_if<Region::Round>(&region.is);
-               round != nullptr && std::abs(round->axis[k]) == 1 && std::isfinite(faces.low[k])) {
-        round->base[k] = round->axis[k] > 0 ? faces.low[k] : faces.high[k];
-        round->length = faces.high[k] - faces.low[k];
+               round != nullptr && std::abs(round->axis[k]) == 1) {
+        const bool finite = std::isfinite(faces.low[k]);
+        const double far = round->length;  // at least a period
+        round->base[k] = !finite              ? round->base[k] - far * round->axis[k]
+                         : round->axis[k] > 0 ? faces.low[k]
+                                              : faces.high[k];
+        round->length = finite ? faces.high[k] - faces.low[k] : 3 * far;
     }
 }
 
@@ -361,8 +365,9 @@ void Region::each_moving(const std::function<void(Moving&)>& visit) {
         is);
 }
 
-/// `moves`: it is somewhere else at another time.
-static Region with_images(Region region, const geometry::Domain& domain, bool moves) {
+/// `all`: also those that no centre within the faces needs: of a region that is somewhere else at another time, or that
+/// is compared with bodies.
+static Region with_images(Region region, const geometry::Domain& domain, bool all) {
     if (auto* moving = std::get_if<Region::Moving>(&region.is)) {
         moving->of.front() = with_images(std::move(moving->of.front()), domain, true);
         return region;
@@ -371,18 +376,18 @@ static Region with_images(Region region, const geometry::Domain& domain, bool mo
     for (std::size_t k = 0; k < 3; ++k) {
         if (!domain.periodic[k]) continue;
         if (const double times = images_along(region, domain, k); times >= 1 && std::isfinite(times))
-            end_at_faces(region, moves ? everywhere : Bounds{domain.low, domain.high}, k);
+            end_at_faces(region, all ? everywhere : Bounds{domain.low, domain.high}, k);
         const Bounds box = region.bounds();
         const bool ends = std::isfinite(box.high[k] - box.low[k]);
         endless = endless || !ends;
-        beyond = beyond || (ends && (moves || box.low[k] < domain.low[k] || box.high[k] > domain.high[k]));
+        beyond = beyond || (ends && (all || box.low[k] < domain.low[k] || box.high[k] > domain.high[k]));
     }
     if (beyond) return {Region::Images{{std::move(region)}, domain}};
     if (endless)
         std::visit(
             [&](auto& combined) {
                 if constexpr (requires { combined.of; })
-                    for (Region& part : combined.of) part = with_images(std::move(part), domain, moves);
+                    for (Region& part : combined.of) part = with_images(std::move(part), domain, all);
             },
             region.is);
     return region;
@@ -390,6 +395,10 @@ static Region with_images(Region region, const geometry::Domain& domain, bool mo
 
 Region with_images(Region region, const geometry::Domain& domain) {
     return with_images(std::move(region), domain, false);
+}
+
+Region with_images_for_bodies(Region region, const geometry::Domain& domain) {
+    return with_images(std::move(region), domain, true);
 }
 
 std::optional<double> Region::volume() const {

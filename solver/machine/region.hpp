@@ -138,6 +138,9 @@ private:
 /// cylinder that is longer than a period ends at the faces. Of other regions longer than four periods only the five
 /// images nearest to the middle count, which is exact unless the region is hollow there.
 [[nodiscard]] Region with_images(Region region, const geometry::Domain& domain);
+/// Returns the same for bodies that reach over a periodic face: a region within the faces has images too, and one that
+/// is longer than a period has no ends.
+[[nodiscard]] Region with_images_for_bodies(Region region, const geometry::Domain& domain);
 
 /// Returns the alternatives of Region::is with the fields that a file sets. Combinations have none: they are made of
 /// regions.

@@ -9,14 +9,19 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace grainsweep::campaign {
 namespace {
 
 /// Lets measurements, conditions and removals see particles whose images lie in their regions.
 void give_images(const Section& top, machine::Spec& spec) {
+    std::vector<machine::Removal> removals = spec.removals;
     machine::each_region(
         spec, [&spec](machine::Region& region) { region = machine::with_images(std::move(region), spec.domain); });
+    for (std::size_t k = 0; k < removals.size(); ++k)
+        if (removals[k].of != machine::Removal::Of::centre)
+            spec.removals[k].in = machine::with_images_for_bodies(std::move(removals[k].in), spec.domain);
     for (const machine::Measure& measure : spec.measures) {
         const auto* probe = machine::find_probe(measure.probe);
         const std::string flaw = probe->flaw != nullptr ? probe->flaw(measure.options) : "";

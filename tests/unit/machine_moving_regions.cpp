@@ -63,6 +63,31 @@ TEST(MachineMovingRegions, FillingsFeedsAndRemovalsFollowTheirWall) {
     }
 }
 
+// Spheres of 1 mm in a period of 20 mm: one across the face, and one in the middle above the regions.
+TEST(MachineMovingRegions, RemovalsTakeParticlesAcrossPeriodicFaces) {
+    const auto left = [](double x, const char* region, const char* of) {
+        json machine = rows();
+        machine.erase("walls");
+        machine["domain"] = {
+            {"low", {0, 0, 0}}, {"high", {0.02, 0.02, 0.02}}, {"sides", {"periodic", "periodic", "open"}}};
+        machine["fill"][0]["spheres"] = {{{"at", {x, 0.01, 0.01}}}, {{"at", {0.01, 0.01, 0.018}}}};
+        machine["remove"] = {{{"in", json::parse(region)}, {"of", of}, {"at", "look"}}};
+        return answer_of(spec_of(machine)).scalars.at("count");
+    };
+    const char* slab = R"({"box": {"low": [0, 0, 0.005], "high": [0.02, 0.02, 0.015]}})";
+    const char* rod = R"({"cylinder": {"base": [0, 0.01, 0.01], "axis": [1, 0, 0], "radius": 0.002, "length": 0.02}})";
+    const char* first = R"({"box": {"low": [0, 0, 0.005], "high": [0.002, 0.02, 0.015]}})";
+    for (const double x : {0.0001, 0.0199, 0.007}) {
+        EXPECT_EQ(left(x, slab, "whole"), 1) << "a slab without ends holds all of a sphere, also at " << x;
+        EXPECT_EQ(left(x, rod, "whole"), 1) << x;
+        EXPECT_EQ(left(x, first, "whole"), 2) << x;
+    }
+    EXPECT_EQ(left(0.001, first, "whole"), 1);
+    EXPECT_EQ(left(0.0197, first, "part"), 1) << "its image reaches in";
+    EXPECT_EQ(left(0.0194, first, "part"), 2);
+    EXPECT_EQ(left(0.0197, first, "centre"), 2);
+}
+
 TEST(MachineMovingRegions, LayersEndWhereTheirRegionDoes) {
     for (const bool periodic : {false, true}) {
         json machine = rows();
