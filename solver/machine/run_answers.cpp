@@ -29,6 +29,25 @@ std::string Run::with_names(std::string fault) const {
     return fault;
 }
 
+/// Returns the bound of its speed that alone holds a wall back which forces move; empty: none.
+static std::string bound_of(const geometry::Motion& motion) {
+    constexpr double rounding = 1e-9;
+    if (const auto* press = std::get_if<geometry::Press>(&motion);
+        press != nullptr && std::abs(press->speed) >= press->fastest)
+        return kit::sentence("moves at its speed_at_most of %.3g m/s: the powder does not carry its force",
+                             press->fastest);
+    if (const auto* drive = std::get_if<geometry::Drive>(&motion);
+        drive != nullptr && std::abs(drive->speed) >= drive->fastest)
+        return kit::sentence("turns at its speed_at_most of %.3g rad/s: the powder does not carry its torque",
+                             drive->fastest);
+    if (const auto* body = std::get_if<geometry::Flight>(&motion);
+        body != nullptr && (geometry::norm(body->velocity) >= (1 - rounding) * body->fastest ||
+                            geometry::norm(geometry::spin_of(*body)) >= (1 - rounding) * body->fastest_turn))
+        return kit::sentence("moves at its speed_at_most of %.3g m/s: without this bound it would be faster",
+                             body->fastest);
+    return {};
+}
+
 std::string Run::remark() const {
     constexpr double many = 0.1;   // of the particles: a vessel that does not hold its filling; a feed flows through
     constexpr double deep = 0.05;  // overlap divided by the diameter: here Hertz's force errs by about as much
@@ -51,12 +70,8 @@ std::string Run::remark() const {
     std::string free;
     for (std::size_t w = 0; w < spec_.walls.size() && free.empty(); ++w)
         for (const auto& motion : engine_->wall(w).motions)
-            if (const auto* press = std::get_if<geometry::Press>(&motion))
-                if (std::abs(press->speed) >= press->fastest)
-                    free = "at the end wall '" + spec_.walls[w].name +
-                           kit::sentence(
-                               "' still moves at its speed_at_most of %.3g m/s: the powder does not carry its force",
-                               press->fastest);
+            if (const std::string bound = bound_of(motion); !bound.empty())
+                free = "at the end wall '" + spec_.walls[w].name + "' still " + bound;
     std::string all;
     for (const std::string& one : {lost, soft, free, flaw_of_frames(spec_)})
         if (!one.empty()) all += (all.empty() ? "" : "; ") + one;

@@ -67,6 +67,37 @@ TEST(MachineLoads, APressThatMovesAtItsLimitAtTheEndIsNamed) {
     EXPECT_EQ(remark_with("1 m/s"), "");
 }
 
+// The same of a wheel, and of a body that falls out of the machine.
+TEST(MachineLoads, ADriveAndABodyAtTheirLimitAtTheEndAreNamed) {
+    const auto wheel = [](const char* limit) {
+        json machine = lone_plate(R"json({"drive": {"axis": [0, 0, 1], "torque": 1e-4, "inertia": 1e-5}})json");
+        machine["walls"]["plate"]["motion"][0]["drive"]["speed_at_most"] = limit;
+        machine::Run run(spec_of(machine), 1);
+        run.advance(1e9);
+        return run.remark();
+    };
+    EXPECT_EQ(
+        wheel("2 rad/s"),
+        "at the end wall 'plate' still turns at its speed_at_most of 2 rad/s: the powder does not carry its torque");
+    EXPECT_EQ(wheel("100 rad/s"), "");
+    const auto body = [](const char* limit) {
+        json machine =
+            lone_plate(R"json({"free": {"mass": 0.1, "inertia": [1e-5, 1e-5, 1e-5], "force": [0, 0, 0.1]}})json");
+        machine["walls"]["plate"].erase("rectangle");
+        machine["walls"]["plate"]["triangles"] = json::parse(R"json([[[0, 0, 0], [0, 0.01, 0], [0.01, 0, 0]],
+            [[0, 0, 0], [0.01, 0, 0], [0, 0, 0.01]], [[0, 0, 0], [0, 0, 0.01], [0, 0.01, 0]],
+            [[0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]])json");
+        machine["walls"]["plate"]["motion"][0]["free"]["speed_at_most"] = limit;
+        machine::Run run(spec_of(machine), 1);
+        run.advance(1e9);
+        return run.remark();
+    };
+    EXPECT_EQ(
+        body("0.1 m/s"),
+        "at the end wall 'plate' still moves at its speed_at_most of 0.1 m/s: without this bound it would be faster");
+    EXPECT_EQ(body("1 m/s"), "");
+}
+
 // The bucket rises by 0.02 m and then turns by half about z = 0.03 m. Its axis, drawn at 0.01 m, rises with it.
 TEST(MachineLoads, TheAxisOfARotationMovesWithTheWall) {
     json machine = lone_plate(R"json({"shift": {"velocity": [0, 0, 0.2]}, "from": "wait", "to": "wait"})json");
