@@ -193,6 +193,18 @@ std::string contradiction(const geometry::Motion& a, const geometry::Motion& b) 
     return {};
 }
 
+/// Returns whether the shaking of the machine accelerates the mass of a wall that forces move: the engines leave it
+/// out.
+bool is_shaken(const geometry::Motion& motion, const dem::Shaking& shaking) {
+    const Vec3 amplitude = (shaking.frequency > 0 ? 1.0 : 0.0) * shaking.amplitude;
+    if (const auto* press = std::get_if<geometry::Press>(&motion))
+        return std::abs(geometry::dot(press->along, amplitude)) > 1e-9 * norm(amplitude);
+    const auto* body = std::get_if<geometry::Flight>(&motion);
+    for (std::size_t k = 0; body != nullptr && k < 3; ++k)
+        if (body->freedom[k] * amplitude[k] != 0) return true;
+    return false;
+}
+
 /// Returns whether two motions act at the same time, however early conditions end the phases.
 bool act_together(const machine::WallMotion& a, const machine::WallMotion& b,
                   const std::vector<machine::Phase>& phases) {
@@ -232,6 +244,10 @@ void check_motions(const Section& top, MachineReading& reading) {
             std::vector<geometry::Motion> all;
             for (const auto& one : motions) all.push_back(one.motion);
             if (why.empty() && !spec.walls[number].again) why = geometry::flaw(all);
+            if (why.empty() && std::ranges::any_of(all, [&](const auto& m) { return is_shaken(m, spec.shaking); }))
+                why =
+                    "a pressed or free wall does not feel \"shaking\" along its way; leave \"shaking\" out, and let "
+                    "the other walls vibrate";
             if (!why.empty()) throw input_error(top.at("walls")[reading.walls[name]]["motion"].path(), "", why);
         }
 }

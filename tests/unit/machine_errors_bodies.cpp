@@ -234,6 +234,24 @@ TEST(MachineErrors, OfBodiesHaveOneSentence) {
     for (const WrongMachine& one : wrong) expect_refusal(one);
 }
 
+// The mass of such a wall would stay where it is in the frame of the machine.
+TEST(MachineErrors, AWallThatForcesMoveIsNotShakenAlongItsWay) {
+    nlohmann::json machine = small_machine();
+    machine["walls"]["press"] = nlohmann::json::parse(R"({"rectangle": {"corner": [0, 0, 0.03], "along": [0.001, 0, 0],
+        "across": [0, 0.001, 0]}, "motion": [{"press": {"along": [0, 0, -1], "force": 1, "mass": 0.01,
+        "speed_at_most": 1}}]})");
+    machine["walls"]["press"]["material"] = machine["walls"]["box"]["material"];
+    EXPECT_EQ(refusal_of(machine), "accepted");
+    machine["shaking"] = {{"amplitude", {0, 0, 1e-4}}, {"frequency", 50}};
+    EXPECT_NE(refusal_of(machine).find("$.walls.press.motion: a pressed or free wall does not feel \"shaking\""),
+              std::string::npos)
+        << refusal_of(machine);
+    machine["shaking"]["amplitude"] = {1e-4, 0, 0};
+    EXPECT_EQ(refusal_of(machine), "accepted") << "across its way";
+    machine["shaking"] = {{"amplitude", {0, 0, 1e-4}}, {"frequency", 0}};
+    EXPECT_EQ(refusal_of(machine), "accepted") << "still";
+}
+
 TEST(MachineErrors, AnAttractionMayBeZeroWhereItsLawIsAbsent) {
     nlohmann::json machine = small_machine();
     machine["parameters"]["energy"] = {{"unit", "J/m2"}, {"default", 0}};
