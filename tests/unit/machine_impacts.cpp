@@ -204,6 +204,46 @@ Observations finished(machine::Run& run) {
     return answer;
 }
 
+// Balance of a bed between a belt and a pressed lid. By `spring` the force of a contact jumps where its spring is cut,
+// which half of the contacts do in many steps.
+TEST(MachineImpacts, OfAShearedBedAreTheWorkOfItsWalls) {
+    for (const char* limit : {"sum", "spring"})
+        for (const bool linear : {false, true}) {
+            json machine = json::parse(R"({
+              "name": "shear",
+              "materials": {"m": {"density": 2500, "youngs_modulus": 5e6}},
+              "species": {"p": {"diameter": 0.003, "sizes": {"spread": "uniform", "half_width": 0.1}}},
+              "domain": {"low": [0, 0, -0.005], "high": [0.015, 0.015, 0.04], "periodic": [1, 1, 0]},
+              "walls": {
+                "floor": {"plane": {"normal": [0, 0, 1]},
+                          "motion": [{"convey": {"velocity": [0.2, 0, 0]}, "from": "shear"}]},
+                "lid": {"plane": {"point": [0, 0, 0.03], "normal": [0, 0, -1]},
+                        "motion": [{"press": {"along": [0, 0, -1], "mass": 0.01, "speed_at_most": 0.5},
+                                    "from": "load"}]}
+              },
+              "fill": [{"species": "p", "count": 70,
+                        "in": {"box": {"low": [0, 0, 0], "high": [0.015, 0.015, 0.028]}}}],
+              "phases": [{"name": "settle", "for": 0.06, "frames": 2}, {"name": "load", "for": 0.1, "frames": 2},
+                         {"name": "shear", "for": 0.03, "frames": 2}, {"name": "look", "for": 0.02, "frames": 2}],
+              "measure": {
+                "lost": {"impact_energy": {}, "during": "look", "as": "last"},
+                "work": {"wall_work": {"wall": ["floor", "lid"]}, "during": "look", "as": "change"},
+                "moves": {"kinetic_energy": {}, "during": "look", "as": "change"},
+                "turns": {"rotational_energy": {}, "during": "look", "as": "change"},
+                "rises": {"mean_height": {}, "during": "look", "as": "change"},
+                "mass": {"mass": {}, "during": "look", "as": "last"}
+              }
+            })");
+            machine["contacts"] = {{"restitution", linear ? 0.3 : 0.1}, {"tangential_limit", limit}};
+            if (linear) machine["contacts"].update({{"normal_law", "linear"}, {"stiffness", 2250}});
+            machine["walls"]["lid"]["motion"][0]["press"]["force"] = 1.125;
+            const auto seen = answer_of(spec_of(machine)).scalars;
+            const double gained = seen.at("moves") + seen.at("turns") + 9.81 * seen.at("mass") * seen.at("rises");
+            EXPECT_GT(seen.at("work"), 1e-6) << limit << linear;
+            EXPECT_NEAR((seen.at("lost") + gained) / seen.at("work"), 1, 5e-3) << limit << linear;
+        }
+}
+
 TEST(MachineImpacts, ListeningChangesNoOtherAnswer) {
     for (const std::string precision : {"mixed", "double"}) {
         Observations plain = answer_of(spec_of(small_machine(), {{"precision", precision}}), 7);

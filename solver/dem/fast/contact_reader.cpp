@@ -17,13 +17,14 @@ namespace {
 // Of forces in single precision, relative to the sizes of their terms.
 constexpr double rounding = 1e-6;
 constexpr double rounding_at_rest = 1e-5;
+constexpr double most_rounding = 1e-4;  // beyond it springs that hold would count as cut
 
 }  // namespace
 
 ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field,
                              const std::int32_t* id, std::span<const Velocities> motions, std::int32_t width,
                              std::span<const ParkedContact> parked, std::span<const Velocities> before,
-                             const Clumps* clumps)
+                             const Clumps* clumps, double overlap_rounding)
     : laws_(laws),
       space_(space),
       field_(field),
@@ -33,6 +34,7 @@ ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, c
       parked_(parked),
       before_(before),
       clumps_(clumps),
+      overlap_rounding_(overlap_rounding),
       beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
       beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
     std::ranges::transform(laws.front()->traits().memory, memory_unit_.begin(),
@@ -71,8 +73,10 @@ ContactForce ContactReader::read(const AnyContact& laws, Touch<partner> t, std::
                                  const Memory& memory, MotionIn&& motion_in) const {
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Touch<partner> now = moving(t, motion_in(motions_));
-    return read_contact(laws, before_.empty() ? now : as_in_step(t, motion_in(before_), rounding), now, memory.data(),
-                        id_[i], second);
+    const double of_overlap =
+        overlap_rounding_ > 0 ? std::min(overlap_rounding_ * t.distance / std::abs(t.overlap), most_rounding) : 0;
+    return read_contact(laws, before_.empty() ? now : as_in_step(t, motion_in(before_), rounding + of_overlap), now,
+                        memory.data(), id_[i], second);
 }
 
 /// Returns whether two particles are within the reach of their laws; sets the geometry of the touch.

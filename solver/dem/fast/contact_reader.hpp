@@ -34,9 +34,10 @@ class ContactReader {
 public:
     /// All views must outlive the reader. `motions`: at the full step, in the order of the records; empty if only
     /// energy is needed. `before`: at the half step before; if given, the forces are the forces of the last step.
+    /// `overlap_rounding`: error of the overlaps of that step, as a share of the distances.
     ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Velocities> motions, std::int32_t width, std::span<const ParkedContact> parked = {},
-                  std::span<const Velocities> before = {}, const Clumps* clumps = nullptr);
+                  std::span<const Velocities> before = {}, const Clumps* clumps = nullptr, double overlap_rounding = 0);
 
     /// Computes overlap, force and torques of a contact of two particles at rest.
     void stand_still(ParkedContact& contact) const;
@@ -95,6 +96,7 @@ private:
     std::span<const ParkedContact> parked_;
     std::span<const Velocities> before_;
     const Clumps* clumps_;
+    double overlap_rounding_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // m
     Memory memory_unit_{};
 };

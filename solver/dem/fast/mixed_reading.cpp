@@ -10,6 +10,8 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
+constexpr double rounding_of_overlaps = 4e-7;  // of the distance: measured in beds under shear
+
 /// Returns the indices in order of id. Ids have gaps only for removed particles, so counting is faster than sorting.
 std::vector<std::int32_t> by_id(std::span<const std::int32_t> ids) {
     constexpr std::int32_t none = -1;
@@ -96,8 +98,11 @@ std::vector<Velocities> MixedEngine::motions(double share) const {
 void MixedEngine::read_contacts(std::span<const Velocities> before, std::vector<ContactForce>& into) const {
     join_lists();
     const std::vector<Velocities> now = motions();
+    // By `spring` a force jumps where its spring is cut, so that the reader must find every spring that the step cut.
+    const bool jumps = std::ranges::any_of(
+        materials_, [](const Material& m) { return m.tangential_limit == TangentialLimit::spring; });
     const ContactReader reader(laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked(),
-                               before, &clumps_);
+                               before, &clumps_, jumps ? rounding_of_overlaps : 0);
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.count(); ++w) reader.wall(walls_, w, into);
