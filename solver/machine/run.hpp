@@ -114,6 +114,7 @@ private:
     [[nodiscard]] std::int64_t present() const;
     [[nodiscard]] std::int64_t so_far() const;
     [[nodiscard]] std::int64_t lost() const { return so_far() - present() - taken_; }
+    [[nodiscard]] std::string remark_of_creep() const;
     void gather_particles();
     void add_orientations(Snapshot& picture) const;
     void give_crossings();

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,6 +49,35 @@ static std::string bound_of(const geometry::Motion& motion) {
     return {};
 }
 
+/// A constant torque has no threshold: at rest each step turns a particle to and fro, and a loaded bed creeps.
+std::string Run::remark_of_creep() const {
+    constexpr double least_energy = 1e-4;  // of that motion, in m g d: a tenth of what counts as rest
+    constexpr double least_way = 0.1;      // in the last phase, diameters
+    if (spec_.pairs.front().rolling_law != dem::RollingLaw::cdt || times_.end.empty()) return {};
+    dem::State state;
+    std::vector<dem::ContactForce> contacts;
+    engine_->state(state), engine_->contacts(contacts);
+    double speed = 0, diameter = 0, count = 0;
+    for (const dem::ContactForce& contact : contacts) {
+        const auto at = static_cast<std::size_t>(std::ranges::lower_bound(state.id, contact.first) - state.id.begin());
+        const double r = state.radius[at], moment = geometry::norm(contact.rolling_moment);
+        if (state.mobile[at] == 0 || moment == 0) continue;
+        const double mass = density_[static_cast<std::size_t>(contact.first)] * 4 / 3 * std::numbers::pi * r * r * r;
+        speed += moment * engine_->part() / (0.4 * mass * r);
+        diameter += 2 * r;
+        ++count;
+    }
+    if (count == 0) return {};
+    speed /= count, diameter /= count;
+    const double rest = std::sqrt(2 * least_energy * geometry::norm(spec_.gravity) * diameter);
+    const double way = speed * (times_.end.back() - times_.begin[times_.end.size() - 1]);
+    if (speed < rest || way < least_way * diameter) return {};
+    return kit::sentence(
+        "rolling_law cdt turns loaded particles to and fro in every time step, by %.2g m/s at their surface, so that "
+        "the bed creeps: take rolling_law epsd, or a shorter time step",
+        speed);
+}
+
 std::string Run::remark() const {
     constexpr double many = 0.1;   // of the particles: a vessel that does not hold its filling; a feed flows through
     constexpr double deep = 0.05;  // overlap divided by the diameter: here Hertz's force errs by about as much
@@ -73,7 +103,7 @@ std::string Run::remark() const {
             if (const std::string bound = bound_of(motion); !bound.empty())
                 free = "at the end wall '" + spec_.walls[w].name + "' still " + bound;
     std::string all;
-    for (const std::string& one : {lost, soft, free, flaw_of_frames(spec_)})
+    for (const std::string& one : {lost, soft, free, remark_of_creep(), flaw_of_frames(spec_)})
         if (!one.empty()) all += (all.empty() ? "" : "; ") + one;
     return all;
 }

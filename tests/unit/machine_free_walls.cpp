@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace grainsweep::tests::machine_free_walls_test {
 
@@ -48,6 +49,21 @@ TEST(MachineFreeWalls, ALidIsPressedInItsPhase) {
         const double weight = 60 * 2500 * 3.14159265 / 6 * 27e-9 * 9.81;
         EXPECT_NEAR(seen.at("carried"), 2 + weight, 0.02);
     }
+}
+
+// It has no threshold: at this step the bed is lower than at a tenth of it, however long it is pressed.
+TEST(MachineFreeWalls, APressedBedThatCreepsByItsConstantTorqueIsNamed) {
+    const auto remark_with = [](const char* law, double fraction) {
+        json machine = press_machine();
+        machine["contacts"]["rolling_friction"] = 0.4;
+        machine["contacts"]["rolling_law"] = law;
+        machine::Run run(spec_of(machine, {{"time_step_fraction", fraction}}), 1);
+        run.advance(1e9);
+        return run.remark();
+    };
+    EXPECT_NE(remark_with("cdt", 0.2).find("rolling_law cdt turns loaded particles to and fro"), std::string::npos);
+    EXPECT_EQ(remark_with("cdt", 0.01).find("rolling_law"), std::string::npos);
+    EXPECT_EQ(remark_with("epsd", 0.2).find("rolling_law"), std::string::npos);
 }
 
 TEST(MachineFreeWalls, PicturesAndCheckpointsHaveTheLidWhereItIs) {
