@@ -118,18 +118,22 @@ void ContactReader::for_each_parked(Visit&& visit) const {
 }
 
 template <class Visit>
+void ContactReader::look_at(std::int32_t k, std::optional<std::int64_t> place, Visit&& visit) const {
+    const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
+    const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
+    if (i >= field_.count || j >= field_.count) return;  // they fill the list up
+    Touch<Partner::particle> t;
+    if (!near(i, j, t)) return;
+    const Memory of_pair = place ? memory(field_.history, *place) : Memory{};
+    if (laws_of(i, j).begin(t, of_pair.data())) visit(i, j, t, of_pair);
+}
+
+template <class Visit>
 void ContactReader::for_each_pair(Visit&& visit) const {
     std::int64_t stream = 0;  // memories of the pairs whose bit is set, without gaps
     for (std::int32_t k = 0; k < field_.inner_count; ++k) {
-        const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
-        const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
         const bool remembered = (field_.touching[k / width_] >> (k % width_) & 1) != 0;
-        const std::int64_t at = remembered ? stream++ : 0;
-        if (i >= field_.count || j >= field_.count) continue;  // they fill the list up
-        Touch<Partner::particle> t;
-        if (!near(i, j, t)) continue;
-        const Memory of_pair = remembered ? memory(field_.history, at) : Memory{};
-        if (laws_of(i, j).begin(t, of_pair.data())) visit(i, j, t, of_pair);
+        look_at(k, remembered ? std::optional(stream++) : std::nullopt, visit);
     }
     for_each_parked(visit);
 }
@@ -138,17 +142,8 @@ template <class Visit>
 void ContactReader::for_each_remembered(Visit&& visit) const {
     std::int64_t stream = 0;
     for (std::int32_t batch = 0; batch * width_ < field_.inner_count; ++batch)
-        for (unsigned left = field_.touching[batch]; left != 0; left &= left - 1) {
-            const std::int32_t k = batch * width_ + std::countr_zero(left);
-            const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
-            const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
-            const std::int64_t at = stream++;
-            if (i >= field_.count || j >= field_.count) continue;
-            Touch<Partner::particle> t;
-            if (!near(i, j, t)) continue;
-            const Memory of_pair = memory(field_.history, at);
-            if (laws_of(i, j).begin(t, of_pair.data())) visit(i, j, t, of_pair);
-        }
+        for (unsigned left = field_.touching[batch]; left != 0; left &= left - 1)
+            look_at(batch * width_ + std::countr_zero(left), stream++, visit);
     for_each_parked(visit);
 }
 

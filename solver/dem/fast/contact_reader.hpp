@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,9 @@ private:
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
     [[nodiscard]] bool near(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
     [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const;
+    /// Calls visit(i, j, touch, memory) if pair k of the list touches; `place`: of its memory, if it has one.
+    template <class Visit>
+    void look_at(std::int32_t k, std::optional<std::int64_t> place, Visit&& visit) const;
     /// Calls visit(i, j, touch, memory) for touching pairs; only the geometry of the touch is set.
     template <class Visit>
     void for_each_pair(Visit&& visit) const;
