@@ -232,15 +232,13 @@ std::string options_tables() {
     return all;
 }
 
-/// The keys of a powder file, object by object, without the amounts of attractions: the reference of machines has them.
+/// The keys of a powder file, object by object.
 std::string powder_keys_table() {
     std::string table = head({"object", "key", "default", "meaning"});
     for (const auto& [object, keys] : campaign::powder_keys::all())
         for (const auto& key : keys)
-            if (object != "contacts" || key.unit.empty())
-                table +=
-                    row({code(std::string(object)), code(std::string(key.name)),
-                         key.required ? "required" : code(std::string(key.standard)), campaign::meaning_text(key)});
+            table += row({code(std::string(object)), code(std::string(key.name)),
+                          key.required ? "required" : code(std::string(key.standard)), campaign::meaning_text(key)});
     return table;
 }
 
