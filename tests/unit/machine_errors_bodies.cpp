@@ -1,8 +1,10 @@
 // Every wrong machine file gets one sentence: where, what value, which rule, the nearest right word. Here of
 // materials, contacts, walls, gravity and domain.
+#include "solver/dem/material.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "tests/support/wrong_machines.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace grainsweep::tests::machine_errors_bodies_test {
@@ -270,6 +272,32 @@ TEST(MachineErrors, AnAttractionMayBeZeroWhereItsLawIsAbsent) {
     EXPECT_NE(refusal_of(machine).find("$.contacts.glued.surface_energy: got 0.1; 0.1 has no effect"),
               std::string::npos)
         << refusal_of(machine);
+}
+
+// The words are the rows of the laws, so that a further law changes no sentence above.
+TEST(MachineErrors, SentencesListEveryWordOfALaw) {
+    const auto listed = [](auto words) {
+        std::string text;
+        for (std::size_t k = 0; k < words.size(); ++k)
+            text += (k == 0 ? "'" : k + 1 == words.size() ? " or '" : ", '") + std::string(words[k]) + "'";
+        return text;
+    };
+    for (const Field& law : dem::law_fields()) {
+        nlohmann::json machine = small_machine();
+        machine["contacts"][law.name] = 2;
+        EXPECT_THAT(refusal_of(machine), testing::HasSubstr("must be " + listed(law.words) + ".")) << law.name;
+    }
+    for (const dem::Attraction& one : dem::attractions()) {
+        nlohmann::json machine = small_machine();
+        machine["contacts"]["cohesion_law"] = one.key() == "cohesion" ? "jkr" : "sjkr";
+        machine["contacts"][one.key()] = 0.1;
+        std::vector<std::string_view> words;
+        for (const dem::Attraction& other : dem::attractions())
+            if (other.key() == one.key()) words.push_back(other.word);
+        EXPECT_THAT(refusal_of(machine),
+                    testing::HasSubstr("has no effect: it belongs to \"cohesion_law\" " + listed(words) + "; that is "))
+            << one.word;
+    }
 }
 
 // It stays known, so that its database is sound and its results have names; its cases say why they are refused.
