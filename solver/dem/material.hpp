@@ -37,7 +37,7 @@ enum class FrictionLimit { contact, net };
 /// together. spring: the spring alone, as in LIGGGHTS 3.8.
 enum class TangentialLimit { sum, spring };
 
-/// Law of rolling resistance, with the words of resistances().
+/// Law of rolling resistance, with the words of resistance_rows (laws/compiled.hpp).
 enum class RollingLaw { epsd, epsd_liggghts, cdt };
 
 /// Elastic constants of a body.
