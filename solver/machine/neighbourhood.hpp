@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 namespace grainsweep::machine {
@@ -47,6 +48,13 @@ public:
 
 private:
     using Cell = std::array<std::int64_t, 3>;
+    /// Teschner et al. (2003), Optimized spatial hashing for collision detection, section 4.1.
+    struct Hash {
+        std::size_t operator()(const Cell& cell) const {
+            const auto at = [&](std::size_t k) { return static_cast<std::size_t>(cell[k]); };
+            return (at(0) * 73856093) ^ (at(1) * 19349663) ^ (at(2) * 83492791);
+        }
+    };
     struct Ball {
         Vec3 centre;
         double radius;
@@ -68,7 +76,7 @@ private:
     Cell count_{};  ///< cells of a period; 0: the axis has none
     Vec3 edge_{};
     double largest_ = 0;  ///< radius
-    std::map<Cell, std::vector<Ball>> cells_;
+    std::unordered_map<Cell, std::vector<Ball>, Hash> cells_;
 };
 
 }  // namespace grainsweep::machine
