@@ -1,6 +1,5 @@
-// Observables of scenes are recorded under the names that they declare; the Bond number of a machine.
+// The Bond number of a machine.
 #include "solver/dem/material.hpp"
-#include "solver/scenes/kit/observable.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 
@@ -13,21 +12,6 @@
 #include <stdexcept>
 
 namespace grainsweep::tests::scenes_kit_test {
-
-constexpr kit::Scalar seen{"seen", "m", "what is seen"};
-constexpr kit::Series course{"course", "m", "what is seen", "time (s)"};
-
-TEST(Kit, HandlesRecordWhatTheyDeclare) {
-    const auto specs = kit::observed(seen, course);
-    Observations into;
-    seen.record(into, 2);
-    seen.record(into, 3);
-    course.in(into).push_back({.time = 1, .value = 4});
-    EXPECT_EQ(into.scalars.at(specs[0].name), 3);
-    EXPECT_EQ(into.series.at(specs[1].name).size(), 1U);
-    EXPECT_EQ(specs[1].shape, Shape::series);
-    EXPECT_EQ(specs[1].over, "time (s)");
-}
 
 // The largest value of k A(d) - 4/3 E* sqrt(R*) d^(3/2), searched for.
 TEST(Scenes, BondNumberIsTheLargestAttractionOverTheWeight) {

@@ -15,11 +15,6 @@ namespace grainsweep::kit {
     return buffer.data();
 }
 
-/// Returns whether a >= b up to rounding: 0.0045 is three times 0.0015, but 3 * 0.0015 is greater in double precision.
-[[nodiscard]] inline bool at_least(double a, double b) {
-    return a >= b * (1 - 1e-12);
-}
-
 /// Throws std::invalid_argument with the sentence if `holds` is false.
 inline void require(bool holds, const std::string& words) {
     if (!holds) throw std::invalid_argument(words);
