@@ -115,10 +115,4 @@ std::optional<std::vector<Vec3>> random_addition(const Room& room, std::span<con
     return centres;
 }
 
-std::vector<Vec3> random_addition(const Tray& tray, std::span<const double> radii, std::uint64_t seed) {
-    auto centres = random_addition(Room{tray.low, tray.high, {false, true, false}, {}}, radii, seed);
-    if (!centres) throw std::invalid_argument("the layer cannot hold all its particles: make layer_area smaller");
-    return *std::move(centres);
-}
-
 }  // namespace grainsweep::particles

@@ -14,16 +14,6 @@
 
 namespace grainsweep::particles {
 
-/// Box that contains spheres completely along x and z, and is periodic along y.
-struct Tray {
-    std::array<double, 3> low{}, high{};
-};
-
-/// Returns the centres, in the order of `radii`. The tries of a sphere depend only on (seed, its index). Throws
-/// std::invalid_argument if a sphere finds no place in a hundred thousand tries or is wider than half the period.
-[[nodiscard]] std::vector<std::array<double, 3>> random_addition(const Tray& tray, std::span<const double> radii,
-                                                                 std::uint64_t seed);
-
 /// Vessel in a box; the box repeats along periodic axes.
 struct Room {
     std::array<double, 3> low{}, high{};
@@ -32,8 +22,9 @@ struct Room {
     std::function<bool(const std::array<double, 3>& centre, double radius)> holds;
 };
 
-/// Returns the centres in a vessel; empty if a sphere finds no place in a hundred thousand tries. Throws
-/// std::invalid_argument if a sphere is wider than half a period.
+/// Returns the centres in a vessel, in the order of `radii`; empty if a sphere finds no place in a hundred thousand
+/// tries. The tries of a sphere depend only on (seed, its index). Throws std::invalid_argument if a sphere is wider
+/// than half a period.
 [[nodiscard]] std::optional<std::vector<std::array<double, 3>>> random_addition(const Room& room,
                                                                                 std::span<const double> radii,
                                                                                 std::uint64_t seed);

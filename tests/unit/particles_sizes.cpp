@@ -80,8 +80,8 @@ TEST(SizeDistribution, LognormalHasMeanOneAndItsQuantiles) {
     }
 }
 
-TEST(RandomAddition, LeavesNoOverlapAndFillsTheTray) {
-    const Tray tray{{1, -2, 0}, {13, 4, 8}};
+TEST(RandomAddition, LeavesNoOverlapAndFillsTheRoom) {
+    const Room room{{1, -2, 0}, {13, 4, 8}, {false, true, false}, {}};
     const auto sizes = SizeDistribution::lognormal(0.4);
     const stats::Stream random(5, 1);
     std::vector<double> radii;
@@ -90,15 +90,17 @@ TEST(RandomAddition, LeavesNoOverlapAndFillsTheTray) {
         radii.push_back(sizes.diameter(random.uniform(radii.size())) / 4);
         volume += 4.18879 * std::pow(radii.back(), 3);
     }
-    const auto centres = random_addition(tray, radii, 7);
+    const auto placed = random_addition(room, radii, 7);
+    ASSERT_TRUE(placed);
+    const auto& centres = *placed;
     ASSERT_EQ(centres.size(), radii.size());
-    EXPECT_EQ(centres, random_addition(tray, radii, 7));
-    EXPECT_NE(centres, random_addition(tray, radii, 8));
+    EXPECT_EQ(placed, random_addition(room, radii, 7));
+    EXPECT_NE(placed, random_addition(room, radii, 8));
     double height = 0;
     for (std::size_t i = 0; i < radii.size(); ++i) {
         for (const std::size_t a : {0U, 2U}) {
-            EXPECT_GE(centres[i][a] - radii[i], tray.low[a] - 1e-12);
-            EXPECT_LE(centres[i][a] + radii[i], tray.high[a] + 1e-12);
+            EXPECT_GE(centres[i][a] - radii[i], room.low[a] - 1e-12);
+            EXPECT_LE(centres[i][a] + radii[i], room.high[a] + 1e-12);
         }
         EXPECT_TRUE(centres[i][1] >= -2 && centres[i][1] < 4);
         height += centres[i][2] / static_cast<double>(radii.size());
@@ -112,10 +114,10 @@ TEST(RandomAddition, LeavesNoOverlapAndFillsTheTray) {
 }
 
 TEST(RandomAddition, SaysWhenThereIsNoRoom) {
-    const Tray tray{{0, 0, 0}, {4, 4, 2}};
-    EXPECT_THROW((void)random_addition(tray, std::vector<double>(40, 0.5), 1), std::invalid_argument);  // 0.65
-    EXPECT_THROW((void)random_addition(tray, std::vector<double>{1.01}, 1), std::invalid_argument);
-    EXPECT_TRUE(random_addition(tray, {}, 1).empty());
+    const Room room{{0, 0, 0}, {4, 4, 2}, {false, true, false}, {}};
+    EXPECT_FALSE(random_addition(room, std::vector<double>(40, 0.5), 1));  // a fraction of 0.65
+    EXPECT_THROW((void)random_addition(room, std::vector<double>{1.01}, 1), std::invalid_argument);
+    EXPECT_TRUE(random_addition(room, {}, 1)->empty());
 }
 
 // Sampled moments against the table's, and those against what its text says.
