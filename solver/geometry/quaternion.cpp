@@ -29,11 +29,6 @@ Quaternion orientation_of(const std::array<Vec3, 3>& axes) {
     return normalised(q);
 }
 
-Quaternion turn_about(const Vec3& axis, double angle) {
-    const double s = std::sin(angle / 2);
-    return {std::cos(angle / 2), s * axis[0], s * axis[1], s * axis[2]};
-}
-
 Quaternion orientation_at(double u1, double u2, double u3) {
     const double a = std::sqrt(1 - u1), b = std::sqrt(u1);
     const double s = 2 * std::numbers::pi * u2, t = 2 * std::numbers::pi * u3;

@@ -47,8 +47,6 @@ using Quaternion = std::array<double, 4>;
 
 /// Returns the orientation of a frame whose axes, orthogonal unit vectors of a right-handed system, are these.
 [[nodiscard]] Quaternion orientation_of(const std::array<Vec3, 3>& axes);
-/// Returns the turn about a unit axis by an angle, rad, right hand.
-[[nodiscard]] Quaternion turn_about(const Vec3& axis, double angle);
 /// Returns an orientation of a uniform distribution, from three numbers in [0, 1) (Shoemake 1992, Graphics Gems III,
 /// 124).
 [[nodiscard]] Quaternion orientation_at(double u1, double u2, double u3);

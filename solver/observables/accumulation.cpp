@@ -56,13 +56,6 @@ double random_accumulation_deviation(std::size_t particles, std::size_t cells) {
     return std::sqrt(std::max(variance, 0.0) * c) / (2 * (n - mean));
 }
 
-double least_accumulation(std::size_t particles, std::size_t cells) {
-    const auto n = static_cast<double>(particles);
-    const double lambda = n / static_cast<double>(cells);
-    const double f = lambda - std::floor(lambda);
-    return static_cast<double>(cells) * f * (1 - f) / (n - lambda);
-}
-
 std::vector<double> density_profile(std::span<const Vec3> positions, const Box& box, int n, int d) {
     std::vector<double> profile(static_cast<std::size_t>(n), 0.0);
     const auto m = static_cast<std::size_t>(d);

@@ -30,8 +30,6 @@ struct Box {
 [[nodiscard]] double random_accumulation(std::size_t particles, std::size_t cells);
 /// Returns the standard deviation of this K over clouds, without the correlation of counts, which overestimates it.
 [[nodiscard]] double random_accumulation_deviation(std::size_t particles, std::size_t cells);
-/// Returns the smallest possible K of N particles on this number of cells.
-[[nodiscard]] double least_accumulation(std::size_t particles, std::size_t cells);
 
 /// Returns the particles in each of n slabs along axis d, divided by the mean: 1 everywhere for a uniform cloud.
 [[nodiscard]] std::vector<double> density_profile(std::span<const Vec3> positions, const Box& box, int n, int d);

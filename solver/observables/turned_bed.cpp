@@ -32,13 +32,6 @@ SectionSphere SectionView::sphere(const dem::State& state, std::size_t i) const 
     return {dot(from_axis, across), dot(from_axis, up), dot(v, across), dot(v, up), state.radius[i]};
 }
 
-Section section_of(const dem::State& state, const SectionView& view) {
-    Section section;
-    section.reserve(state.position.size());
-    for (std::size_t i = 0; i < state.position.size(); ++i) section.push_back(view.sphere(state, i));
-    return section;
-}
-
 SectionGrid::SectionGrid(double radius, double its_cell)
     : cell(its_cell), count(2 * std::max<std::int64_t>(1, std::llround(std::ceil(radius / its_cell - 1e-9)))) {}
 

@@ -39,9 +39,6 @@ struct SectionView {
     [[nodiscard]] SectionSphere sphere(const dem::State& state, std::size_t i) const;
 };
 
-/// Returns all spheres projected to the plane of the view.
-[[nodiscard]] Section section_of(const dem::State& state, const SectionView& view = {});
-
 /// Grid of square cells that cover the drum, with edges at whole multiples of `cell` from the axis. Numbered from the
 /// smallest x and z, x fastest.
 struct SectionGrid {

@@ -58,10 +58,6 @@ std::size_t Clump::long_axis() const {
     return static_cast<std::size_t>(std::ranges::min_element(inertia) - inertia.begin());
 }
 
-std::size_t Clump::short_axis() const {
-    return static_cast<std::size_t>(std::ranges::max_element(inertia) - inertia.begin());
-}
-
 std::string flaw_of(std::span<const Ball> balls) {
     if (balls.size() < 2)
         return balls.empty() ? "a shape needs spheres" : "a shape of one sphere is a sphere: leave \"shape\" out";

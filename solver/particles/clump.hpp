@@ -32,9 +32,8 @@ struct Clump {
     [[nodiscard]] double reach() const;
     /// Returns the radius of the smallest sphere, in D.
     [[nodiscard]] double smallest() const;
-    /// Returns the number of the axis, 0 to 2, with the least or the largest moment of inertia.
+    /// Returns the number of the axis, 0 to 2, with the least moment of inertia.
     [[nodiscard]] std::size_t long_axis() const;
-    [[nodiscard]] std::size_t short_axis() const;
 };
 
 /// Returns why spheres are no shape, in one sentence; empty: they are one. They must overlap or touch, none may lie in

@@ -21,6 +21,12 @@ dem::BodyState body_of(const dem::Engine& engine, std::size_t number = 0) {
     return state.bodies.at(number);
 }
 
+/// Returns the turn about a unit axis by an angle, rad, right hand.
+Quaternion turn_about(const Vec3& axis, double angle) {
+    const double s = std::sin(angle / 2);
+    return {std::cos(angle / 2), s * axis[0], s * axis[1], s * axis[2]};
+}
+
 double energy_of(const dem::BodyState& b) {
     return 0.5 * (b.mass * dot(b.velocity, b.velocity) + dot(b.angular_momentum, b.angular_velocity));
 }

@@ -21,6 +21,14 @@ std::vector<Vec3> random_cloud(std::size_t n, std::uint64_t stream) {
     return cloud;
 }
 
+/// Returns the smallest possible K of N particles on this number of cells.
+double least_accumulation(std::size_t particles, std::size_t cells) {
+    const auto n = static_cast<double>(particles);
+    const double lambda = n / static_cast<double>(cells);
+    const double f = lambda - std::floor(lambda);
+    return static_cast<double>(cells) * f * (1 - f) / (n - lambda);
+}
+
 TEST(Accumulation, IsOneInOneCellAndZeroOnePerCell) {
     const std::vector<Vec3> point(500, Vec3{0.1, 0.1, 0.1});
     EXPECT_NEAR(accumulation(cell_counts(point, cube, 7)), 1, 1e-13);

@@ -31,6 +31,14 @@ dem::State segment(double radius, double length, double slope, double height, do
     return state;
 }
 
+/// Returns all spheres projected to the plane across the drum.
+Section section_of(const dem::State& state) {
+    const SectionView view;
+    Section section;
+    for (std::size_t i = 0; i < state.position.size(); ++i) section.push_back(view.sphere(state, i));
+    return section;
+}
+
 TEST(LineFit, IsExactOnALineAndLeastInBetween) {
     const std::vector<std::array<double, 2>> straight = {{-2, 5}, {1, -1}, {4, -7}};
     const Line line = fitted_line(straight);
