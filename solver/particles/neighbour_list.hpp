@@ -34,9 +34,6 @@ public:
     void build(const Cells& cells, std::span<const Vec3> position, const Radii& radii, double skin,
                const Domain& domain, PairMatters&& pair_matters);
 
-    /// Builds the same list from all pairs, for any order of particles; partners ascending. For tests.
-    void build_by_brute_force(std::span<const Vec3> position, const Radii& radii, double skin, const Domain& domain);
-
     [[nodiscard]] std::size_t particles() const { return first_.empty() ? 0 : first_.size() - 1; }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
     [[nodiscard]] std::uint32_t begin(std::size_t i) const { return first_[i]; }

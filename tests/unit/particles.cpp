@@ -15,6 +15,7 @@
 
 namespace grainsweep::tests::particles_test {
 
+using namespace geometry;
 using namespace particles;
 
 struct Cloud {
@@ -36,6 +37,37 @@ std::set<Pair> pairs(const NeighbourList& list) {
     return result;
 }
 
+/// Returns the list from all pairs, for any order of particles; partners ascending.
+NeighbourList listed_by_brute_force(std::span<const Vec3> position, const Radii& radii, double skin,
+                                    const Domain& domain) {
+    const auto n = static_cast<std::uint32_t>(position.size());
+    const auto shifts = domain.image_shifts();
+    std::vector<std::uint32_t> first(n + 1U, 0);
+    std::vector<Neighbour> entries;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        first[i] = static_cast<std::uint32_t>(entries.size());
+        for (std::uint32_t j = i + 1; j < n; ++j) {
+            for (std::uint32_t image = 0; image < 27; ++image) {
+                const std::array<std::uint32_t, 3> digit = {image % 3, image / 3 % 3, image / 9};
+                bool exists = true;
+                for (std::size_t k = 0; k < 3; ++k) exists = exists && (domain.periodic[k] || digit[k] == 1);
+                if (!exists) continue;
+                const Vec3 d = position[i] - shifts[image] - position[j];
+                const double reach = radii[i] + radii[j] + skin;
+                if (dot(d, d) < reach * reach) entries.push_back(Neighbour::of(j, image));
+            }
+        }
+    }
+    first[n] = static_cast<std::uint32_t>(entries.size());
+    std::vector<std::byte> bytes;
+    ByteWriter out(bytes);
+    out.put(first), out.put(entries);
+    ByteReader in(bytes);
+    NeighbourList list;
+    list.restore(in, n);
+    return list;
+}
+
 /// Sorts the cloud, lists it both ways and returns the number of pairs.
 std::size_t compare_with_brute_force(const Cloud& cloud) {
     Cells cells;
@@ -54,8 +86,7 @@ std::size_t compare_with_brute_force(const Cloud& cloud) {
     const Radii sorted = equal ? radii : Radii{0, radius};
     NeighbourList fast;
     fast.build(cells, position, sorted, cloud.skin, cloud.domain, [](std::size_t, std::size_t) { return true; });
-    NeighbourList plain;
-    plain.build_by_brute_force(position, sorted, cloud.skin, cloud.domain);
+    const NeighbourList plain = listed_by_brute_force(position, sorted, cloud.skin, cloud.domain);
     EXPECT_EQ(pairs(fast), pairs(plain));
     return plain.size();
 }
@@ -116,8 +147,7 @@ TEST(PairMemory, FollowsItsPairAndTurnsWithIt) {
     // Three in a row touch their neighbours; then the order is reversed, and the middle pair's memory must turn.
     const Domain domain{{-9, -9, -9}, {9, 9, 9}, {}};
     const std::vector<Vec3> before = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
-    NeighbourList old;
-    old.build_by_brute_force(before, {0.5, {}}, 0.2, domain);
+    const NeighbourList old = listed_by_brute_force(before, {0.5, {}}, 0.2, domain);
     ASSERT_EQ(old.size(), 3U);
     PairMemory memory({-1, -1, -1});
     memory.value = {1, 2, 3, 4, 5, 6, 7, 8, 9};
@@ -125,8 +155,7 @@ TEST(PairMemory, FollowsItsPairAndTurnsWithIt) {
     // 0 -> 2, 1 -> 1, 2 -> 0, 3 leaves.
     const std::vector<Vec3> after = {{2, 0, 0}, {1, 0, 0}, {0, 0, 0}};
     const std::vector<std::uint32_t> fresh_index = {2, 1, 0, gone};
-    NeighbourList fresh;
-    fresh.build_by_brute_force(after, {0.5, {}}, 0.2, domain);
+    const NeighbourList fresh = listed_by_brute_force(after, {0.5, {}}, 0.2, domain);
     memory.carry(old, fresh, fresh_index);
     // Pair (0, 1) was (2, 1), pair (1, 2) was (1, 0).
     EXPECT_EQ(memory.value, (std::vector<double>{-4, -5, -6, -1, -2, -3}));
@@ -135,13 +164,11 @@ TEST(PairMemory, FollowsItsPairAndTurnsWithIt) {
 
 TEST(PairMemory, ExchangedParticlesFlipWhatIsMeasuredFromOneToTheOther) {
     const Domain domain{{-9, -9, -9}, {9, 9, 9}, {}};
-    NeighbourList old;
-    old.build_by_brute_force(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, {0.5, {}}, 0.2, domain);
+    const NeighbourList old = listed_by_brute_force(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, {0.5, {}}, 0.2, domain);
     PairMemory memory({-1, -1, -1, 1});
     memory.value = {1, 2, 3, 4};
     memory.live = {1};
-    NeighbourList fresh;
-    fresh.build_by_brute_force(std::vector<Vec3>{{1, 0, 0}, {0, 0, 0}}, {0.5, {}}, 0.2, domain);
+    const NeighbourList fresh = listed_by_brute_force(std::vector<Vec3>{{1, 0, 0}, {0, 0, 0}}, {0.5, {}}, 0.2, domain);
     memory.carry(old, fresh, std::vector<std::uint32_t>{1, 0});
     EXPECT_EQ(memory.value, (std::vector<double>{-1, -2, -3, 4}));
 }
