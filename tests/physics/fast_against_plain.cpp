@@ -8,6 +8,7 @@
 
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "tests/support/against_plain.hpp"
+#include "tests/support/blade.hpp"
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/plain_dem.hpp"
 
@@ -66,7 +67,7 @@ TEST(FastAgainstPlain, BladeMovingAndVibrating) {
     for (const double round : {0.0, 0.4e-3})
         for (const double spread : {0.0, 0.2}) {
             dem::Setup s = tests::boxed_lattice(5, 0.2, spread, 9);
-            dem::Blade b;
+            Blade b;
             b.front = s.domain.low[0] + 2.95e-3;  // just outside the lattice
             b.thickness = 2e-3;
             b.bottom = s.domain.low[2] + 5.5e-3;
@@ -94,7 +95,7 @@ TEST(FastAgainstPlain, RollingResistance) {
                 s.material.friction_limit = spread > 0 ? dem::FrictionLimit::net : dem::FrictionLimit::contact;
                 s.spheres[60].mobile = s.spheres[31].mobile = false;
                 for (const std::size_t i : {31U, 60U}) s.spheres[i].velocity = s.spheres[i].angular_velocity = {};
-                dem::Blade b;
+                Blade b;
                 b.front = s.domain.low[0] + 2.95e-3;
                 b.thickness = 2e-3;
                 b.bottom = s.domain.low[2] + 5.5e-3;

@@ -10,6 +10,7 @@
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/geometry/vector.hpp"
+#include "tests/support/blade.hpp"
 #include "tests/support/granular_scenes.hpp"
 
 namespace grainsweep::tests::fast_resting_test {
@@ -295,7 +296,7 @@ TEST(FastResting, ShakenAndWeightlessPowderHasNoRestSpeed) {
     dem::Setup shaken = pile(), weightless = pile(), bladed = pile();
     shaken.shaking = {{0, 0, 1e-5}, 100};
     weightless.gravity = {};
-    bladed.walls = {dem::Blade{.front = d, .thickness = d, .bottom = 0, .top = d, .speed = 0.01}};
+    bladed.walls = {Blade{.front = d, .thickness = d, .bottom = 0, .top = d, .speed = 0.01}};
     EXPECT_NO_THROW((void)dem::make_engine(pile(), method));
     for (const auto& setup : {shaken, weightless, bladed})
         EXPECT_THROW((void)dem::make_engine(setup, method), std::invalid_argument);

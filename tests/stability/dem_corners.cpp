@@ -4,6 +4,7 @@
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
+#include "tests/support/blade.hpp"
 #include "tests/support/spheres.hpp"
 
 #include <gtest/gtest.h>
@@ -144,7 +145,7 @@ TEST(DemCorners, CheckpointsContinueBitForBit) {
                     setup.gravity = {0, 0, -9.81};
                     setup.material.friction = friction;
                     setup.material.cohesion = cohesion;
-                    setup.walls.emplace_back(dem::Blade{0.0, 0.001, 0.004, 0.02, 0.5, 5e-4, 200, 0});
+                    setup.walls.emplace_back(Blade{0.0, 0.001, 0.004, 0.02, 0.5, 5e-4, 200, 0});
                     if (frozen) {
                         setup.spheres[20].velocity = {};
                         setup.spheres[20].mobile = false;

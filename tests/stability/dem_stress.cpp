@@ -6,6 +6,7 @@
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
 #include "solver/particles/packing.hpp"
+#include "tests/support/blade.hpp"
 #include "tests/support/spheres.hpp"
 
 #include <gtest/gtest.h>
@@ -198,7 +199,7 @@ TEST_P(DemStress, NobodyOneAndTwo) {
 }
 
 TEST_P(DemStress, AtWallsEdgesAndFaces) {
-    const dem::Blade blade{0, 5e-3, 4e-3, 0.02, 0, 0, 0, 0};
+    const Blade blade{0, 5e-3, 4e-3, 0.02, 0, 0, 0, 0};
     const double r = 1e-3;
     const std::vector<std::pair<const char*, dem::Vec3>> places = {
         {"just touching the plane", {0.01, 0, r}},

@@ -8,6 +8,7 @@
 
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "stats/random.hpp"
+#include "tests/support/blade.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace grainsweep::tests {
@@ -255,7 +256,7 @@ dem::Setup spreading_start(double diameter, double friction, std::uint64_t seed)
 }
 
 std::vector<dem::Wall> spreading_blade(double gap, double speed) {
-    dem::Blade b;
+    Blade b;
     b.front = 15e-3;
     b.thickness = 5e-3;
     b.bottom = gap;

@@ -1,5 +1,7 @@
 #include "tests/support/trajectory_case.hpp"
 
+#include "tests/support/blade.hpp"
+
 #include <nlohmann/json.hpp>
 
 namespace grainsweep::tests {
@@ -24,7 +26,7 @@ dem::Setup setup_of(const nlohmann::json& c) {
     if (!c["wall"].is_null()) s.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
     if (!c["blade"].is_null()) {
         const auto& b = c["blade"];
-        s.walls.emplace_back(dem::Blade{b["xf"], b["th"], b["gap"], 0.15, b["v"], 0, 0, 0});
+        s.walls.emplace_back(Blade{b["xf"], b["th"], b["gap"], 0.15, b["v"], 0, 0, 0});
     }
     return s;
 }

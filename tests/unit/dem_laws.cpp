@@ -3,6 +3,7 @@
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
+#include "tests/support/blade.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/installed_machines.hpp"
+#include "tests/support/blade.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace grainsweep::tests::scene_pictures_test {
@@ -60,14 +61,14 @@ TEST(ScenePictures, APlaneIsCutOutOfTheBox) {
 }
 
 TEST(ScenePictures, ABladeStandsWhereItMoves) {
-    const dem::Blade blade{.front = 0.1,
-                           .thickness = 0.02,
-                           .bottom = 0.01,
-                           .top = 1,
-                           .speed = 2,
-                           .amplitude = 0.001,
-                           .frequency = 10,
-                           .edge_radius = 0.004};
+    const Blade blade{.front = 0.1,
+                      .thickness = 0.02,
+                      .bottom = 0.01,
+                      .top = 1,
+                      .speed = 2,
+                      .amplitude = 0.001,
+                      .frequency = 10,
+                      .edge_radius = 0.004};
     const auto seen = grainsweep::surface_of(blade, "blade", {0, 0, 0}, {1, 0.5, 0.05}, 0.025);
     EXPECT_NEAR(highest(seen, 0), 0.1 + 2 * 0.025, 1e-12);
     EXPECT_NEAR(lowest(seen, 0), 0.08 + 2 * 0.025, 1e-12);

@@ -33,11 +33,4 @@ bool same_body(const Wall& one, const Wall& other) {
     return bytes(one) == bytes(other);
 }
 
-Blade::operator Wall() const {
-    Wall wall(Bar{.front = front, .thickness = thickness, .bottom = bottom, .top = top, .edge_radius = edge_radius});
-    wall.motions = {Translation{.velocity = {speed, 0, 0}},
-                    Vibration{.amplitude = {0, 0, amplitude}, .frequency = frequency}};
-    return wall;
-}
-
 }  // namespace grainsweep::dem

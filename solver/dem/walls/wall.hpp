@@ -61,15 +61,4 @@ struct Wall {
 /// Returns whether two walls differ at most in motions and presence.
 [[nodiscard]] bool same_body(const Wall& one, const Wall& other);
 
-/// Blade that spreads powder: a bar with x velocity `speed` and the vertical displacement amplitude sin(2 pi frequency
-/// t). A sphere touches only its closest point.
-struct Blade {
-    double front = 0, thickness = 0, bottom = 0, top = 0;  ///< m, at t = 0
-    double speed = 0;                                      ///< m/s
-    double amplitude = 0, frequency = 0;                   ///< m, Hz
-    double edge_radius = 0;                                ///< m
-
-    operator Wall() const;  // NOLINT: a blade is a wall
-};
-
 }  // namespace grainsweep::dem
