@@ -176,12 +176,6 @@ public:
     virtual void restore(ByteReader&) {}
 };
 
-/// Returns a probe with these options.
-template <class P>
-std::unique_ptr<Probe> make_probe(const Options& options) {
-    return std::make_unique<P>(options);
-}
-
 /// From what a probe has its values, and so which of them depend on frames.
 enum class Source {
     frames,    ///< the particles at a frame
@@ -191,10 +185,8 @@ enum class Source {
     passages,  ///< passed()
 };
 
-struct ProbeInfo {
-    std::string_view name, unit, meaning;
-    std::span<const Field> options;
-    std::unique_ptr<Probe> (*make)(const Options&);
+/// What few probes have: each is left out where it does not apply.
+struct ProbeTraits {
     bool contacts = false;       ///< reads contacts
     std::string_view over = {};  ///< of a profile: its coordinate with unit
     /// Returns the error of a combination of options, in one sentence; empty: none. May be null.
@@ -202,6 +194,21 @@ struct ProbeInfo {
     Source source = Source::frames;
     bool so_far = false;  ///< of all that has been so far, so that its last value says it all
 };
+
+struct ProbeInfo : ProbeTraits {
+    std::string_view name, unit, meaning;
+    std::span<const Field> options;
+    std::unique_ptr<Probe> (*make)(const Options&);
+};
+
+/// Returns the row of the probes of class P, which are made from their options.
+template <class P>
+[[nodiscard]] constexpr ProbeInfo probe_row(std::string_view name, std::string_view unit, std::string_view meaning,
+                                            std::span<const Field> options, const ProbeTraits& traits = {}) {
+    return {traits,  name,
+            unit,    meaning,
+            options, [](const Options& given) -> std::unique_ptr<Probe> { return std::make_unique<P>(given); }};
+}
 
 /// Returns all probes, sorted by name.
 [[nodiscard]] std::span<const ProbeInfo> probe_catalogue();

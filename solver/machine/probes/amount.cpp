@@ -77,25 +77,21 @@ constexpr std::array amount_options = {
            "'stay': those that have left the domain count where they were last seen; default: leave", false, {},
            gone_words)};
 
-template <Amount of>
-std::unique_ptr<machine::Probe> make_amount(const Options& given) {
-    return std::make_unique<AmountProbe<of>>(given);
-}
-
 }  // namespace
 
 ProbeInfo amount_count() {
-    return {"count", "1", "number of particles in a region", amount_options, make_amount<Amount::count>};
+    return probe_row<AmountProbe<Amount::count>>("count", "1", "number of particles in a region", amount_options);
 }
 ProbeInfo amount_mass() {
-    return {"mass", "kg", "mass of the particles in a region", amount_options, make_amount<Amount::mass>};
+    return probe_row<AmountProbe<Amount::mass>>("mass", "kg", "mass of the particles in a region", amount_options);
 }
 ProbeInfo amount_volume() {
-    return {"volume", "m3", "solid volume of the particles in a region", amount_options, make_amount<Amount::volume>};
+    return probe_row<AmountProbe<Amount::volume>>("volume", "m3", "solid volume of the particles in a region",
+                                                  amount_options);
 }
 ProbeInfo mean_diameter() {
-    return {"mean_diameter", "m", "mean diameter of the particles in a region, by number", mean_diameter_options,
-            make_probe<MeanDiameter>};
+    return probe_row<MeanDiameter>("mean_diameter", "m", "mean diameter of the particles in a region, by number",
+                                   mean_diameter_options);
 }
 
 }  // namespace grainsweep::machine::probes

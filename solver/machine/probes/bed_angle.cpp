@@ -45,8 +45,8 @@ constexpr std::array bed_angle_options = {
 }  // namespace
 
 ProbeInfo bed_angle() {
-    return {"bed_angle", "deg", "angle of the centre of volume from straight below, about an axis", bed_angle_options,
-            make_probe<BedAngleProbe>};
+    return probe_row<BedAngleProbe>(
+        "bed_angle", "deg", "angle of the centre of volume from straight below, about an axis", bed_angle_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -32,8 +32,9 @@ constexpr std::array bed_fraction_options = {
 }  // namespace
 
 ProbeInfo bed_fraction() {
-    return {"bed_fraction", "1", "solid fraction of a bed, three diameters clear of its bottom and its top",
-            bed_fraction_options, make_probe<BedFraction>};
+    return probe_row<BedFraction>("bed_fraction", "1",
+                                  "solid fraction of a bed, three diameters clear of its bottom and its top",
+                                  bed_fraction_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -74,13 +74,8 @@ constexpr std::array bed_surface_options = {
     section_diameter_option};
 
 template <Surface of>
-std::unique_ptr<machine::Probe> make_bed_surface(const Options& given) {
-    return std::make_unique<BedSurfaceProbe<of>>(given);
-}
-
-template <Surface of>
 constexpr ProbeInfo bed_surface_row(std::string_view name, std::string_view unit, std::string_view meaning) {
-    return {name, unit, meaning, bed_surface_options, make_bed_surface<of>, false, {}, flaw_of_bed_surface};
+    return probe_row<BedSurfaceProbe<of>>(name, unit, meaning, bed_surface_options, {.flaw = flaw_of_bed_surface});
 }
 
 }  // namespace

@@ -33,8 +33,7 @@ constexpr std::array centre_options = {
 }  // namespace
 
 ProbeInfo centre() {
-    return {"centre", "m", "mean position along a direction, weighted by volume", centre_options,
-            make_probe<CentreProbe>};
+    return probe_row<CentreProbe>("centre", "m", "mean position along a direction, weighted by volume", centre_options);
 }
 
 }  // namespace grainsweep::machine::probes

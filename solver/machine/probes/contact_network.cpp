@@ -188,48 +188,32 @@ std::string flaw_of_contact_histogram(const Options& given) {
 }  // namespace
 
 ProbeInfo largest_contact_force() {
-    return {"largest_contact_force",
-            "N",
-            "largest force between two particles, normal and tangential together; 0: none touch",
-            contact_force_options,
-            make_probe<LargestForce>,
-            true};
+    return probe_row<LargestForce>("largest_contact_force", "N",
+                                   "largest force between two particles, normal and tangential together; 0: none touch",
+                                   contact_force_options, {.contacts = true});
 }
 ProbeInfo contact_histogram() {
-    return {"contact_histogram",
-            "1",
-            "share of the contacts between particles in bins of force or overlap, equal on a logarithmic axis",
-            contact_histogram_options,
-            make_probe<ContactHistogram>,
-            true,
-            "force or overlap divided by the unit",
-            flaw_of_contact_histogram};
+    return probe_row<ContactHistogram>(
+        "contact_histogram", "1",
+        "share of the contacts between particles in bins of force or overlap, equal on a logarithmic axis",
+        contact_histogram_options,
+        {.contacts = true, .over = "force or overlap divided by the unit", .flaw = flaw_of_contact_histogram});
 }
 ProbeInfo contact_force() {
-    return {"contact_force",
-            "N",
-            "mean size of the normal force between particles",
-            contact_force_options,
-            make_probe<ContactForces<false>>,
-            true};
+    return probe_row<ContactForces<false>>("contact_force", "N", "mean size of the normal force between particles",
+                                           contact_force_options, {.contacts = true});
 }
 ProbeInfo contact_force_density() {
-    return {"contact_force_density",
-            "1",
-            "probability density of normal forces divided by their mean",
-            contact_density_options,
-            make_probe<ContactForces<true>>,
-            true,
-            "force divided by the mean force",
-            flaw_of_contact_density};
+    return probe_row<ContactForces<true>>(
+        "contact_force_density", "1", "probability density of normal forces divided by their mean",
+        contact_density_options,
+        {.contacts = true, .over = "force divided by the mean force", .flaw = flaw_of_contact_density});
 }
 ProbeInfo fabric() {
-    return {"fabric",
-            "1",
-            "anisotropy of the directions of contacts between particles, 0 to 1, or a component of their fabric tensor",
-            fabric_options,
-            make_probe<Fabric>,
-            true};
+    return probe_row<Fabric>(
+        "fabric", "1",
+        "anisotropy of the directions of contacts between particles, 0 to 1, or a component of their fabric tensor",
+        fabric_options, {.contacts = true});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -58,24 +58,17 @@ constexpr std::array overlap_options = {
 }  // namespace
 
 ProbeInfo coordination() {
-    return {"coordination",
-            "1",
-            "mean number of other particles that a particle touches",
-            contacts_options,
-            make_probe<Coordination<false>>,
-            true};
+    return probe_row<Coordination<false>>("coordination", "1", "mean number of other particles that a particle touches",
+                                          contacts_options, {.contacts = true});
 }
 ProbeInfo contact_number() {
-    return {"contacts",
-            "1",
-            "mean number of contacts of a particle with others; a clump may touch one at several spheres",
-            contacts_options,
-            make_probe<Coordination<true>>,
-            true};
+    return probe_row<Coordination<true>>(
+        "contacts", "1", "mean number of contacts of a particle with others; a clump may touch one at several spheres",
+        contacts_options, {.contacts = true});
 }
 ProbeInfo overlap() {
-    return {"overlap", "1", "deepest overlap of two particles divided by the diameter of the smaller one",
-            overlap_options, make_probe<Overlap>};
+    return probe_row<Overlap>(
+        "overlap", "1", "deepest overlap of two particles divided by the diameter of the smaller one", overlap_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -128,53 +128,29 @@ constexpr std::array outline_options = {
     option("reach", Field::Kind::quantity, "1", "farthest column from the axis, as a share of the radius; default: 1",
            false, {0, 1, true, false})};
 
-template <OfCover of>
-std::unique_ptr<machine::Probe> make_cover(const Options& given) {
-    return std::make_unique<CoverProbe<of>>(given);
-}
-
 }  // namespace
 
 ProbeInfo cover() {
-    return {"cover",
-            "1",
-            "1 for each cell across a drum whose centre a particle hides from a view along the axis, else 0",
-            cover_options,
-            make_probe<CoverImage>,
-            false,
-            "cell: column + columns times row, columns = 2 ceil(radius/cell)",
-            flaw_of_cover};
+    return probe_row<CoverImage>(
+        "cover", "1", "1 for each cell across a drum whose centre a particle hides from a view along the axis, else 0",
+        cover_options,
+        {.over = "cell: column + columns times row, columns = 2 ceil(radius/cell)", .flaw = flaw_of_cover});
 }
 ProbeInfo cover_angle() {
-    return {"cover_angle",
-            "deg",
-            "slope of the line through the heights of cover_outline",
-            outline_options,
-            make_cover<OfCover::angle>,
-            false,
-            {},
-            flaw_of_cover};
+    return probe_row<CoverProbe<OfCover::angle>>("cover_angle", "deg",
+                                                 "slope of the line through the heights of cover_outline",
+                                                 outline_options, {.flaw = flaw_of_cover});
 }
 ProbeInfo cover_area() {
-    return {"cover_area",
-            "m2",
-            "area of the cells of cover that are hidden in at least half of the frames so far",
-            cover_options,
-            make_cover<OfCover::area>,
-            false,
-            {},
-            flaw_of_cover};
+    return probe_row<CoverProbe<OfCover::area>>(
+        "cover_area", "m2", "area of the cells of cover that are hidden in at least half of the frames so far",
+        cover_options, {.flaw = flaw_of_cover});
 }
 ProbeInfo cover_outline() {
-    return {
-        "cover_outline",
-        "m",
+    return probe_row<CoverProbe<OfCover::outline>>(
+        "cover_outline", "m",
         "height above the axis at which the mean of cover over the frames so far falls through 0.5, column by column",
-        outline_options,
-        make_cover<OfCover::outline>,
-        false,
-        "distance across the axis, m",
-        flaw_of_cover};
+        outline_options, {.over = "distance across the axis, m", .flaw = flaw_of_cover});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -56,9 +56,7 @@ constexpr std::array discharge_options = {
 
 template <Discharge of>
 ProbeInfo discharged(std::string_view name, std::string_view unit, std::string_view meaning) {
-    ProbeInfo row{name, unit, meaning, discharge_options, make_probe<DischargeProbe<of>>};
-    row.so_far = true;
-    return row;
+    return probe_row<DischargeProbe<of>>(name, unit, meaning, discharge_options, {.so_far = true});
 }
 
 }  // namespace

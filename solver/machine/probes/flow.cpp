@@ -35,36 +35,16 @@ constexpr std::array flow_options = {
     option("point", Field::Kind::vector, "m", "a point of the plane", true),
     option("normal", Field::Kind::direction, "", "the direction that counts positive", true)};
 
-template <bool by_mass>
-std::unique_ptr<machine::Probe> make_flow(const Options& given) {
-    return std::make_unique<FlowProbe<by_mass>>(given);
-}
-
 }  // namespace
 
 ProbeInfo flow_mass() {
-    return {"passed_mass",
-            "kg",
-            "mass that has passed through a plane; its slope is the mass flow",
-            flow_options,
-            make_flow<true>,
-            false,
-            {},
-            nullptr,
-            Source::passages,
-            true};
+    return probe_row<FlowProbe<true>>("passed_mass", "kg",
+                                      "mass that has passed through a plane; its slope is the mass flow", flow_options,
+                                      {.source = Source::passages, .so_far = true});
 }
 ProbeInfo flow_number() {
-    return {"passed_number",
-            "1",
-            "particles that have passed through a plane",
-            flow_options,
-            make_flow<false>,
-            false,
-            {},
-            nullptr,
-            Source::passages,
-            true};
+    return probe_row<FlowProbe<false>>("passed_number", "1", "particles that have passed through a plane", flow_options,
+                                       {.source = Source::passages, .so_far = true});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -40,8 +40,9 @@ constexpr std::array granular_temperature_options = {of_option, in_option};
 }  // namespace
 
 ProbeInfo granular_temperature() {
-    return {"granular_temperature", "m2/s2", "a third of the mean square velocity about the mean",
-            granular_temperature_options, make_probe<GranularTemperatureProbe>};
+    return probe_row<GranularTemperatureProbe>("granular_temperature", "m2/s2",
+                                               "a third of the mean square velocity about the mean",
+                                               granular_temperature_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -9,7 +9,7 @@ namespace {
 
 using observables::HeapShape;
 
-class HeapProbe final : public machine::Probe {
+class HeapProbe : public machine::Probe {
 public:
     HeapProbe(const Options& options, double HeapShape::*value)
         : upright_(options), cell_(options.number("cell")), reach_(options.number("reach")), value_(value) {}
@@ -31,14 +31,16 @@ private:
 };
 
 template <double HeapShape::*value>
-std::unique_ptr<machine::Probe> make_heap(const Options& given) {
-    return std::make_unique<HeapProbe>(given, value);
-}
+class HeapOf final : public HeapProbe {
+public:
+    explicit HeapOf(const Options& given) : HeapProbe(given, value) {}
+};
 
-std::unique_ptr<machine::Probe> make_heap_angle(const Options& given) {
-    const bool moments = given.word("by", "moments") == "moments";
-    return std::make_unique<HeapProbe>(given, moments ? &HeapShape::angle_moment : &HeapShape::angle);
-}
+class HeapAngle final : public HeapProbe {
+public:
+    explicit HeapAngle(const Options& given)
+        : HeapProbe(given, given.word("by", "moments") == "moments" ? &HeapShape::angle_moment : &HeapShape::angle) {}
+};
 
 std::string flaw_of_heap(const Options& given) {
     return given.number("reach") <= 1e5 * given.number("cell") ? "" : "\"reach\" is more than 1e5 times \"cell\"";
@@ -66,48 +68,28 @@ constexpr std::array heap_angle_options = {
 }  // namespace
 
 ProbeInfo heap_angle() {
-    return {"heap_angle", "deg",       "angle of repose of a heap", heap_angle_options, make_heap_angle, false,
-            {},           flaw_of_heap};
+    return probe_row<HeapAngle>("heap_angle", "deg", "angle of repose of a heap", heap_angle_options,
+                                {.flaw = flaw_of_heap});
 }
 ProbeInfo heap_height() {
-    return {"heap_height",
-            "m",
-            "height of a heap: the highest of the inner three rings",
-            heap_options,
-            make_heap<&HeapShape::height>,
-            false,
-            {},
-            flaw_of_heap};
+    return probe_row<HeapOf<&HeapShape::height>>("heap_height", "m",
+                                                 "height of a heap: the highest of the inner three rings", heap_options,
+                                                 {.flaw = flaw_of_heap});
 }
 ProbeInfo heap_residual() {
-    return {"heap_residual",
-            "m",
-            "root mean square height of a heap's outline off the line of its slope",
-            heap_options,
-            make_heap<&HeapShape::residual>,
-            false,
-            {},
-            flaw_of_heap};
+    return probe_row<HeapOf<&HeapShape::residual>>(
+        "heap_residual", "m", "root mean square height of a heap's outline off the line of its slope", heap_options,
+        {.flaw = flaw_of_heap});
 }
 ProbeInfo heap_run_out() {
-    return {"heap_run_out",
-            "m",
-            "distance from the mass centre within which nine tenths of the particles lie",
-            heap_options,
-            make_heap<&HeapShape::run_out>,
-            false,
-            {},
-            flaw_of_heap};
+    return probe_row<HeapOf<&HeapShape::run_out>>(
+        "heap_run_out", "m", "distance from the mass centre within which nine tenths of the particles lie",
+        heap_options, {.flaw = flaw_of_heap});
 }
 ProbeInfo heap_outline() {
-    return {"heap_outline",
-            "m",
-            "mean height of a heap's surface in rings about the mass centre",
-            heap_options,
-            make_heap<nullptr>,
-            false,
-            "radius of the middle of the ring, m",
-            flaw_of_heap};
+    return probe_row<HeapOf<nullptr>>("heap_outline", "m",
+                                      "mean height of a heap's surface in rings about the mass centre", heap_options,
+                                      {.over = "radius of the middle of the ring, m", .flaw = flaw_of_heap});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -96,11 +96,11 @@ constexpr std::array mean_height_options = {of_option, in_option, from_option, a
 }  // namespace
 
 ProbeInfo height_of_share() {
-    return {"height", "m", "height below which a share of the solid volume lies: the top of a bed", height_options,
-            make_probe<HeightOfShare>};
+    return probe_row<HeightOfShare>(
+        "height", "m", "height below which a share of the solid volume lies: the top of a bed", height_options);
 }
 ProbeInfo mean_height() {
-    return {"mean_height", "m", "mean height, weighted by volume", mean_height_options, make_probe<MeanHeight>};
+    return probe_row<MeanHeight>("mean_height", "m", "mean height, weighted by volume", mean_height_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -133,54 +133,28 @@ constexpr std::array impact_spectrum_options = {
     option("to", Field::Kind::quantity, "J", "where the last bin ends", true, impact_energies),
     bins_option};
 
-template <bool by_number>
-std::unique_ptr<machine::Probe> make_impacts(const Options& given) {
-    return std::make_unique<ImpactEnergy<by_number>>(given);
-}
-
 }  // namespace
 
 ProbeInfo impact_energy() {
-    return {"impact_energy",
-            "J",
-            "energy that contacts have dissipated in the phases that count; of lasting ones also what they store "
-            "(contact_energy)",
-            impact_options,
-            make_impacts<false>,
-            false,
-            {},
-            nullptr,
-            Source::steps,
-            true};
+    return probe_row<ImpactEnergy<false>>(
+        "impact_energy", "J",
+        "energy that contacts have dissipated in the phases that count; of lasting ones also what they store "
+        "(contact_energy)",
+        impact_options, {.source = Source::steps, .so_far = true});
 }
 ProbeInfo impact_energy_spectrum() {
-    return {"impact_energy_spectrum",
-            "J",
-            "the same of contacts that have ended, by their energy",
-            impact_spectrum_options,
-            make_impacts<false>,
-            false,
-            "energy of a contact, J",
-            flaw_of_bins_along,
-            Source::steps,
-            true};
+    return probe_row<ImpactEnergy<false>>(
+        "impact_energy_spectrum", "J", "the same of contacts that have ended, by their energy", impact_spectrum_options,
+        {.over = "energy of a contact, J", .flaw = flaw_of_bins_along, .source = Source::steps, .so_far = true});
 }
 ProbeInfo impact_number() {
-    return {
-        "impact_number", "1", "contacts that have ended", impact_number_options, make_impacts<true>, false, {}, nullptr,
-        Source::steps,   true};
+    return probe_row<ImpactEnergy<true>>("impact_number", "1", "contacts that have ended", impact_number_options,
+                                         {.source = Source::steps, .so_far = true});
 }
 ProbeInfo impact_number_spectrum() {
-    return {"impact_number_spectrum",
-            "1",
-            "the same by the energy that they dissipated",
-            impact_spectrum_options,
-            make_impacts<true>,
-            false,
-            "energy of a contact, J",
-            flaw_of_bins_along,
-            Source::steps,
-            true};
+    return probe_row<ImpactEnergy<true>>(
+        "impact_number_spectrum", "1", "the same by the energy that they dissipated", impact_spectrum_options,
+        {.over = "energy of a contact, J", .flaw = flaw_of_bins_along, .source = Source::steps, .so_far = true});
 }
 
 }  // namespace grainsweep::machine::probes

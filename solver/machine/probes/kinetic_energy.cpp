@@ -47,12 +47,12 @@ constexpr std::array kinetic_energy_options = {of_option, in_option};
 }  // namespace
 
 ProbeInfo kinetic_energy() {
-    return {"kinetic_energy", "J", "kinetic energy of translation", kinetic_energy_options,
-            make_probe<KineticEnergyProbe>};
+    return probe_row<KineticEnergyProbe>("kinetic_energy", "J", "kinetic energy of translation",
+                                         kinetic_energy_options);
 }
 ProbeInfo rotational_energy() {
-    return {"rotational_energy", "J", "kinetic energy of rotation", kinetic_energy_options,
-            make_probe<RotationalEnergyProbe>};
+    return probe_row<RotationalEnergyProbe>("rotational_energy", "J", "kinetic energy of rotation",
+                                            kinetic_energy_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -200,35 +200,35 @@ constexpr std::array velocity_above_options = {
 }  // namespace
 
 ProbeInfo layer_fraction() {
-    return {"layer_fraction", "1", "solid volume that a layer has gained, divided by that of a full one",
-            fraction_options, make_probe<LayerProbe<fraction_of>>};
+    return probe_row<LayerProbe<fraction_of>>(
+        "layer_fraction", "1", "solid volume that a layer has gained, divided by that of a full one", fraction_options);
 }
 ProbeInfo layer_unevenness() {
-    return {"layer_unevenness", "1", "standard deviation of layer_fraction between patches; undefined below four",
-            patch_options, make_probe<LayerProbe<unevenness_of>>};
+    return probe_row<LayerProbe<unevenness_of>>(
+        "layer_unevenness", "1", "standard deviation of layer_fraction between patches; undefined below four",
+        patch_options);
 }
 ProbeInfo layer_bare_share() {
-    return {"layer_bare_share", "1", "share of a grid, seen from above, that no particle of the layer covers",
-            bare_options, make_probe<LayerProbe<bare_share_of>>};
+    return probe_row<LayerProbe<bare_share_of>>(
+        "layer_bare_share", "1", "share of a grid, seen from above, that no particle of the layer covers",
+        bare_options);
 }
 ProbeInfo layer_roughness() {
-    return {"layer_roughness", "m", "root mean square deviation of the heights of a layer, seen from above on a grid",
-            relief_options, make_probe<LayerProbe<roughness_of>>};
+    return probe_row<LayerProbe<roughness_of>>(
+        "layer_roughness", "m", "root mean square deviation of the heights of a layer, seen from above on a grid",
+        relief_options);
 }
 ProbeInfo velocity_above() {
-    return {"velocity_above",
-            "m/s",
-            "mean velocity along x in layers, of all particles of all frames so far",
-            velocity_above_options,
-            make_probe<VelocityAbove>,
-            false,
-            "top of the layer, m"};
+    return probe_row<VelocityAbove>("velocity_above", "m/s",
+                                    "mean velocity along x in layers, of all particles of all frames so far",
+                                    velocity_above_options, {.over = "top of the layer, m"});
 }
 ProbeInfo velocity_bend() {
-    return {"velocity_bend", "m/s",
-            "root mean square second difference of velocity_above from layer to layer; undefined where no three "
-            "neighbours hold a particle per frame",
-            velocity_above_options, make_probe<VelocityBend>};
+    return probe_row<VelocityBend>(
+        "velocity_bend", "m/s",
+        "root mean square second difference of velocity_above from layer to layer; undefined where no three "
+        "neighbours hold a particle per frame",
+        velocity_above_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -119,18 +119,12 @@ constexpr std::array share_options = {option("of", Field::Kind::species, "", "th
 }  // namespace
 
 ProbeInfo lacey() {
-    return {"lacey",
-            "1",
-            "Lacey index of two species: 0 apart, 1 mixed as by chance",
-            lacey_options,
-            make_probe<Lacey>,
-            false,
-            {},
-            flaw_of_lacey};
+    return probe_row<Lacey>("lacey", "1", "Lacey index of two species: 0 apart, 1 mixed as by chance", lacey_options,
+                            {.flaw = flaw_of_lacey});
 }
 ProbeInfo mass_share() {
-    return {"mass_share", "1", "mass of some species divided by that of all, in a region", share_options,
-            make_probe<MassShare>};
+    return probe_row<MassShare>("mass_share", "1", "mass of some species divided by that of all, in a region",
+                                share_options);
 }
 
 }  // namespace grainsweep::machine::probes

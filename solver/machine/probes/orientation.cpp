@@ -83,12 +83,13 @@ constexpr std::array nematic_options = {of_option, in_option, direction_option};
 }  // namespace
 
 ProbeInfo orientation() {
-    return {"orientation", "1", "mean squared cosine between the axes of clumps and a direction; 1/3 as by chance",
-            orientation_options, make_probe<Orientation>};
+    return probe_row<Orientation>("orientation", "1",
+                                  "mean squared cosine between the axes of clumps and a direction; 1/3 as by chance",
+                                  orientation_options);
 }
 ProbeInfo nematic_order() {
-    return {"nematic_order", "1", "how parallel the axes of clumps are: 0 as by chance, 1 all parallel",
-            nematic_options, make_probe<NematicOrder>};
+    return probe_row<NematicOrder>(
+        "nematic_order", "1", "how parallel the axes of clumps are: 0 as by chance, 1 all parallel", nematic_options);
 }
 
 }  // namespace grainsweep::machine::probes

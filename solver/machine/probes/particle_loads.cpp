@@ -108,16 +108,13 @@ constexpr std::array particle_torque_options = {
 }  // namespace
 
 ProbeInfo particle_force() {
-    return {"particle_force",          "N", "force of contacts on particles, a component", particle_force_options,
-            make_probe<ParticleForce>, true};
+    return probe_row<ParticleForce>("particle_force", "N", "force of contacts on particles, a component",
+                                    particle_force_options, {.contacts = true});
 }
 ProbeInfo particle_torque() {
-    return {"particle_torque",
-            "N m",
-            "moment of contacts on particles about their centres of mass, a component",
-            particle_torque_options,
-            make_probe<ParticleTorque>,
-            true};
+    return probe_row<ParticleTorque>("particle_torque", "N m",
+                                     "moment of contacts on particles about their centres of mass, a component",
+                                     particle_torque_options, {.contacts = true});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -88,14 +88,10 @@ std::string flaw_of_point_fraction(const Options& given) {
 }  // namespace
 
 ProbeInfo point_fraction() {
-    return {"point_fraction",
-            "1",
-            "share of the points of a region that lie in a particle: the solid fraction, also of clumps",
-            point_fraction_options,
-            make_probe<PointFraction>,
-            false,
-            {},
-            flaw_of_point_fraction};
+    return probe_row<PointFraction>(
+        "point_fraction", "1",
+        "share of the points of a region that lie in a particle: the solid fraction, also of clumps",
+        point_fraction_options, {.flaw = flaw_of_point_fraction});
 }
 
 }  // namespace grainsweep::machine::probes

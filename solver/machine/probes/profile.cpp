@@ -96,14 +96,8 @@ constexpr std::array profile_options = {
 }  // namespace
 
 ProbeInfo profile() {
-    return {"profile",
-            "SI",
-            "solid volume, velocity or share of species in bins along a direction",
-            profile_options,
-            make_probe<Profile>,
-            false,
-            "centre of the bin, m",
-            flaw_of_bins_along};
+    return probe_row<Profile>("profile", "SI", "solid volume, velocity or share of species in bins along a direction",
+                              profile_options, {.over = "centre of the bin, m", .flaw = flaw_of_bins_along});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -57,7 +57,7 @@ constexpr std::array radius_options = {
 }  // namespace
 
 ProbeInfo radius() {
-    return {"radius", "m", "mean distance from an axis, weighted by volume", radius_options, make_probe<RadiusProbe>};
+    return probe_row<RadiusProbe>("radius", "m", "mean distance from an axis, weighted by volume", radius_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -95,49 +95,23 @@ constexpr std::array residence_density_options = {
            {0, 1e9, true, false}),
     bins_option};
 
-template <OfResidence what>
-std::unique_ptr<machine::Probe> make_residence(const Options& given) {
-    return std::make_unique<ResidenceTime<what>>(given);
-}
-
 }  // namespace
 
 ProbeInfo residence_time() {
-    return {"residence_time",
-            "s",
-            "mean time of the particles so far from one plane to another",
-            residence_options,
-            make_residence<OfResidence::mean>,
-            false,
-            {},
-            flaw_of_residence_time,
-            Source::passages,
-            true};
+    return probe_row<ResidenceTime<OfResidence::mean>>(
+        "residence_time", "s", "mean time of the particles so far from one plane to another", residence_options,
+        {.flaw = flaw_of_residence_time, .source = Source::passages, .so_far = true});
 }
 ProbeInfo residence_time_sd() {
-    return {"residence_time_sd",
-            "s",
-            "standard deviation of those times",
-            residence_options,
-            make_residence<OfResidence::deviation>,
-            false,
-            {},
-            flaw_of_residence_time,
-            Source::passages,
-            true};
+    return probe_row<ResidenceTime<OfResidence::deviation>>(
+        "residence_time_sd", "s", "standard deviation of those times", residence_options,
+        {.flaw = flaw_of_residence_time, .source = Source::passages, .so_far = true});
 }
 
 ProbeInfo residence_time_density() {
-    return {"residence_time_density",
-            "1/s",
-            "probability density of those times",
-            residence_density_options,
-            make_residence<OfResidence::density>,
-            false,
-            "residence time, s",
-            flaw_of_residence_time,
-            Source::passages,
-            true};
+    return probe_row<ResidenceTime<OfResidence::density>>(
+        "residence_time_density", "1/s", "probability density of those times", residence_density_options,
+        {.over = "residence time, s", .flaw = flaw_of_residence_time, .source = Source::passages, .so_far = true});
 }
 
 }  // namespace grainsweep::machine::probes

@@ -20,7 +20,7 @@ constexpr std::array rms_speed_options = {of_option, in_option};
 }  // namespace
 
 ProbeInfo rms_speed() {
-    return {"rms_speed", "m/s", "root mean square speed; 0 without particles", rms_speed_options, make_probe<RmsSpeed>};
+    return probe_row<RmsSpeed>("rms_speed", "m/s", "root mean square speed; 0 without particles", rms_speed_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -64,16 +64,10 @@ constexpr std::array size_share_options = {
 }  // namespace
 
 ProbeInfo size_share() {
-    return {"size_share",
-            "1",
-            "share of a region in the mass of each diameter, of particles where they were last seen: a partition curve",
-            size_share_options,
-            make_probe<SizeShare>,
-            false,
-            "diameter, m",
-            flaw_of_bins_along,
-            Source::frames,
-            true};
+    return probe_row<SizeShare>(
+        "size_share", "1",
+        "share of a region in the mass of each diameter, of particles where they were last seen: a partition curve",
+        size_share_options, {.over = "diameter, m", .flaw = flaw_of_bins_along, .so_far = true});
 }
 
 }  // namespace grainsweep::machine::probes

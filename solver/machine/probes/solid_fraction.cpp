@@ -30,14 +30,9 @@ std::string flaw_of_solid_fraction(const Options& given) {
 }  // namespace
 
 ProbeInfo solid_fraction() {
-    return {"solid_fraction",
-            "1",
-            "solid volume divided by the volume of a region, by centres",
-            solid_fraction_options,
-            make_probe<SolidFractionProbe>,
-            false,
-            {},
-            flaw_of_solid_fraction};
+    return probe_row<SolidFractionProbe>("solid_fraction", "1",
+                                         "solid volume divided by the volume of a region, by centres",
+                                         solid_fraction_options, {.flaw = flaw_of_solid_fraction});
 }
 
 }  // namespace grainsweep::machine::probes

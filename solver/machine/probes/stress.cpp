@@ -195,31 +195,15 @@ constexpr std::array stress_profile_options = {
     stress_face,
     stress_part};
 
-std::unique_ptr<machine::Probe> make_stress(const Options& given) {
-    return std::make_unique<Stress>(given);
-}
-
 }  // namespace
 
 ProbeInfo stress() {
-    return {"stress",
-            "Pa",
-            "stress of the powder in a region, compression positive",
-            stress_options,
-            make_stress,
-            true,
-            {},
-            flaw_of_stress};
+    return probe_row<Stress>("stress", "Pa", "stress of the powder in a region, compression positive", stress_options,
+                             {.contacts = true, .flaw = flaw_of_stress});
 }
 ProbeInfo stress_profile() {
-    return {"stress_profile",
-            "Pa",
-            "the same in slabs across a direction",
-            stress_profile_options,
-            make_stress,
-            true,
-            "centre of the slab, m",
-            flaw_of_stress_profile};
+    return probe_row<Stress>("stress_profile", "Pa", "the same in slabs across a direction", stress_profile_options,
+                             {.contacts = true, .over = "centre of the slab, m", .flaw = flaw_of_stress_profile});
 }
 
 }  // namespace grainsweep::machine::probes

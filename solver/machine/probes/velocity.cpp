@@ -39,28 +39,23 @@ private:
 constexpr std::array velocity_options = {
     of_option, in_option, option("along", Field::Kind::direction, "", "the direction of the component", true)};
 
-template <VelocityOf what>
-std::unique_ptr<machine::Probe> make_velocity(const Options& given) {
-    return std::make_unique<VelocityProbe<what>>(given);
-}
-
 }  // namespace
 
 ProbeInfo velocity() {
-    return {"velocity", "m/s", "mean velocity along a direction, weighted by mass", velocity_options,
-            make_velocity<VelocityOf::mean>};
+    return probe_row<VelocityProbe<VelocityOf::mean>>(
+        "velocity", "m/s", "mean velocity along a direction, weighted by mass", velocity_options);
 }
 ProbeInfo momentum() {
-    return {"momentum", "kg m/s", "sum of mass times velocity along a direction", velocity_options,
-            make_velocity<VelocityOf::sum>};
+    return probe_row<VelocityProbe<VelocityOf::sum>>("momentum", "kg m/s",
+                                                     "sum of mass times velocity along a direction", velocity_options);
 }
 ProbeInfo fastest() {
-    return {"fastest", "m/s", "largest velocity along a direction; 0: none moves along it", velocity_options,
-            make_velocity<VelocityOf::fastest>};
+    return probe_row<VelocityProbe<VelocityOf::fastest>>(
+        "fastest", "m/s", "largest velocity along a direction; 0: none moves along it", velocity_options);
 }
 ProbeInfo spin() {
-    return {"spin", "rad/s", "mean angular velocity about a direction, right hand, weighted by mass", velocity_options,
-            make_velocity<VelocityOf::spin>};
+    return probe_row<VelocityProbe<VelocityOf::spin>>(
+        "spin", "rad/s", "mean angular velocity about a direction, right hand, weighted by mass", velocity_options);
 }
 
 }  // namespace grainsweep::machine::probes

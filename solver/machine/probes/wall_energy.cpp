@@ -91,23 +91,14 @@ constexpr std::array contact_energy_options = {
 }  // namespace
 
 ProbeInfo contact_energy() {
-    return {"contact_energy",
-            "J",
-            "energy that contacts store in their springs and by cohesion",
-            contact_energy_options,
-            make_probe<ContactEnergy>,
-            true};
+    return probe_row<ContactEnergy>("contact_energy", "J",
+                                    "energy that contacts store in their springs and by cohesion",
+                                    contact_energy_options, {.contacts = true});
 }
 ProbeInfo wall_energy() {
-    return {"wall_energy",
-            "J",
-            "kinetic energy of pressed, driven and free walls, or a part of its balance",
-            wall_energy_options,
-            make_probe<WallEnergy>,
-            false,
-            {},
-            nullptr,
-            Source::sums};
+    return probe_row<WallEnergy>("wall_energy", "J",
+                                 "kinetic energy of pressed, driven and free walls, or a part of its balance",
+                                 wall_energy_options, {.source = Source::sums});
 }
 
 }  // namespace grainsweep::machine::probes

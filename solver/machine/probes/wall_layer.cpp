@@ -28,9 +28,10 @@ constexpr std::array wall_layer_options = {
 }  // namespace
 
 ProbeInfo wall_layer_speed() {
-    return {"wall_layer_speed", "m/s",
-            "mean speed about the axis of a drum, of the particles nearer than 0.1 D to the lower half of its wall",
-            wall_layer_options, make_probe<WallLayer>};
+    return probe_row<WallLayer>(
+        "wall_layer_speed", "m/s",
+        "mean speed about the axis of a drum, of the particles nearer than 0.1 D to the lower half of its wall",
+        wall_layer_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -101,46 +101,31 @@ constexpr std::array pressure_options = {
     wall_option, option("along", Field::Kind::direction, "", "the direction of the component", true),
     option("area", Field::Kind::quantity, "m2", "the area that carries it", true, {0, 1e6, true, false})};
 
-/// Returns the row of a load whose integral over time the engine keeps.
-template <class P>
-ProbeInfo integrated_load(std::string_view name, std::string_view unit, std::string_view meaning,
-                          std::span<const Field> options) {
-    ProbeInfo row{name, unit, meaning, options, make_probe<P>};
-    row.source = Source::loads;
-    return row;
-}
+/// Of loads whose integral over time the engine keeps.
+constexpr ProbeTraits integrated_load{.source = Source::loads};
 
 }  // namespace
 
 ProbeInfo rolling_torque() {
-    return {"rolling_torque",
-            "N m",
-            "sum of the moments on particles by which walls resist rolling, about an axis",
-            rolling_options,
-            make_probe<RollingTorque>,
-            true};
+    return probe_row<RollingTorque>("rolling_torque", "N m",
+                                    "sum of the moments on particles by which walls resist rolling, about an axis",
+                                    rolling_options, {.contacts = true});
 }
 ProbeInfo wall_force() {
-    return integrated_load<Force>("wall_force", "N", "force of the powder on walls, a component", force_options);
+    return probe_row<Force>("wall_force", "N", "force of the powder on walls, a component", force_options,
+                            integrated_load);
 }
 ProbeInfo wall_pressure() {
-    return integrated_load<Force>("wall_pressure", "Pa",
-                                  "force of the powder on walls, a component, divided by an area", pressure_options);
+    return probe_row<Force>("wall_pressure", "Pa", "force of the powder on walls, a component, divided by an area",
+                            pressure_options, integrated_load);
 }
 ProbeInfo wall_torque() {
-    return integrated_load<Torque>("wall_torque", "N m", "torque of the powder on walls about an axis", torque_options);
+    return probe_row<Torque>("wall_torque", "N m", "torque of the powder on walls about an axis", torque_options,
+                             integrated_load);
 }
 ProbeInfo wall_work() {
-    return {"wall_work",
-            "J",
-            "work of walls on the powder since the start",
-            work_options,
-            make_probe<Work>,
-            false,
-            {},
-            nullptr,
-            Source::sums,
-            true};
+    return probe_row<Work>("wall_work", "J", "work of walls on the powder since the start", work_options,
+                           {.source = Source::sums, .so_far = true});
 }
 
 }  // namespace grainsweep::machine::probes

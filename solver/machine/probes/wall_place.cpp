@@ -70,12 +70,13 @@ constexpr std::array angle_of_wall_options = {placed_wall,
 }  // namespace
 
 ProbeInfo wall_angle() {
-    return {"wall_angle", "deg", "angle by which a wall has turned since the start; of a free body within half a turn",
-            angle_of_wall_options, make_probe<AngleOfWall>};
+    return probe_row<AngleOfWall>("wall_angle", "deg",
+                                  "angle by which a wall has turned since the start; of a free body within half a turn",
+                                  angle_of_wall_options);
 }
 ProbeInfo wall_position() {
-    return {"wall_position", "m", "way of a point of a wall since the start, along a direction",
-            position_of_wall_options, make_probe<PositionOfWall>};
+    return probe_row<PositionOfWall>(
+        "wall_position", "m", "way of a point of a wall since the start, along a direction", position_of_wall_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -79,36 +79,19 @@ constexpr std::array wear_profile_options = {
     option("to", Field::Kind::quantity, "m", "where the last bin ends", true),
     bins_option};
 
-std::unique_ptr<machine::Probe> make_wear(const Options& given) {
-    return std::make_unique<WallWear>(given);
-}
-
 }  // namespace
 
 ProbeInfo wall_wear() {
-    return {"wall_wear",
-            "J",
-            "normal force times sliding distance on walls; times Archard's coefficient and divided by the "
-            "hardness: the volume worn off",
-            wear_options,
-            make_wear,
-            false,
-            {},
-            nullptr,
-            Source::steps,
-            true};
+    return probe_row<WallWear>(
+        "wall_wear", "J",
+        "normal force times sliding distance on walls; times Archard's coefficient and divided by the "
+        "hardness: the volume worn off",
+        wear_options, {.source = Source::steps, .so_far = true});
 }
 ProbeInfo wall_wear_profile() {
-    return {"wall_wear_profile",
-            "J",
-            "the same in bins along a direction",
-            wear_profile_options,
-            make_wear,
-            false,
-            "centre of the bin, m",
-            flaw_of_bins_along,
-            Source::steps,
-            true};
+    return probe_row<WallWear>(
+        "wall_wear_profile", "J", "the same in bins along a direction", wear_profile_options,
+        {.over = "centre of the bin, m", .flaw = flaw_of_bins_along, .source = Source::steps, .so_far = true});
 }
 
 }  // namespace grainsweep::machine::probes
