@@ -103,22 +103,24 @@ public:
     void set(std::string_view name, OptionValue value) {
         values_.insert_or_assign(std::string(name), std::move(value));
     }
-    [[nodiscard]] double number(std::string_view name) const { return std::get<double>(values_.at(std::string(name))); }
-    [[nodiscard]] double number(std::string_view name, double standard) const {
-        return has(name) ? number(name) : standard;
+    /// Returns the value of an option of this type; empty: it is left out.
+    template <class T>
+    [[nodiscard]] std::optional<T> given(std::string_view name) const {
+        return has(name) ? std::optional(std::get<T>(values_.at(std::string(name)))) : std::nullopt;
     }
-    [[nodiscard]] Vec3 vector(std::string_view name) const { return std::get<Vec3>(values_.at(std::string(name))); }
+    [[nodiscard]] double number(std::string_view name) const { return given<double>(name).value(); }
+    [[nodiscard]] double number(std::string_view name, double standard) const {
+        return given<double>(name).value_or(standard);
+    }
+    [[nodiscard]] Vec3 vector(std::string_view name) const { return given<Vec3>(name).value(); }
     [[nodiscard]] Vec3 vector(std::string_view name, const Vec3& standard) const {
-        return has(name) ? vector(name) : standard;
+        return given<Vec3>(name).value_or(standard);
     }
     /// Returns the region; empty: everywhere.
-    [[nodiscard]] std::optional<Region> region(std::string_view name) const {
-        return has(name) ? std::optional(std::get<Region>(values_.at(std::string(name)))) : std::nullopt;
-    }
+    [[nodiscard]] std::optional<Region> region(std::string_view name) const { return given<Region>(name); }
     /// Returns species or walls by number; empty: all.
     [[nodiscard]] std::vector<std::size_t> numbers(std::string_view name) const {
-        return has(name) ? std::get<std::vector<std::size_t>>(values_.at(std::string(name)))
-                         : std::vector<std::size_t>{};
+        return given<std::vector<std::size_t>>(name).value_or(std::vector<std::size_t>{});
     }
     /// Returns species and particles; a list of numbers is one of species.
     [[nodiscard]] SelectedParticles particles(std::string_view name) const {
@@ -128,7 +130,7 @@ public:
         return std::get<SelectedParticles>(value);
     }
     [[nodiscard]] std::string word(std::string_view name, std::string_view standard) const {
-        return has(name) ? std::get<std::string>(values_.at(std::string(name))) : std::string(standard);
+        return given<std::string>(name).value_or(std::string(standard));
     }
     void each_region(const std::function<void(Region&)>& visit) {
         for (auto& [name, value] : values_)

@@ -22,9 +22,7 @@ inline constexpr Field along_option = option("along", Field::Kind::direction, ""
 class Upright {
 public:
     explicit Upright(const Options& options)
-        : selection_(options),
-          from_(options.vector("from", {})),
-          along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
+        : selection_(options), from_(options.vector("from", {})), along_(options.given<Vec3>("along")) {}
 
     /// Returns positions relative to "from", and velocities, of the selected particles.
     [[nodiscard]] dem::State state_of(const Frame& frame) const {

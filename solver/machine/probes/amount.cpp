@@ -13,11 +13,11 @@ enum class Amount { count, mass, volume };
 template <Amount of>
 class AmountProbe final : public machine::Probe {
 public:
-    explicit AmountProbe(const Options& options) : selection_(options) {
-        if (options.has("slower_than")) slower_than_ = options.number("slower_than");
-        latest_ = options.word("filling", "any") == "latest";
-        keeps_ = options.word("gone", "leave") == "stay";
-    }
+    explicit AmountProbe(const Options& options)
+        : latest_(options.word("filling", "any") == "latest"),
+          keeps_(options.word("gone", "leave") == "stay"),
+          selection_(options),
+          slower_than_(options.given<double>("slower_than")) {}
     void restart() override { amount_.clear(); }
     double look(const Frame& frame) override {
         double sum = 0;
@@ -43,7 +43,7 @@ private:
         amount_[id] = amount;
     }
 
-    bool latest_ = false, keeps_ = false;
+    bool latest_, keeps_;
     std::vector<double> amount_;  // by id, when last seen
     Selection selection_;
     std::optional<double> slower_than_;

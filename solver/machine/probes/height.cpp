@@ -29,7 +29,7 @@ public:
         : selection_(options),
           share_(options.number("share", 0.95)),
           from_(options.vector("from", {})),
-          along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt),
+          along_(options.given<Vec3>("along")),
           surface_(options.word("of_sphere", "top") == "top") {}
     double look(const Frame& frame) override {
         const Vec3 up = up_of(frame, along_);
@@ -63,9 +63,7 @@ private:
 class MeanHeight final : public machine::Probe {
 public:
     explicit MeanHeight(const Options& options)
-        : selection_(options),
-          from_(options.vector("from", {})),
-          along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
+        : selection_(options), from_(options.vector("from", {})), along_(options.given<Vec3>("along")) {}
     double look(const Frame& frame) override {
         const Vec3 up = up_of(frame, along_);
         double moment = 0, volume = 0;

@@ -35,7 +35,7 @@ public:
         : selection_(options),
           in_(*options.region("in")),
           points_(options.number("points", standard_points)),
-          below_top_(options.has("below_top") ? std::optional(options.number("below_top")) : std::nullopt) {}
+          below_top_(options.given<double>("below_top")) {}
     double look(const Frame& frame) override {
         const Vec3 up = up_of(frame, std::nullopt);
         const double top = below_top_ ? top_of(frame, up) - *below_top_ : undefined;
