@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace grainsweep::machine {
 
@@ -26,6 +28,12 @@ inline constexpr double default_bins = 20;
 inline constexpr Field bins_option =
     option("bins", Field::Kind::quantity, "1", "number of bins; default: 20", false, {1, 1e5});
 
+inline constexpr Field coordinate_option =
+    option("along", Field::Kind::direction, "", "the direction of the coordinate", true);
+inline constexpr Field first_bin_option =
+    option("from", Field::Kind::quantity, "m", "where the first bin begins", true);
+inline constexpr Field last_bin_option = option("to", Field::Kind::quantity, "m", "where the last bin ends", true);
+
 [[nodiscard]] inline std::size_t bins_in(const Options& options) {
     return static_cast<std::size_t>(options.number("bins", default_bins));
 }
@@ -33,6 +41,20 @@ inline constexpr Field bins_option =
 [[nodiscard]] inline Bins bins_along(const Options& options) {
     if (!options.has("from")) return {.low = 0, .high = 1, .count = 0};
     return {options.number("from"), options.number("to"), bins_in(options)};
+}
+
+/// Appends the value of every bin, at its centre.
+template <class Value>
+void append_bins(std::vector<Sample>& into, const Bins& bins, Value&& value) {
+    for (std::size_t b = 0; b < bins.count; ++b) into.push_back({.bin = bins.centre(b), .value = value(b)});
+}
+/// Appends the probability density of values divided by a unit; values outside all bins count in their number only.
+inline void append_density(std::vector<Sample>& into, const Bins& bins, std::span<const double> values, double unit) {
+    std::vector<double> numbers(bins.count, 0.0);
+    for (const double x : values)
+        if (const std::size_t bin = bins.at(x / unit); bin < bins.count) numbers[bin] += 1;
+    append_bins(into, bins,
+                [&](std::size_t b) { return numbers[b] / (static_cast<double>(values.size()) * bins.width()); });
 }
 
 /// Returns the error of "bins" and their ends, in one sentence; empty: none.

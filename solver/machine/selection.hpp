@@ -44,6 +44,16 @@ public:
         for (std::size_t i = 0; i < frame.size(); ++i)
             if (here(i)) visit(i);
     }
+    /// Returns the mean of value(i) over the particles that count, weighted by volume; undefined: there are none.
+    template <class Value>
+    [[nodiscard]] double mean_by_volume(const Frame& frame, Value&& value) const {
+        double moment = 0, volume = 0;
+        each(frame, [&](std::size_t i) {
+            moment += frame.volume(i) * value(i);
+            volume += frame.volume(i);
+        });
+        return volume > 0 ? moment / volume : undefined;
+    }
     [[nodiscard]] const std::optional<Region>& region() const { return in_; }
 
 private:

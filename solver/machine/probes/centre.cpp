@@ -13,12 +13,8 @@ public:
     explicit CentreProbe(const Options& options)
         : selection_(options), along_(options.vector("along")), from_(options.vector("from", {})) {}
     double look(const Frame& frame) override {
-        double moment = 0, volume = 0;
-        selection_.each(frame, [&](std::size_t i) {
-            moment += frame.volume(i) * geometry::dot(frame.state.position[i] - from_, along_);
-            volume += frame.volume(i);
-        });
-        return volume > 0 ? moment / volume : undefined;
+        return selection_.mean_by_volume(
+            frame, [&](std::size_t i) { return geometry::dot(frame.state.position[i] - from_, along_); });
     }
 
 private:

@@ -51,14 +51,7 @@ public:
         for (const double f : forces_) mean_ += f / static_cast<double>(forces_.size());
         return forces_.empty() || density ? undefined : mean_;
     }
-    void profile(const Frame&, std::vector<Sample>& into) override {
-        std::vector<double> numbers(bins_.count, 0.0);
-        for (const double f : forces_)
-            if (const std::size_t bin = bins_.at(f / mean_); bin < bins_.count) numbers[bin] += 1;
-        for (std::size_t b = 0; b < bins_.count; ++b)
-            into.push_back(
-                {.bin = bins_.centre(b), .value = numbers[b] / (static_cast<double>(forces_.size()) * bins_.width())});
-    }
+    void profile(const Frame&, std::vector<Sample>& into) override { append_density(into, bins_, forces_, mean_); }
 
 private:
     ContactSelection selection_;

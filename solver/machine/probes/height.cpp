@@ -66,12 +66,8 @@ public:
         : selection_(options), from_(options.vector("from", {})), along_(options.given<Vec3>("along")) {}
     double look(const Frame& frame) override {
         const Vec3 up = up_of(frame, along_);
-        double moment = 0, volume = 0;
-        selection_.each(frame, [&](std::size_t i) {
-            moment += frame.volume(i) * dot(frame.state.position[i] - from_, up);
-            volume += frame.volume(i);
-        });
-        return volume > 0 ? moment / volume : undefined;
+        return selection_.mean_by_volume(frame,
+                                         [&](std::size_t i) { return dot(frame.state.position[i] - from_, up); });
     }
 
 private:

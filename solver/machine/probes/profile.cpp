@@ -81,9 +81,9 @@ constexpr std::array<std::string_view, 2> bin_places = {"centre", "top"};
 constexpr std::array profile_options = {
     species_option,
     in_option,
-    option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
-    option("from", Field::Kind::quantity, "m", "where the first bin begins", true),
-    option("to", Field::Kind::quantity, "m", "where the last bin ends", true),
+    coordinate_option,
+    first_bin_option,
+    last_bin_option,
     bins_option,
     option("quantity", Field::Kind::word, "",
            "'solid_volume' (m3), 'velocity' (m/s), 'share' of the species by volume, 'count', or 'cut_volume' (m3): "

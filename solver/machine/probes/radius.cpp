@@ -20,13 +20,10 @@ public:
           about_bed_(options.word("about", "axis") == "bed") {}
     double look(const Frame& frame) override {
         const Vec3 origin = about_bed_ ? centre_of_bed(frame) : through_;
-        double moment = 0, volume = 0;
-        selection_.each(frame, [&](std::size_t i) {
+        return selection_.mean_by_volume(frame, [&](std::size_t i) {
             const Vec3 x = frame.state.position[i] - origin;
-            moment += frame.volume(i) * norm(x - dot(x, axis_) * axis_);
-            volume += frame.volume(i);
+            return norm(x - dot(x, axis_) * axis_);
         });
-        return volume > 0 ? moment / volume : undefined;
     }
 
 private:

@@ -41,14 +41,7 @@ public:
         }
     }
     double look(const Frame&) override { return value(); }
-    void profile(const Frame&, std::vector<Sample>& into) override {
-        std::vector<double> numbers(bins_.count, 0.0);
-        for (const double t : times_)
-            if (const std::size_t bin = bins_.at(t); bin < bins_.count) numbers[bin] += 1;
-        for (std::size_t b = 0; b < bins_.count; ++b)
-            into.push_back(
-                {.bin = bins_.centre(b), .value = numbers[b] / (static_cast<double>(times_.size()) * bins_.width())});
-    }
+    void profile(const Frame&, std::vector<Sample>& into) override { append_density(into, bins_, times_, 1); }
     void save(ByteWriter& out) const override { out.put(seen_), out.put(times_); }
     void restore(ByteReader& in) override { in.get(seen_), in.get(times_); }
 

@@ -29,8 +29,7 @@ public:
             inside[bin] += one.in;
             all[bin] += one.in + one.beside;
         }
-        for (std::size_t bin = 0; bin < bins_.count; ++bin)
-            into.push_back({.bin = bins_.centre(bin), .value = all[bin] > 0 ? inside[bin] / all[bin] : undefined});
+        append_bins(into, bins_, [&](std::size_t b) { return all[b] > 0 ? inside[b] / all[b] : undefined; });
     }
     void save(ByteWriter& out) const override { out.put(seen_); }
     void restore(ByteReader& in) override { in.get(seen_); }

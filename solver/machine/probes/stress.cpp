@@ -75,8 +75,7 @@ public:
         return bins_.count > 0 ? undefined : value(held_.front(), volume_);
     }
     void profile(const Frame&, std::vector<Sample>& into) override {
-        for (std::size_t b = 0; b < bins_.count; ++b)
-            into.push_back({.bin = bins_.centre(b), .value = value(held_[b], volume_)});
+        append_bins(into, bins_, [this](std::size_t b) { return value(held_[b], volume_); });
     }
 
 private:

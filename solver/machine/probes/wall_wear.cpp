@@ -41,7 +41,7 @@ public:
     }
     double look(const Frame&) override { return walls_.empty() ? undefined : wear_; }
     void profile(const Frame&, std::vector<Sample>& into) override {
-        for (std::size_t b = 0; b < bins_.count; ++b) into.push_back({.bin = bins_.centre(b), .value = in_bins_[b]});
+        append_bins(into, bins_, [this](std::size_t b) { return in_bins_[b]; });
     }
     void save(ByteWriter& out) const override { out.put(wear_), out.put(in_bins_); }
     void restore(ByteReader& in) override {
@@ -70,14 +70,8 @@ constexpr Field worn_wall = option("wall", Field::Kind::walls, "", "the wall, or
 constexpr Field worn_in =
     option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
 constexpr std::array wear_options = {worn_wall, species_option, worn_in};
-constexpr std::array wear_profile_options = {
-    worn_wall,
-    species_option,
-    worn_in,
-    option("along", Field::Kind::direction, "", "the direction of the coordinate", true),
-    option("from", Field::Kind::quantity, "m", "where the first bin begins", true),
-    option("to", Field::Kind::quantity, "m", "where the last bin ends", true),
-    bins_option};
+constexpr std::array wear_profile_options = {worn_wall,        species_option,  worn_in,    coordinate_option,
+                                             first_bin_option, last_bin_option, bins_option};
 
 }  // namespace
 
