@@ -7,6 +7,9 @@
 
 namespace grainsweep::machine {
 
+inline constexpr Field contact_in_option =
+    option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
+
 /// Returns the index of a sphere in the spheres of the frame.
 [[nodiscard]] inline std::size_t place_of(const Frame& frame, std::int32_t id) {
     return static_cast<std::size_t>(std::ranges::lower_bound(frame.spheres().id, id) - frame.spheres().id.begin());

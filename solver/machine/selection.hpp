@@ -1,5 +1,6 @@
-// Particles that a probe counts: by species or name, and by the region that contains the centre; of a passage through
-// a plane, the place where the centre passes. Glued particles are part of a wall, unless they are selected by name.
+// Species, walls and particles that a probe counts. Particles are selected by species or name, and by the region that
+// contains the centre; of a passage through a plane, the place where the centre passes. Glued particles are part of a
+// wall, unless they are selected by name.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -14,6 +15,52 @@ inline constexpr Field of_option =
     option("of", Field::Kind::particles, "", "the species, or single particles by name, that count; default: all");
 inline constexpr Field in_option =
     option("in", Field::Kind::region, "", "the region in which centres count; default: everywhere");
+
+inline constexpr Field walls_option = option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true);
+inline constexpr Field only_walls_option =
+    option("wall", Field::Kind::walls, "", "only contacts with this wall, or these; default: all contacts");
+
+/// Species of the option "of"; none given: all.
+class SelectedSpecies {
+public:
+    explicit SelectedSpecies(const Options& options) : of_(options.numbers("of")) {}
+    [[nodiscard]] bool hold(const Frame& frame, std::size_t id) const {
+        return of_.empty() || std::ranges::find(of_, frame.species[id]) != of_.end();
+    }
+    [[nodiscard]] bool hold(const Frame& frame, std::int32_t sphere) const {
+        return hold(frame, static_cast<std::size_t>(sphere));
+    }
+
+private:
+    std::vector<std::size_t> of_;
+};
+
+/// Walls of the option "wall".
+class SelectedWalls {
+public:
+    explicit SelectedWalls(const Options& options) : numbers_(options.numbers("wall")), given_(options.has("wall")) {}
+
+    /// Returns whether this case is without all of them.
+    [[nodiscard]] bool none() const { return numbers_.empty(); }
+    /// Returns whether a contact is with one of the walls.
+    [[nodiscard]] bool touch(const dem::ContactForce& contact) const {
+        return contact.second < 0 &&
+               std::ranges::find(numbers_, static_cast<std::size_t>(-1 - contact.second)) != numbers_.end();
+    }
+    /// Returns the same; where the option is left out, every contact counts.
+    [[nodiscard]] bool admit(const dem::ContactForce& contact) const { return !given_ || touch(contact); }
+    /// Returns the sum of value(w) over their numbers; undefined without any.
+    template <class Value>
+    [[nodiscard]] double sum(Value&& value) const {
+        double total = none() ? undefined : 0;
+        for (const std::size_t w : numbers_) total += value(w);
+        return total;
+    }
+
+private:
+    std::vector<std::size_t> numbers_;
+    bool given_;
+};
 
 class Selection {
 public:

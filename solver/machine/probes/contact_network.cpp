@@ -20,20 +20,17 @@ namespace {
 /// Calls visit(contact) for contacts of two particles that count: of the species both, in the region the contact.
 class ContactSelection {
 public:
-    explicit ContactSelection(const Options& options) : of_(options.numbers("of")), in_(options.region("in")) {}
+    explicit ContactSelection(const Options& options) : of_(options), in_(options.region("in")) {}
     template <class Visit>
     void each(const Frame& frame, Visit&& visit) const {
         for (const auto& contact : frame.contacts)
-            if (contact.second >= 0 && of_these(frame, contact.first) && of_these(frame, contact.second) &&
+            if (contact.second >= 0 && of_.hold(frame, contact.first) && of_.hold(frame, contact.second) &&
                 (!in_ || in_->contains(contact_point(frame, contact))))
                 visit(contact);
     }
 
 private:
-    [[nodiscard]] bool of_these(const Frame& frame, std::int32_t id) const {
-        return of_.empty() || std::ranges::find(of_, frame.species[static_cast<std::size_t>(id)]) != of_.end();
-    }
-    std::vector<std::size_t> of_;
+    SelectedSpecies of_;
     std::optional<Region> in_;
 };
 
@@ -146,8 +143,6 @@ private:
 
 constexpr Field both_of_option =
     option("of", Field::Kind::species, "", "the species both particles are of; default: all");
-constexpr Field contact_in_option =
-    option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
 constexpr std::array contact_force_options = {both_of_option, contact_in_option};
 constexpr std::array contact_density_options = {
     both_of_option, contact_in_option,

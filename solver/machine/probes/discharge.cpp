@@ -15,8 +15,7 @@ enum class Discharge { mass, number, diameters, share };
 template <Discharge of>
 class DischargeProbe final : public machine::Probe {
 public:
-    explicit DischargeProbe(const Options& options)
-        : of_species_(options.numbers("of")), from_(options.region("from")) {}
+    explicit DischargeProbe(const Options& options) : of_(options), from_(options.region("from")) {}
 
     double look(const Frame& frame) override {
         double outside = 0, all = 0;
@@ -27,9 +26,7 @@ public:
             const bool glued = present && frame.state.mobile[i] == 0;
             const bool inside = present && (!from || from->contains(frame.state.position[i]));
             if (present) ++i;
-            if (glued || !frame.is_particle(id)) continue;
-            if (!of_species_.empty() && std::ranges::find(of_species_, frame.species[id]) == of_species_.end())
-                continue;
+            if (glued || !frame.is_particle(id) || !of_.hold(frame, id)) continue;
             const double amount = amount_of(frame, id);
             all += amount;
             if (!inside) outside += amount;
@@ -46,7 +43,7 @@ private:
         return frame.density[id] * 4 / 3 * std::numbers::pi * r * r * r;
     }
 
-    std::vector<std::size_t> of_species_;
+    SelectedSpecies of_;
     std::optional<Region> from_;
 };
 

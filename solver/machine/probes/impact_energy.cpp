@@ -13,6 +13,7 @@
 #include "solver/machine/binning.hpp"
 #include "solver/machine/partner_order.hpp"
 #include "solver/machine/probe.hpp"
+#include "solver/machine/selection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,11 +26,7 @@ template <bool by_number>
 class ImpactEnergy final : public machine::Probe {
 public:
     explicit ImpactEnergy(const Options& options)
-        : of_species_(options.numbers("of")),
-          walls_(options.numbers("wall")),
-          at_walls_(options.has("wall")),
-          bins_(bins_along(options)),
-          in_bins_(bins_.count, 0.0) {
+        : of_(options), walls_(options), bins_(bins_along(options)), in_bins_(bins_.count, 0.0) {
         bins_.low = std::log10(bins_.low), bins_.high = std::log10(bins_.high);
         const auto part = options.word("part", "all");
         normal_ = part == "tangential" ? 0 : 1;
@@ -83,15 +80,9 @@ private:
         [[nodiscard]] std::uint64_t key() const { return partner_key(first, second); }
     };
 
-    [[nodiscard]] bool of_these(const Frame& frame, std::int32_t id) const {
-        return of_species_.empty() ||
-               std::ranges::find(of_species_, frame.species[static_cast<std::size_t>(id)]) != of_species_.end();
-    }
     [[nodiscard]] bool counts(const Frame& frame, const dem::ContactForce& contact) const {
-        if (contact.second >= 0)
-            return !at_walls_ && (of_these(frame, contact.first) || of_these(frame, contact.second));
-        const auto wall = static_cast<std::size_t>(-1 - contact.second);
-        return of_these(frame, contact.first) && (!at_walls_ || std::ranges::find(walls_, wall) != walls_.end());
+        return walls_.admit(contact) &&
+               (of_.hold(frame, contact.first) || (contact.second >= 0 && of_.hold(frame, contact.second)));
     }
     void end(const Lasting& contact) {
         energy_ += contact.energy;
@@ -100,8 +91,8 @@ private:
         if (bin < bins_.count) in_bins_[bin] += by_number ? 1 : contact.energy;
     }
 
-    std::vector<std::size_t> of_species_, walls_;
-    bool at_walls_;
+    SelectedSpecies of_;
+    SelectedWalls walls_;
     Bins bins_;          // of log10 of J
     double energy_ = 0;  // of contacts that have ended, J
     double ended_ = 0;
@@ -115,18 +106,16 @@ constexpr std::array<std::string_view, 3> impact_parts = {"all", "normal", "tang
 constexpr Interval impact_energies{0, 1e9, true, false};
 constexpr Field impact_of =
     option("of", Field::Kind::species, "", "species one of which takes part in the contact; default: all");
-constexpr Field impact_wall =
-    option("wall", Field::Kind::walls, "", "only contacts with this wall, or these; default: all contacts");
 constexpr Field impact_part =
     option("part", Field::Kind::word, "",
            "'all', 'normal': by the normal force, 'tangential': by friction and rolling; default: "
            "all",
            false, {}, impact_parts);
-constexpr std::array impact_number_options = {impact_of, impact_wall};
-constexpr std::array impact_options = {impact_of, impact_wall, impact_part};
+constexpr std::array impact_number_options = {impact_of, only_walls_option};
+constexpr std::array impact_options = {impact_of, only_walls_option, impact_part};
 constexpr std::array impact_spectrum_options = {
     impact_of,
-    impact_wall,
+    only_walls_option,
     impact_part,
     option("from", Field::Kind::quantity, "J", "where the first bin begins; bins are equal in the logarithm", true,
            impact_energies),

@@ -110,19 +110,17 @@ double roughness_of(const Frame& frame, const Options& options) {
 class VelocityAbove : public machine::Probe {
 public:
     explicit VelocityAbove(const Options& options)
-        : in_(*options.region("in")),
+        : selection_(options),
           thickness_(options.number("thickness")),
           profile_(static_cast<std::size_t>(options.number("layers"))) {}
     void restart() override { profile_ = observables::VelocityProfile(profile_.sum.size()), frames_ = 0; }
     double look(const Frame& frame) override {
         dem::State inside;
-        const RegionNow here(in_);
-        for (std::size_t i = 0; i < frame.size(); ++i) {
-            if (frame.state.mobile[i] == 0 || !here.contains(frame.state.position[i])) continue;
+        selection_.each(frame, [&](std::size_t i) {
             inside.position.push_back(frame.state.position[i]);
             inside.velocity.push_back(frame.state.velocity[i]);
-        }
-        const Bounds bounds = in_.bounds();
+        });
+        const Bounds bounds = selection_.region()->bounds();
         profile_.add(inside, bounds.low[0], bounds.high[0], bounds.low[2], thickness_);
         frames_ += 1;
         return undefined;
@@ -151,7 +149,7 @@ protected:
     [[nodiscard]] std::int64_t frames() const { return frames_; }
 
 private:
-    Region in_;
+    Selection selection_;
     double thickness_;
     observables::VelocityProfile profile_;
     std::int64_t frames_ = 0;

@@ -20,23 +20,26 @@ class LoadedParticles {
 public:
     explicit LoadedParticles(const Options& options) : selection_(options), from_(options.word("from", "all")) {}
 
-    /// Calls visit(contact, sphere, sign) for each sphere that bears the contact: the force acts on it times `sign`.
-    template <class Visit>
-    void each(const Frame& frame, Visit&& visit) const {
+    /// Returns the sum of load(contact, sphere, sign) over the spheres that bear a contact, whose force acts on them
+    /// times `sign`; undefined if no particle that counts is present.
+    template <class Load>
+    [[nodiscard]] double sum(const Frame& frame, Load&& load) const {
+        if (!any(frame)) return undefined;
+        double sum = 0;
         for (const auto& contact : frame.contacts) {
             if (from_ == (contact.second < 0 ? "particles" : "walls")) continue;
-            if (holds(frame, contact.first)) visit(contact, contact.first, 1.0);
-            if (contact.second >= 0 && holds(frame, contact.second)) visit(contact, contact.second, -1.0);
+            if (holds(frame, contact.first)) sum += load(contact, contact.first, 1.0);
+            if (contact.second >= 0 && holds(frame, contact.second)) sum += load(contact, contact.second, -1.0);
         }
+        return sum;
     }
-    /// Returns whether a particle that counts is present.
+
+private:
     [[nodiscard]] bool any(const Frame& frame) const {
         for (std::size_t i = 0; i < frame.size(); ++i)
             if (selection_.holds(frame, i)) return true;
         return false;
     }
-
-private:
     [[nodiscard]] bool holds(const Frame& frame, std::int32_t sphere) const {
         return selection_.holds(frame, particle_place_of(frame, sphere));
     }
@@ -66,12 +69,9 @@ class ParticleForce final : public machine::Probe {
 public:
     explicit ParticleForce(const Options& options) : loaded_(options), along_(options.vector("along")) {}
     double look(const Frame& frame) override {
-        if (!loaded_.any(frame)) return undefined;
-        double sum = 0;
-        loaded_.each(frame, [&](const dem::ContactForce& contact, std::int32_t, double sign) {
-            sum += sign * geometry::dot(force_of(contact), along_);
+        return loaded_.sum(frame, [this](const dem::ContactForce& contact, std::int32_t, double sign) {
+            return sign * geometry::dot(force_of(contact), along_);
         });
-        return sum;
     }
 
 private:
@@ -83,12 +83,9 @@ class ParticleTorque final : public machine::Probe {
 public:
     explicit ParticleTorque(const Options& options) : loaded_(options), axis_(options.vector("axis")) {}
     double look(const Frame& frame) override {
-        if (!loaded_.any(frame)) return undefined;
-        double sum = 0;
-        loaded_.each(frame, [&](const dem::ContactForce& contact, std::int32_t sphere, double sign) {
-            sum += geometry::dot(moment_on(frame, contact, sphere, sign), axis_);
+        return loaded_.sum(frame, [&](const dem::ContactForce& contact, std::int32_t sphere, double sign) {
+            return geometry::dot(moment_on(frame, contact, sphere, sign), axis_);
         });
-        return sum;
     }
 
 private:

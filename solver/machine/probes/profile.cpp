@@ -17,7 +17,7 @@ class Profile final : public machine::Probe {
 public:
     explicit Profile(const Options& options)
         : in_(options.region("in")),
-          of_species_(options.numbers("of")),
+          of_species_(options),
           along_(options.vector("along")),
           bins_(bins_along(options)),
           velocity_along_(options.vector("velocity_along", {1, 0, 0})) {
@@ -36,8 +36,7 @@ public:
         for (std::size_t i = 0; i < frame.size(); ++i) {
             if (frame.state.mobile[i] == 0) continue;
             if (here && !here->contains(frame.state.position[i])) continue;
-            const bool counts =
-                of_species_.empty() || std::ranges::find(of_species_, frame.species_of(i)) != of_species_.end();
+            const bool counts = of_species_.hold(frame, frame.id(i));
             if (of_ != ProfileOf::share && !counts) continue;
             if (of_ == ProfileOf::cut_volume) {
                 cut(dot(frame.state.position[i], along_), frame.state.radius[i], weight);
@@ -69,7 +68,7 @@ private:
 
     double shown_ = 0;  // of a bin: place over its centre, bins
     std::optional<Region> in_;
-    std::vector<std::size_t> of_species_;
+    SelectedSpecies of_species_;
     Vec3 along_;
     Bins bins_;
     Vec3 velocity_along_;

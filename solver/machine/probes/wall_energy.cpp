@@ -43,50 +43,41 @@ double part_of(EnergyPart part, const geometry::BodyEnergy& energy, const dem::W
 class WallEnergy final : public machine::Probe {
 public:
     explicit WallEnergy(const Options& options)
-        : walls_(options.numbers("wall")),
+        : walls_(options),
           part_(static_cast<EnergyPart>(std::ranges::find(energy_parts, options.word("part", "kinetic")) -
                                         energy_parts.begin())) {}
     double look(const Frame& frame) override {
-        double total = walls_.empty() ? undefined : 0;  // walls that this case is without
-        for (const std::size_t w : walls_) total += part_of(part_, frame.engine.wall_energy(w), frame.engine.wall(w));
-        return total;
+        return walls_.sum(
+            [&](std::size_t w) { return part_of(part_, frame.engine.wall_energy(w), frame.engine.wall(w)); });
     }
 
 private:
-    std::vector<std::size_t> walls_;
+    SelectedWalls walls_;
     EnergyPart part_;
 };
 
 /// Stored in contacts at this moment.
 class ContactEnergy final : public machine::Probe {
 public:
-    explicit ContactEnergy(const Options& options) : walls_(options.numbers("wall")), at_walls_(options.has("wall")) {}
+    explicit ContactEnergy(const Options& options) : walls_(options) {}
     double look(const Frame& frame) override {
         double total = 0;
         for (const auto& contact : frame.contacts)
-            if (counts(contact)) total += contact.stored;
+            if (walls_.admit(contact)) total += contact.stored;
         return total;
     }
 
 private:
-    [[nodiscard]] bool counts(const dem::ContactForce& contact) const {
-        if (!at_walls_) return true;
-        return contact.second < 0 &&
-               std::ranges::find(walls_, static_cast<std::size_t>(-1 - contact.second)) != walls_.end();
-    }
-
-    std::vector<std::size_t> walls_;
-    bool at_walls_;
+    SelectedWalls walls_;
 };
 
 constexpr std::array wall_energy_options = {
-    option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true),
+    walls_option,
     option("part", Field::Kind::word, "",
            "'kinetic': the energy now; its change since the start is the work of 'contacts', of the wall's 'own' force "
            "and weight, of the 'bounds' of its speed, the error of 'turning', and the 'residual'; default: 'kinetic'",
            false, {}, energy_parts)};
-constexpr std::array contact_energy_options = {
-    option("wall", Field::Kind::walls, "", "only contacts with this wall, or these; default: all contacts")};
+constexpr std::array contact_energy_options = {only_walls_option};
 
 }  // namespace
 

@@ -11,16 +11,12 @@ namespace {
 
 using geometry::dot;
 
-struct Walls {
-    std::vector<std::size_t> numbers;
-
-    explicit Walls(const Options& options) : numbers(options.numbers("wall")) {}
-    /// Returns the sum of a number of their loads; undefined for walls that this case is without.
+struct LoadedWalls : SelectedWalls {
+    using SelectedWalls::SelectedWalls;
+    /// Returns the sum of a number of their loads; undefined without any.
     template <class Of>
     [[nodiscard]] double sum(const Frame& frame, const Vec3& about, Of&& of) const {
-        double total = numbers.empty() ? undefined : 0;
-        for (const std::size_t w : numbers) total += of(frame.engine.wall_load(w, about));
-        return total;
+        return SelectedWalls::sum([&](std::size_t w) { return of(frame.engine.wall_load(w, about)); });
     }
 };
 
@@ -36,7 +32,7 @@ public:
     }
 
 private:
-    Walls walls_;
+    LoadedWalls walls_;
     Vec3 along_;
     double area_;
 };
@@ -54,7 +50,7 @@ public:
     }
 
 private:
-    Walls walls_;
+    LoadedWalls walls_;
     Vec3 axis_, about_;
 };
 
@@ -66,39 +62,34 @@ public:
     }
 
 private:
-    Walls walls_;
+    LoadedWalls walls_;
 };
 
 class RollingTorque final : public machine::Probe {
 public:
     explicit RollingTorque(const Options& options) : walls_(options), axis_(options.vector("axis")) {}
     double look(const Frame& frame) override {
-        double sum = walls_.numbers.empty() ? undefined : 0;
-        for (const auto& contact : frame.contacts) {
-            if (contact.second >= 0) continue;
-            const auto wall = static_cast<std::size_t>(-1 - contact.second);
-            if (std::ranges::find(walls_.numbers, wall) != walls_.numbers.end())
-                sum += dot(contact.rolling_moment, axis_);
-        }
+        double sum = walls_.none() ? undefined : 0;
+        for (const auto& contact : frame.contacts)
+            if (walls_.touch(contact)) sum += dot(contact.rolling_moment, axis_);
         return sum;
     }
 
 private:
-    Walls walls_;
+    SelectedWalls walls_;
     Vec3 axis_;
 };
 
-constexpr Field wall_option = option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true);
 constexpr std::array force_options = {
-    wall_option, option("along", Field::Kind::direction, "", "the direction of the component", true)};
+    walls_option, option("along", Field::Kind::direction, "", "the direction of the component", true)};
 constexpr std::array torque_options = {
-    wall_option, option("axis", Field::Kind::direction, "", "the axis, right hand", true),
+    walls_option, option("axis", Field::Kind::direction, "", "the axis, right hand", true),
     option("about", Field::Kind::vector, "m", "a point on the axis; default: the origin")};
-constexpr std::array rolling_options = {wall_option,
+constexpr std::array rolling_options = {walls_option,
                                         option("axis", Field::Kind::direction, "", "the axis, right hand", true)};
-constexpr std::array work_options = {wall_option};
+constexpr std::array work_options = {walls_option};
 constexpr std::array pressure_options = {
-    wall_option, option("along", Field::Kind::direction, "", "the direction of the component", true),
+    walls_option, option("along", Field::Kind::direction, "", "the direction of the component", true),
     option("area", Field::Kind::quantity, "m2", "the area that carries it", true, {0, 1e6, true, false})};
 
 /// Of loads whose integral over time the engine keeps.

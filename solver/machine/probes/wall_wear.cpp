@@ -17,8 +17,8 @@ namespace {
 class WallWear final : public machine::Probe {
 public:
     explicit WallWear(const Options& options)
-        : walls_(options.numbers("wall")),
-          of_species_(options.numbers("of")),
+        : walls_(options),
+          of_(options),
           in_(options.region("in")),
           along_(options.vector("along", {})),
           bins_(bins_along(options)),
@@ -26,7 +26,8 @@ public:
 
     void step(const Frame& frame) override {
         for (const auto& contact : frame.contacts) {
-            if (!contact.slides || !(contact.normal_force > 0) || !counts(frame, contact)) continue;
+            if (!contact.slides || !(contact.normal_force > 0)) continue;
+            if (!walls_.touch(contact) || !of_.hold(frame, contact.first)) continue;
             const double wear = contact.normal_force * geometry::norm(contact.slip) * frame.time_step;
             if (!in_ && bins_.count == 0) {
                 wear_ += wear;
@@ -39,7 +40,7 @@ public:
             if (const std::size_t bin = bins_.at(geometry::dot(x, along_)); bin < bins_.count) in_bins_[bin] += wear;
         }
     }
-    double look(const Frame&) override { return walls_.empty() ? undefined : wear_; }
+    double look(const Frame&) override { return walls_.none() ? undefined : wear_; }
     void profile(const Frame&, std::vector<Sample>& into) override {
         append_bins(into, bins_, [this](std::size_t b) { return in_bins_[b]; });
     }
@@ -50,15 +51,8 @@ public:
     }
 
 private:
-    [[nodiscard]] bool counts(const Frame& frame, const dem::ContactForce& contact) const {
-        if (contact.second >= 0) return false;
-        const auto wall = static_cast<std::size_t>(-1 - contact.second);
-        const auto species = frame.species[static_cast<std::size_t>(contact.first)];
-        return std::ranges::find(walls_, wall) != walls_.end() &&
-               (of_species_.empty() || std::ranges::find(of_species_, species) != of_species_.end());
-    }
-
-    std::vector<std::size_t> walls_, of_species_;
+    SelectedWalls walls_;
+    SelectedSpecies of_;
     std::optional<Region> in_;
     Vec3 along_;
     Bins bins_;
@@ -66,11 +60,8 @@ private:
     std::vector<double> in_bins_;
 };
 
-constexpr Field worn_wall = option("wall", Field::Kind::walls, "", "the wall, or a list of walls", true);
-constexpr Field worn_in =
-    option("in", Field::Kind::region, "", "the region in which contacts count; default: everywhere");
-constexpr std::array wear_options = {worn_wall, species_option, worn_in};
-constexpr std::array wear_profile_options = {worn_wall,        species_option,  worn_in,    coordinate_option,
+constexpr std::array wear_options = {walls_option, species_option, contact_in_option};
+constexpr std::array wear_profile_options = {walls_option,     species_option,  contact_in_option, coordinate_option,
                                              first_bin_option, last_bin_option, bins_option};
 
 }  // namespace
