@@ -57,11 +57,7 @@ Region::Round within(Region::Round round, const geometry::Domain& domain) {
 /// Of a half space the outline of its plane in the domain; of combinations all their parts.
 void add_region(WallSurface& frame, const Region& region, const geometry::Domain& domain) {
     if (const auto* box = std::get_if<Region::Box>(&region.is)) {
-        Bounds seen{box->low, box->high};
-        for (std::size_t k = 0; k < 3; ++k) {
-            seen.low[k] = std::max(seen.low[k], domain.low[k]);
-            seen.high[k] = std::min(seen.high[k], domain.high[k]);
-        }
+        const Bounds seen = shared({box->low, box->high}, {domain.low, domain.high});
         add_box(seen.low, seen.high, frame);
     } else if (const auto* given = std::get_if<Region::Round>(&region.is)) {
         const Region::Round cut = within(*given, domain);
@@ -82,17 +78,8 @@ void add_region(WallSurface& frame, const Region& region, const geometry::Domain
             surface_of(dem::Wall(geometry::Plane{half->point, half->normal}), "", domain.low, domain.high, 0);
         for (std::size_t k = 0; k < polygon.corners.size(); ++k)
             add_line(frame, polygon.corners[k], polygon.corners[(k + 1) % polygon.corners.size()]);
-    } else if (!std::holds_alternative<Region::LevelSet>(region.is)) {  // the box beside it shows where
-        const auto* all = std::get_if<Region::All>(&region.is);
-        const auto* any = std::get_if<Region::Any>(&region.is);
-        const auto* moving = std::get_if<Region::Moving>(&region.is);
-        const auto* images = std::get_if<Region::Images>(&region.is);
-        const auto& parts = all != nullptr      ? all->of
-                            : any != nullptr    ? any->of
-                            : moving != nullptr ? moving->of
-                            : images != nullptr ? images->of
-                                                : std::get<Region::Not>(region.is).of;
-        for (const Region& part : parts) add_region(frame, part, domain);
+    } else {  // a level set has no parts: the box beside it shows where it is
+        each_part(region, [&](const Region& part) { add_region(frame, part, domain); });
     }
 }
 
@@ -128,12 +115,11 @@ void add_particles(Snapshot& picture, const Filled& filled) {
 
 void add_cells(Snapshot& picture, const Spec& spec) {
     constexpr int grid = 36;
-    for (const auto& fill : spec.fills) {
-        const auto* cut = std::get_if<Cut>(&fill);
-        const auto* set = cut != nullptr && cut->glued ? std::get_if<Region::LevelSet>(&cut->in.is) : nullptr;
+    for (const Cut& cut : of_kind<Cut>(spec.fills)) {
+        const auto* set = cut.glued ? std::get_if<Region::LevelSet>(&cut.in.is) : nullptr;
         if (set == nullptr) continue;
         const Region above{Region::LevelSet{set->cell, set->edge, 0, 1, set->at}};
-        const Vec3 high{cut->edge, cut->edge, cut->edge};
+        const Vec3 high{cut.edge, cut.edge, cut.edge};
         auto surface = geometry::level_surface([&](const Vec3& x) { return above.depth(x); }, {}, high, grid);
         picture.walls.push_back({"cell", std::move(surface.corners), std::move(surface.triangles), {}});
         add_box({}, high, picture.walls.back());
@@ -166,9 +152,8 @@ Snapshot drawing(const Spec& spec, const Filled& filled, double time) {
     }
     add_frame(picture, "domain", {Region::Box{spec.domain.low, spec.domain.high}}, spec.domain);
     int fills = 0;
-    for (const auto& fill : spec.fills)
-        if (const auto* region = std::get_if<Fill>(&fill))
-            add_frame(picture, "fill_" + std::to_string(++fills), region->in, spec.domain);
+    for (const Fill& fill : of_kind<Fill>(spec.fills))
+        add_frame(picture, "fill_" + std::to_string(++fills), fill.in, spec.domain);
     add_cells(picture, spec);
     for (const Feed& feed : spec.feeds) add_frame(picture, feed.name, feed.through, spec.domain);
     for (const Measure& measure : spec.measures) {

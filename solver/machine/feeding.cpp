@@ -23,13 +23,10 @@ Feeder::Feeder(const Spec& spec, std::size_t feed, std::uint64_t seed) : spec_(s
 }
 
 Vec3 Feeder::place(const Draws& draws, std::uint64_t series, std::uint64_t n) const {
-    const Bounds bounds = feed().through.bounds();
+    const auto [low, high] = bounds_in(spec_, feed().through);
     Vec3 x{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double low = std::max(bounds.low[k], spec_.domain.low[k]);
-        const double high = std::min(bounds.high[k], spec_.domain.high[k]);
-        x[k] = low + (high - low) * draws.uniform(place_draw, stats::splitmix64(series) + 3 * n + k);
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+        x[k] = low[k] + (high[k] - low[k]) * draws.uniform(place_draw, stats::splitmix64(series) + 3 * n + k);
     return x;
 }
 

@@ -255,19 +255,16 @@ void require_packing(std::string_view csv) {
 void require_out_of_walls(const Spec& spec) {
     constexpr std::size_t many = 100;  // spheres for which walls are prepared
     const auto walls = walls_in(spec, 0, {{0.0}, {}});
-    for (const auto& fill : spec.fills) {
-        const auto* placed = std::get_if<std::vector<Placed>>(&fill);
-        if (placed == nullptr) continue;
+    for (const auto& placed : of_kind<std::vector<Placed>>(spec.fills)) {
         double largest = 0;
-        for (const Placed& one : *placed)
+        for (const Placed& one : placed)
             largest = std::max(largest, one.sphere.radius * spec.species[one.species].girth());
         for (std::size_t w = 0; w < walls.size(); ++w) {
             if (!walls[w].present) continue;
             using Searches = dem::MovingWall::Searches;
-            dem::MovingWall wall(walls[w], spec.domain, largest,
-                                 placed->size() > many ? Searches::many : Searches::few);
+            dem::MovingWall wall(walls[w], spec.domain, largest, placed.size() > many ? Searches::many : Searches::few);
             wall.place(0);
-            require_out_of_wall(spec, w, wall, *placed);
+            require_out_of_wall(spec, w, wall, placed);
         }
     }
 }

@@ -60,16 +60,6 @@ bool has_shapes(const Spec& spec, const Fill& fill) {
     return std::ranges::any_of(fill.mix, [&](const auto& part) { return spec.species[part.first].shape.has_value(); });
 }
 
-/// The region as far as it is in the domain.
-Bounds bounds_in(const Spec& spec, const Region& region) {
-    Bounds bounds = region.bounds();
-    for (std::size_t k = 0; k < 3; ++k) {
-        bounds.low[k] = std::max(bounds.low[k], spec.domain.low[k]);
-        bounds.high[k] = std::min(bounds.high[k], spec.domain.high[k]);
-    }
-    return bounds;
-}
-
 /// Axes along which the bounds reach from one periodic face to the other.
 std::array<bool, 3> periodic_in(const Spec& spec, const Bounds& bounds) {
     std::array<bool, 3> periodic{};
@@ -418,13 +408,12 @@ std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& dra
 }
 
 void require_places(const Spec& spec) {
-    for (const auto& filling : spec.fills) {
-        const auto* fill = std::get_if<Fill>(&filling);
-        if (fill == nullptr || fill->as != Fill::As::lattice || fill->count > most_tried || fill->at > 0) continue;
-        if (has_shapes(spec, *fill)) continue;  // they may find a place at random
-        const Obstacles obstacles(spec, fill->mix, walls_in(spec, 0, {{0.0}, {}}), widest_in(spec, fill->mix), 0,
+    for (const Fill& fill : of_kind<Fill>(spec.fills)) {
+        if (fill.as != Fill::As::lattice || fill.count > most_tried || fill.at > 0) continue;
+        if (has_shapes(spec, fill)) continue;  // they may find a place at random
+        const Obstacles obstacles(spec, fill.mix, walls_in(spec, 0, {{0.0}, {}}), widest_in(spec, fill.mix), 0,
                                   dem::MovingWall::Searches::few);
-        require_all(spec, *fill, sites_in(spec, *fill, Pitch(spec, fill->mix), obstacles).size(), obstacles);
+        require_all(spec, fill, sites_in(spec, fill, Pitch(spec, fill.mix), obstacles).size(), obstacles);
     }
 }
 

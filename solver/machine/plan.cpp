@@ -105,9 +105,7 @@ double count_of(const Spec& spec, const Species& species) {
         for (const auto& [number, part] : mix) share += &spec.species[number] == &species ? part : 0;
         return share;
     };
-    for (const auto& filling : spec.fills)
-        if (const auto* fill = std::get_if<Fill>(&filling))
-            count += static_cast<double>(fill->count) * share_in(fill->mix);
+    for (const Fill& fill : of_kind<Fill>(spec.fills)) count += static_cast<double>(fill.count) * share_in(fill.mix);
     for (const Feed& feed : spec.feeds)
         count += feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix) * share_in(feed.mix);
     return count;
@@ -118,11 +116,9 @@ double count_of(const Spec& spec, const Species& species) {
 double height_of(const Spec& spec, const Fill& fill) {
     const double g = geometry::norm(spec.gravity);
     if (!(g > 0)) return 0;
-    const Bounds bounds = fill.in.bounds();
+    const auto [low, high] = bounds_in(spec, fill.in);
     double height = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        height += (std::min(bounds.high[k], spec.domain.high[k]) - std::max(bounds.low[k], spec.domain.low[k])) *
-                  std::abs(spec.gravity[k]) / g;
+    for (std::size_t k = 0; k < 3; ++k) height += (high[k] - low[k]) * std::abs(spec.gravity[k]) / g;
     const auto volume = fill.in.volume();
     const double solid = static_cast<double>(fill.count) * mean_volume(spec, fill.mix);
     return fill.as == Fill::As::random || !volume ? height
@@ -133,9 +129,9 @@ double height_of(const Spec& spec, const Fill& fill) {
 double fastest_fall(const Spec& spec) {
     const double g = geometry::norm(spec.gravity);
     double fastest = 0;
-    for (const auto& filling : spec.fills)
-        if (const auto* fill = std::get_if<Fill>(&filling); fill != nullptr && !fill->glued)
-            fastest = std::max(fastest, std::sqrt(2 * g * height_of(spec, *fill)) + geometry::norm(fill->velocity));
+    for (const Fill& fill : of_kind<Fill>(spec.fills))
+        if (!fill.glued)
+            fastest = std::max(fastest, std::sqrt(2 * g * height_of(spec, fill)) + geometry::norm(fill.velocity));
     return spec.feeds.empty() ? fastest : std::max(fastest, fastest_of(spec));
 }
 
@@ -174,10 +170,9 @@ void warn_of_falling(const Spec& spec, std::vector<Warning>& warnings) {
     const double g = geometry::norm(spec.gravity);
     const Phase& first = spec.phases.front();
     if (!(g > 0) || spec.phases.size() < 2 || !first.until.empty()) return;
-    for (const auto& filling : spec.fills) {
-        const auto* fill = std::get_if<Fill>(&filling);
-        if (fill == nullptr || fill->glued || fill->at > 0 || fill->as == Fill::As::packed) continue;
-        const double fall = std::sqrt(2 * height_of(spec, *fill) / g);
+    for (const Fill& fill : of_kind<Fill>(spec.fills)) {
+        if (fill.glued || fill.at > 0 || fill.as == Fill::As::packed) continue;
+        const double fall = std::sqrt(2 * height_of(spec, fill) / g);
         if (first.duration >= fall) continue;
         warnings.push_back({"powder still falling",
                             first.name + sentence(" lasts %.3g s and ends before a particle has fallen the height of "
@@ -188,22 +183,21 @@ void warn_of_falling(const Spec& spec, std::vector<Warning>& warnings) {
 }
 
 void warn_of_fillings(const Spec& spec, std::vector<Warning>& warnings) {
-    for (const auto& filling : spec.fills) {
-        const auto* fill = std::get_if<Fill>(&filling);
-        const auto volume = fill == nullptr ? std::nullopt : fill->in.volume();
+    for (const Fill& fill : of_kind<Fill>(spec.fills)) {
+        const auto volume = fill.in.volume();
         if (!volume) continue;
-        const double most = fill->as == Fill::As::packed  ? most_packed
-                            : fill->as == Fill::As::rain  ? most_rain
-                            : fill->as == Fill::As::cells ? std::numbers::pi / 6 / std::pow(fill->spacing, 3)
-                                                          : most_on_lattice;
-        const double solid = static_cast<double>(fill->count) * mean_volume(spec, fill->mix) / *volume;
-        if (solid > most && !fill->glued)
+        const double most = fill.as == Fill::As::packed  ? most_packed
+                            : fill.as == Fill::As::rain  ? most_rain
+                            : fill.as == Fill::As::cells ? std::numbers::pi / 6 / std::pow(fill.spacing, 3)
+                                                         : most_on_lattice;
+        const double solid = static_cast<double>(fill.count) * mean_volume(spec, fill.mix) / *volume;
+        if (solid > most && !fill.glued)
             warnings.push_back({"a filling that does not fit",
-                                spec.species[fill->mix.front().first].name +
+                                spec.species[fill.mix.front().first].name +
                                     sentence(": the region holds at most about %.3g particles filled in this way, and "
                                              "the filling has %.3g: enlarge the region or take fewer",
-                                             std::floor(most / solid * static_cast<double>(fill->count)),
-                                             static_cast<double>(fill->count))});
+                                             std::floor(most / solid * static_cast<double>(fill.count)),
+                                             static_cast<double>(fill.count))});
     }
 }
 
@@ -360,13 +354,9 @@ void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
 /// Returns the width of the powder across a direction, m2: the largest of the fillings.
 double area_across(const Spec& spec, const Vec3& along) {
     double largest = 0;
-    for (const auto& filling : spec.fills) {
-        const auto* fill = std::get_if<Fill>(&filling);
-        if (fill == nullptr) continue;
-        const Bounds bounds = fill->in.bounds();
-        Vec3 size{};
-        for (std::size_t k = 0; k < 3; ++k)
-            size[k] = std::min(bounds.high[k], spec.domain.high[k]) - std::max(bounds.low[k], spec.domain.low[k]);
+    for (const Fill& fill : of_kind<Fill>(spec.fills)) {
+        const auto [low, high] = bounds_in(spec, fill.in);
+        const Vec3 size = geometry::operator-(high, low);
         const double area = std::abs(along[0]) * size[1] * size[2] + std::abs(along[1]) * size[0] * size[2] +
                             std::abs(along[2]) * size[0] * size[1];
         largest = std::max(largest, area);
@@ -447,16 +437,15 @@ double seconds_between(const Spec& spec, std::size_t from, std::size_t to) {
 
 /// Adds what particles cost that are filled later or taken away.
 void add_later(const Spec& spec, double& work, double& most) {
-    for (const auto& one : spec.fills) {
-        const auto* fill = std::get_if<Fill>(&one);
-        if (fill == nullptr || fill->glued) continue;
-        const double spheres = static_cast<double>(fill->count) * cost_in(spec, fill->mix);
+    for (const Fill& fill : of_kind<Fill>(spec.fills)) {
+        if (fill.glued) continue;
+        const double spheres = static_cast<double>(fill.count) * cost_in(spec, fill.mix);
         std::size_t taken = spec.phases.size();
         for (const Removal& removal : spec.removals)
-            if (removal.at > fill->at) taken = std::min(taken, removal.at);
+            if (removal.at > fill.at) taken = std::min(taken, removal.at);
         const double gone = (1 - still_there) * seconds_between(spec, taken, spec.phases.size());
-        if (fill->at > 0) {
-            work += spheres * seconds_between(spec, fill->at, spec.phases.size());
+        if (fill.at > 0) {
+            work += spheres * seconds_between(spec, fill.at, spec.phases.size());
             most += taken < spec.phases.size() ? still_there * spheres : spheres;
         }
         work -= spheres * gone;
@@ -465,9 +454,8 @@ void add_later(const Spec& spec, double& work, double& most) {
 
 double frozen_of(const Spec& spec) {
     double count = 0;
-    for (const auto& one : spec.fills)
-        if (const auto* fill = std::get_if<Fill>(&one); fill != nullptr && fill->glued)
-            count += static_cast<double>(fill->count);
+    for (const Fill& fill : of_kind<Fill>(spec.fills))
+        if (fill.glued) count += static_cast<double>(fill.count);
     return count;
 }
 

@@ -195,13 +195,7 @@ Bounds bounds_of(const Region::Moving& moving) {
 
 Bounds bounds_of(const Region::All& all) {
     Bounds bounds = everywhere;
-    for (const Region& region : all.of) {
-        const Bounds one = region.bounds();
-        for (std::size_t k = 0; k < 3; ++k) {
-            bounds.low[k] = std::max(bounds.low[k], one.low[k]);
-            bounds.high[k] = std::min(bounds.high[k], one.high[k]);
-        }
-    }
+    for (const Region& region : all.of) bounds = shared(bounds, region.bounds());
     return bounds;
 }
 
@@ -341,6 +335,14 @@ RegionNow::RegionNow(const Region& region) : still_(&region) {
     half_ = std::get_if<HalfRegion>(&still_->is);
 }
 
+Bounds shared(Bounds one, const Bounds& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        one.low[k] = std::max(one.low[k], other.low[k]);
+        one.high[k] = std::min(one.high[k], other.high[k]);
+    }
+    return one;
+}
+
 bool Region::contains(const Vec3& x) const {
     if (const auto* all = std::get_if<All>(&is))
         return std::ranges::all_of(all->of, [&](const Region& one) { return one.contains(x); });
@@ -356,13 +358,8 @@ Bounds Region::bounds() const {
 }
 
 void Region::each_moving(const std::function<void(Moving&)>& visit) {
-    std::visit(
-        [&](auto& region) {
-            if constexpr (requires { region.moved; }) visit(region);
-            if constexpr (requires { region.of; })
-                for (Region& part : region.of) part.each_moving(visit);
-        },
-        is);
+    if (auto* moving = std::get_if<Moving>(&is)) visit(*moving);
+    each_part(*this, [&](Region& part) { part.each_moving(visit); });
 }
 
 /// `all`: also those that no centre within the faces needs: of a region that is somewhere else at another time, or that
@@ -383,13 +380,7 @@ static Region with_images(Region region, const geometry::Domain& domain, bool al
         beyond = beyond || (ends && (all || box.low[k] < domain.low[k] || box.high[k] > domain.high[k]));
     }
     if (beyond) return {Region::Images{{std::move(region)}, domain}};
-    if (endless)
-        std::visit(
-            [&](auto& combined) {
-                if constexpr (requires { combined.of; })
-                    for (Region& part : combined.of) part = with_images(std::move(part), domain, all);
-            },
-            region.is);
+    if (endless) each_part(region, [&](Region& part) { part = with_images(std::move(part), domain, all); });
     return region;
 }
 

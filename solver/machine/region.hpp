@@ -23,6 +23,8 @@ using geometry::Vec3;
 struct Bounds {
     Vec3 low{}, high{};
 };
+/// Returns what two boxes share: nothing where a lower end lies above the upper one.
+[[nodiscard]] Bounds shared(Bounds one, const Bounds& other);
 
 struct Region;
 
@@ -107,6 +109,17 @@ struct Region {
     /// Returns the error of its numbers, in one sentence; empty: none.
     [[nodiscard]] const char* flaw() const;
 };
+
+/// Calls visit(part) for the regions that a region is made of.
+template <class R, class Visit>
+void each_part(R& region, Visit&& visit) {
+    std::visit(
+        [&](auto& made) {
+            if constexpr (requires { made.of; })
+                for (auto& part : made.of) visit(part);
+        },
+        region.is);
+}
 
 /// Region at one moment; the region must outlive it. Answers as contains() does, for boxes and half spaces, moving or
 /// not, in a few comparisons.

@@ -49,8 +49,8 @@ std::int64_t every_steps(double every, double step) {
 std::vector<dem::ToCome> to_come_of(const Spec& spec) {
     std::vector<const Mix*> mixes;
     for (const Feed& feed : spec.feeds) mixes.push_back(&feed.mix);
-    for (const auto& one : spec.fills)
-        if (const auto* fill = std::get_if<Fill>(&one); fill != nullptr && fill->at > 0) mixes.push_back(&fill->mix);
+    for (const Fill& fill : of_kind<Fill>(spec.fills))
+        if (fill.at > 0) mixes.push_back(&fill.mix);
     std::vector<dem::ToCome> all;
     for (const Mix* mix : mixes)
         for (const auto& [number, share] : *mix) {
@@ -86,8 +86,7 @@ Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
             moving.moved = followers_.back().way;
         });
     };
-    for (auto& one : spec_.fills)
-        if (auto* fill = std::get_if<Fill>(&one)) follow(fill->in);
+    for (Fill& fill : of_kind<Fill>(spec_.fills)) follow(fill.in);
     for (Feed& feed : spec_.feeds) follow(feed.through);
     each_region(spec_, follow);
     const auto walls = walls_in(spec_, 0, {.begin = {0}, .end = {}});  // fillings are made before the engine
@@ -96,9 +95,8 @@ Run::Run(Spec spec, std::uint64_t seed, Artefacts* artefacts)
     counts_ = start.counts;
     for (Phase& phase : spec_.phases)
         if (phase.every) phase.frames = (steps_in(phase.duration) - 1) / every_steps(*phase.every, spec_.time_step) + 1;
-    for (const auto& fill : spec_.fills)
-        if (const auto* cut = std::get_if<Cut>(&fill); cut != nullptr && cut->tight)
-            tight_ = std::min(*cut->tight, tight_.value_or(*cut->tight));
+    for (const Cut& cut : of_kind<Cut>(spec_.fills))
+        if (cut.tight) tight_ = std::min(*cut.tight, tight_.value_or(*cut.tight));
     dem::Setup setup = setup_of(spec_, start);
     setup.to_come = to_come_of(spec_);
     named_ = start.named;

@@ -93,11 +93,8 @@ void Run::take_away() {
 }
 
 void Run::fill_again() {
-    const auto here = [this](const auto& one) {
-        const auto* fill = std::get_if<Fill>(&one);
-        return fill != nullptr && fill->at == phase_;
-    };
-    if (phase_ == 0 || std::ranges::none_of(spec_.fills, here)) return;
+    const auto here = [this](const Fill& fill) { return fill.at == phase_; };
+    if (phase_ == 0 || std::ranges::none_of(of_kind<Fill>(spec_.fills), here)) return;
     const Frame frame = look(Contacts::none);
     try {
         newest_ = species_.size();

@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <variant>
@@ -274,5 +275,17 @@ struct Spec {
     std::optional<double> step_share;      ///< of dem::Setup
     dem::Method method;
 };
+
+/// Returns the region as far as it is in the domain.
+[[nodiscard]] inline Bounds bounds_in(const Spec& spec, const Region& region) {
+    return shared(region.bounds(), {spec.domain.low, spec.domain.high});
+}
+
+/// Returns the fillings of one kind, in their order.
+template <class Kind, class Fills>
+[[nodiscard]] auto of_kind(Fills& fills) {
+    return fills | std::views::filter([](const auto& fill) { return std::holds_alternative<Kind>(fill); }) |
+           std::views::transform([](auto& fill) -> auto& { return std::get<Kind>(fill); });
+}
 
 }  // namespace grainsweep::machine
