@@ -11,6 +11,7 @@
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/dem/walls/wall.hpp"
+#include "solver/geometry/domain.hpp"
 
 #include <array>
 #include <cstddef>
@@ -35,12 +36,7 @@ struct Sphere {
     std::uint8_t kind = 0;    ///< of Setup::kinds
 };
 
-/// Domain: periodic faces wrap; a particle whose centre passes an open face is removed.
-struct Domain {
-    Vec3 low{};
-    Vec3 high{};
-    std::array<bool, 3> periodic{};
-};
+using geometry::Domain;  // a particle whose centre passes an open face is removed
 
 /// Shaking of the vessel, which consists of frozen spheres, walls and domain. Its displacement is amplitude sin(2 pi
 /// frequency t), t since the start. All positions and velocities in this interface are in the frame of the vessel. In

@@ -91,7 +91,7 @@ void check_spheres(const Setup& setup) {
     }
     const double largest = radii_of(setup).largest;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double length = setup.domain.high[k] - setup.domain.low[k];
+        const double length = setup.domain.length(k);
         require(positive(length), "the domain must have a finite extent along every axis");
         // A particle must reach a partner through one image only.
         require(!setup.domain.periodic[k] || length > 4 * largest,
@@ -107,8 +107,7 @@ void check_bridges(const Setup& setup, const std::vector<Material>& materials) {
         for (const Material& m : materials)
             if (one.gap != nullptr) longest = std::max(longest, one.gap(m, largest / 2));
     for (std::size_t k = 0; k < 3; ++k)
-        require(!(longest > 0) || !setup.domain.periodic[k] ||
-                    setup.domain.high[k] - setup.domain.low[k] > 2.02 * (2 * largest + longest),
+        require(!(longest > 0) || !setup.domain.periodic[k] || setup.domain.length(k) > 2.02 * (2 * largest + longest),
                 "a period must be longer than two of the largest diameters and of the longest bridges");
 }
 
@@ -166,7 +165,7 @@ void require_possible(std::span<const Body> bodies, const Setup& setup, std::spa
                     "the spheres of a clump are mobile, of one kind, and have the radii of its shape");
         }
         for (std::size_t k = 0; k < 3; ++k)
-            require(!setup.domain.periodic[k] || setup.domain.high[k] - setup.domain.low[k] > 4 * reach,
+            require(!setup.domain.periodic[k] || setup.domain.length(k) > 4 * reach,
                     "a period must be longer than two of the largest clumps");
     }
 }
@@ -222,8 +221,7 @@ void require_possible(const Setup& setup, const Method& method) {
     if (method.skin > 0) {
         const double largest = radii_of(setup).largest;
         for (std::size_t k = 0; k < 3; ++k)
-            require(!setup.domain.periodic[k] ||
-                        setup.domain.high[k] - setup.domain.low[k] > 2 * (2 * largest + method.skin),
+            require(!setup.domain.periodic[k] || setup.domain.length(k) > 2 * (2 * largest + method.skin),
                     "a period must be longer than twice the largest diameter plus the skin");
     }
 }

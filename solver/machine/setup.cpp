@@ -218,7 +218,7 @@ std::size_t shape_number(const Spec& spec, std::size_t species) {
 
 dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     dem::Setup setup;
-    setup.domain = {spec.domain.low, spec.domain.high, spec.domain.periodic};
+    setup.domain = spec.domain;
     setup.material = spec.pairs.front();
     setup.material.density = spec.densities.front();
     if (spec.densities.size() > 1) setup.kinds = {spec.densities, spec.pairs};

@@ -52,7 +52,7 @@ ClumpDeviation clump_deviation(const std::string& name, const json& c, const Vec
     const auto engine = dem::make_engine(setup, method);
     ClumpDeviation d;
     dem::State state;
-    const Domain domain{setup.domain.low, setup.domain.high, setup.domain.periodic};
+    const Domain& domain = setup.domain;
     for (std::size_t r = 0; r < table.rows; ++r) {
         engine->run(static_cast<std::int64_t>(table.at("step", r)) - engine->work().steps);
         EXPECT_EQ(engine->fault(), "") << name;

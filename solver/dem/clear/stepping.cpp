@@ -43,7 +43,7 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       rolls_(laws.traits().rolls),
       reaches_(laws.traits().reaches),
       remembers_separation_(laws.traits().remembers_separation),
-      domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
+      domain_(setup.domain),
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
       shaking_(setup.shaking),

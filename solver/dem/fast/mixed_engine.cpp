@@ -58,7 +58,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       control_(setup.step_share),
       time_step_(setup.time_step),
       spheres_at_start_(static_cast<std::int32_t>(setup.spheres.size())),
-      crossings_(setup.counting, {setup.domain.low, setup.domain.high, setup.domain.periodic}) {
+      crossings_(setup.counting, setup.domain) {
     if (densities_.empty()) densities_ = {setup.material.density};
     field_.constants = make_constants(setup, space_.scale, needs_);
     for (const Material& m : table_.pairs()) laws_.push_back(make_contact(needs_.combination, m));
@@ -66,7 +66,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     const double apart = laws_.front()->traits().acts_apart ? static_cast<double>(field_.constants.beyond) : 0;
     for (std::size_t a = 0; a < 3; ++a)
         if (setup.domain.periodic[a]) {
-            const double period = (setup.domain.high[a] - setup.domain.low[a]) / space_.scale.length;
+            const double period = setup.domain.length(a) / space_.scale.length;
             largest_skin_ = std::min(largest_skin_, static_cast<float>(0.5 * period - 1 - apart));
         }
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
@@ -187,7 +187,7 @@ std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path,
     require_possible(setup);
     const double diameter = 2 * radii_of(setup).largest;
     for (std::size_t a = 0; a < 3; ++a)
-        if (setup.domain.periodic[a] && setup.domain.high[a] - setup.domain.low[a] < 2.02 * diameter)
+        if (setup.domain.periodic[a] && setup.domain.length(a) < 2.02 * diameter)
             throw std::invalid_argument("a period must be at least 2.02 of the largest diameters long");
     if (path == Method::Path::best) path = best_path();
     if (!supports(path)) throw std::invalid_argument("this processor lacks the instructions of the path asked for");

@@ -451,7 +451,7 @@ void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& spac
              Clumps* clumps, std::size_t ids_so_far) {
     if (resting != nullptr) resting->compare_forces(f, steps);
     std::vector<std::int32_t> removed(ids.begin(), ids.end());
-    if (clumps != nullptr) clumps->take_out({space.domain.low, space.domain.high, space.domain.periodic}, removed);
+    if (clumps != nullptr) clumps->take_out(space.domain, removed);
     const std::int32_t kept = take_out(f, c, space, removed, parts);
     sort_particles(f, c, space, kept, parts);
     place_fillers(f);

@@ -17,7 +17,7 @@ using std::numbers::pi;
 double largest_radius(const Setup& setup) {
     if (const double radius = radii_of(setup).largest; radius > 0) return radius;
     double span = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < 3; ++a) span = std::min(span, setup.domain.high[a] - setup.domain.low[a]);
+    for (std::size_t a = 0; a < 3; ++a) span = std::min(span, setup.domain.length(a));
     return span > 0 && std::isfinite(span) ? 0.01 * span : 1;
 }
 

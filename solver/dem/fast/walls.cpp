@@ -109,7 +109,7 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
         }
         std::copy_n(constants_.back().data(), constants_at_most, placed_[w].laws);
         placed_[w].laws_of_kinds = constants_.back().data();
-        moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
+        moving_.emplace_back(walls[w], domain, 0.5 * scale.length);
         any_free_ = any_free_ || moving_.back().free();
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());
@@ -135,8 +135,7 @@ void Walls::use_scale(const Scale& scale, const ContactTable& table) {
 std::vector<MovingWall> Walls::moving_as(const std::vector<Wall>& walls, const Domain& domain) const {
     if (walls.size() != count()) throw std::invalid_argument("walls that change keep their number");
     std::vector<MovingWall> changed;
-    for (std::size_t w = 0; w < count(); ++w)
-        changed.push_back(moving_[w].moving_as(walls[w], {domain.low, domain.high, domain.periodic}));
+    for (std::size_t w = 0; w < count(); ++w) changed.push_back(moving_[w].moving_as(walls[w], domain));
     return changed;
 }
 

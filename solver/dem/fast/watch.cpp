@@ -31,7 +31,7 @@ Watch::Watch(const Setup& setup, const Scale& scale)
       seen_(setup.spheres.size()) {
     for (std::size_t a = 0; a < 3; ++a)
         if (domain_.periodic[a] && gravity_[a] != 0)
-            quarter_period_ = std::min(quarter_period_, (domain_.high[a] - domain_.low[a]) / scale.length / 4);
+            quarter_period_ = std::min(quarter_period_, domain_.length(a) / scale.length / 4);
 }
 
 double Watch::kinetic(const Moment& now) const {
@@ -83,10 +83,9 @@ void Watch::set_limit(const Moment& now, std::span<const MovingWall> walls) {
         if (w.present()) wall = std::max(wall, w.fastest());
     for (std::size_t a = 0; a < 3; ++a)  // through the domain; without limit along a periodic axis
         if (gravity_[a] != 0)
-            free_fall =
-                domain_.periodic[a]
-                    ? std::numeric_limits<double>::infinity()
-                    : std::hypot(free_fall, std::sqrt(2 * std::abs(gravity_[a]) * (domain_.high[a] - domain_.low[a])));
+            free_fall = domain_.periodic[a]
+                            ? std::numeric_limits<double>::infinity()
+                            : std::hypot(free_fall, std::sqrt(2 * std::abs(gravity_[a]) * domain_.length(a)));
     const double active = kinetic(now) + now.stored.squeezed;
     const double released = std::isfinite(lightest) ? std::sqrt(2 * active / lightest) : 0;
     speed_limit_ = largest_sound_speed_factor * (start + wall + shaking_speed_ + free_fall + released);
