@@ -83,8 +83,8 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
         write_wall(contacts.wall.wall(), [&out](const auto& value) { out.put(value); });
         out.put(contacts.near);
         out.put(contacts.built);
-        if (contacts.wall.free()) out.put(contacts.pose_when_built), out.put(contacts.wall.energy());
-        if (contacts.wall.wall().integrated) out.put(contacts.wall.integrals());
+        if (contacts.wall.free()) out.put(contacts.pose_when_built);
+        MovingWall::for_each_sum(contacts.wall, [&out](const auto& value) { out.put(value); });
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;
@@ -167,16 +167,8 @@ void ClearEngine::restore_walls(ByteReader& in) {
         in.get(contacts.built);
         in.require(std::isfinite(contacts.built));
         contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
-        if (contacts.wall.free()) {
-            geometry::BodyEnergy energy;
-            in.get(contacts.pose_when_built), in.get(energy);
-            contacts.wall.take_energy(energy);
-        }
-        if (contacts.wall.wall().integrated) {
-            LoadIntegrals integrals;
-            in.get(integrals);
-            contacts.wall.take_integrals(integrals);
-        }
+        if (contacts.wall.free()) in.get(contacts.pose_when_built);
+        MovingWall::for_each_sum(contacts.wall, [&in](auto& value) { in.get(value); });
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;

@@ -243,10 +243,8 @@ void Walls::save(Writer& archive) const {
     for (const MovingWall& wall : moving_) write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
     archive.list(sums_);
     archive.list(work_);
-    for (const MovingWall& wall : moving_) {
-        if (wall.free()) archive.value(wall.energy());
-        if (wall.wall().integrated) archive.value(wall.integrals());
-    }
+    for (const MovingWall& wall : moving_)
+        MovingWall::for_each_sum(wall, [&](const auto& value) { archive.value(value); });
 }
 
 Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale, std::int32_t combination,
@@ -257,18 +255,7 @@ Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale,
     archive.list(walls.work_);
     if (walls.sums_.size() != count || walls.work_.size() != count)
         throw std::invalid_argument("the checkpoint holds values that no state has");
-    for (MovingWall& wall : walls.moving_) {
-        if (wall.free()) {
-            geometry::BodyEnergy energy;
-            archive.value(energy);
-            wall.take_energy(energy);
-        }
-        if (wall.wall().integrated) {
-            LoadIntegrals integrals;
-            archive.value(integrals);
-            wall.take_integrals(integrals);
-        }
-    }
+    for (MovingWall& wall : walls.moving_) MovingWall::for_each_sum(wall, [&](auto& value) { archive.value(value); });
     return walls;
 }
 

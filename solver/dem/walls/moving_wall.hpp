@@ -67,15 +67,18 @@ public:
     void drift(double span);
     /// What changed the kinetic energy of a free wall since the walls were set.
     [[nodiscard]] const geometry::BodyEnergy& energy() const { return energy_; }
-    /// That of a checkpoint.
-    void take_energy(const geometry::BodyEnergy& energy) { energy_ = energy; }
 
     /// Adds a load that acts for `span`, s; the torque is about a point.
     void integrate(const Vec3& force, const Vec3& torque, const Vec3& about, double span);
-    [[nodiscard]] const LoadIntegrals& integrals() const { return integrals_; }
-    void take_integrals(const LoadIntegrals& integrals) { integrals_ = integrals; }
     [[nodiscard]] const Vec3& impulse() const { return integrals_.impulse; }
     [[nodiscard]] Vec3 angular_impulse(const Vec3& about) const;
+
+    /// Calls visit for what a checkpoint has of it beside its Wall.
+    template <class Self, class Visit>
+    static void for_each_sum(Self& self, Visit&& visit) {
+        if (self.free_) visit(self.energy_);
+        if (self.wall_.integrated) visit(self.integrals_);
+    }
 
     [[nodiscard]] const Wall& wall() const { return wall_; }
     /// Returns the shape in its body frame that is searched for contacts; with its images if a particle can touch
