@@ -1,7 +1,9 @@
 // Limits of a sound state. Beyond them the case is reported as unstable and has no result.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace grainsweep::dem {
@@ -37,6 +39,15 @@ inline constexpr double deepest_frozen = 0.05;
 /// Returns the fault of a contact in words that "with" and its partner follow; empty: none. `share`: its overlap
 /// divided by the smaller diameter, at most `deepest`. `swing`: rad per step.
 [[nodiscard]] std::string flaw_of_contact(double share, double swing, double deepest = largest_sound_overlap);
+/// Returns the fault of a particle that is faster than the limit of the case, m/s.
+[[nodiscard]] std::string flaw_of_speed(double speed, double limit);
+/// Returns the fault of a wall with this number that moves at a speed, m/s; empty: none. In a step of a length, s, it
+/// must not move farther than the smallest radius, m.
+[[nodiscard]] std::string flaw_of_wall_speed(std::size_t wall, double speed, double step, double smallest_radius,
+                                             std::int64_t steps);
+/// Returns the end of a fault: its particle with the place, m, the steps so far, and the time, s.
+[[nodiscard]] std::string place_and_time(std::int32_t id, const std::array<double, 3>& place, std::int64_t steps,
+                                         double time);
 /// Returns the fault of a wall with this number that a frozen sphere lies in.
 [[nodiscard]] std::string flaw_of_frozen(std::size_t wall);
 

@@ -30,10 +30,7 @@ bool ClearEngine::sound() {
                           speed * part_ / radius(i), largest_sound_displacement);
             report(text, i);
         } else if (speed > speed_limit_) {
-            std::snprintf(text, sizeof text,
-                          "a particle moves at %.4g m/s, above the most this case can produce (%.4g m/s)", speed,
-                          speed_limit_);
-            report(text, i);
+            report(flaw_of_speed(speed, speed_limit_), i);
         }
     }
     return fault_.empty();
@@ -73,14 +70,7 @@ void ClearEngine::judge_wall_speeds() {
     for (std::size_t i = 0; i < p_.size(); ++i) least = std::min(least, radius(i));
     for (std::size_t w = 0; w < walls_.size() && fault_.empty(); ++w) {
         if (!walls_[w].wall.present()) continue;
-        const double share = walls_[w].wall.fastest_surface() * part_ / least;
-        char text[200];
-        std::snprintf(text, sizeof text,
-                      "wall %zu moves at %.4g m/s, %.3g of the smallest radius in one time step (limit %.3g), after "
-                      "%lld steps",
-                      w, walls_[w].wall.fastest_surface(), share, largest_sound_displacement,
-                      static_cast<long long>(work_.steps));
-        if (!(share <= largest_sound_displacement)) fault_ = text;
+        fault_ = flaw_of_wall_speed(w, walls_[w].wall.fastest_surface(), part_, least, work_.steps);
     }
 }
 
@@ -146,11 +136,7 @@ void ClearEngine::check_network() {
 /// The first fault stays: later ones follow from it.
 void ClearEngine::report(const std::string& what, std::size_t i) {
     if (!fault_.empty()) return;
-    char where[200];
-    const Vec3& x = p_.position[i];
-    std::snprintf(where, sizeof where, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", p_.id[i],
-                  x[0], x[1], x[2], static_cast<long long>(work_.steps), time_after(work_.steps));
-    fault_ = what + where;
+    fault_ = what + place_and_time(p_.id[i], p_.position[i], work_.steps, time_after(work_.steps));
 }
 
 void ClearEngine::report_contacts() {

@@ -17,15 +17,9 @@ namespace grainsweep::dem::fast {
 namespace {
 
 std::string where_and_when(const FaultView& s, std::int32_t i) {
-    char text[200];
-    double x[3];
-    for (int a = 0; a < 3; ++a) {
-        const auto axis = static_cast<std::size_t>(a);
-        x[a] = s.scale.centre[axis] + s.field.records[i].position[a] * s.scale.unit[axis];
-    }
-    std::snprintf(text, sizeof text, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", s.id[i], x[0],
-                  x[1], x[2], static_cast<long long>(s.steps), s.time);
-    return text;
+    Vec3 x{};
+    for (std::size_t a = 0; a < 3; ++a) x[a] = s.scale.centre[a] + s.field.records[i].position[a] * s.scale.unit[a];
+    return place_and_time(s.id[i], x, s.steps, s.time);
 }
 
 /// Words for a limit that the time step sets.
@@ -140,10 +134,7 @@ std::string describe_faster_than(const FaultView& s, double limit) {
         if (speed > most) most = speed, worst = i;
     }
     if (!(most > limit)) return {};
-    char text[160];
-    std::snprintf(text, sizeof text, "a particle moves at %.4g m/s, above the most this case can produce (%.4g m/s)",
-                  most, limit);
-    return text + where_and_when(s, worst);
+    return flaw_of_speed(most, limit) + where_and_when(s, worst);
 }
 
 std::string describe(const FaultView& s, const std::string& what, std::int32_t i) {

@@ -1,7 +1,6 @@
 #include "solver/dem/fast/walls.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -195,15 +194,8 @@ void Walls::bound_velocities(double time, bool free, Tally& tally) const {
 std::string Walls::too_fast(double smallest_radius, std::int64_t steps) const {
     for (std::size_t w = 0; w < count(); ++w) {
         if (!moving_[w].present()) continue;
-        const double share = moving_[w].fastest_surface() * scale_.time / smallest_radius;
-        if (share <= largest_sound_displacement) continue;
-        char text[200];
-        std::snprintf(text, sizeof text,
-                      "wall %zu moves at %.4g m/s, %.3g of the smallest radius in one time step (limit %.3g), after "
-                      "%lld steps",
-                      w, moving_[w].fastest_surface(), share, largest_sound_displacement,
-                      static_cast<long long>(steps));
-        return text;
+        std::string flaw = flaw_of_wall_speed(w, moving_[w].fastest_surface(), scale_.time, smallest_radius, steps);
+        if (!flaw.empty()) return flaw;
     }
     return {};
 }
