@@ -351,20 +351,29 @@ double MixedEngine::half_spin_change(std::int32_t i, int a) const {
     return 0.5 * static_cast<double>(field_.forces[i].torque[a]) * static_cast<double>(r.inverse_mass) / inertia;
 }
 
-/// Moves the stored half-step velocities to the full step, and clears the forces.
-void MixedEngine::full_step_velocities() {
-    clumps_.gather(field_, space_.scale);
-    clumps_.shift(0.5, space_.scale.time, acceleration_);
+/// Moves velocities and spins of particles by half a step, forwards (1) or back (-1).
+void MixedEngine::shift_velocities(double way) {
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
         Residual residual = residual_of(field_, i);
         for (int a = 0; a < 3; ++a) {
-            const double v =
-                static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a);
+            const double v = static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) +
+                             way * half_change(i, a);
             r.velocity[a] = static_cast<float>(v);
             residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
-            set_spin(field_, i, a, static_cast<float>(static_cast<double>(r.spin[a]) + half_spin_change(i, a)));
+            set_spin(field_, i, a, static_cast<float>(static_cast<double>(r.spin[a]) + way * half_spin_change(i, a)));
         }
+        leave_over(field_, i, residual);
+    }
+}
+
+/// Moves the stored half-step velocities to the full step, and clears the forces.
+void MixedEngine::full_step_velocities() {
+    clumps_.gather(field_, space_.scale);
+    clumps_.shift(0.5, space_.scale.time, acceleration_);
+    shift_velocities(1);
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        const Residual residual = residual_of(field_, i);
         field_.forces[i] = Force{};
         leave_over(field_, i, residual);
     }
@@ -385,18 +394,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     sweep_pairs(false, false, true);
     field_.history_step = 1;
     note_overlaps();
-    for (std::int32_t i = 0; i < field_.count; ++i) {
-        Record& r = field_.records[i];
-        Residual residual = residual_of(field_, i);
-        for (int a = 0; a < 3; ++a) {
-            const double v =
-                static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) - half_change(i, a);
-            r.velocity[a] = static_cast<float>(v);
-            residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
-            set_spin(field_, i, a, static_cast<float>(static_cast<double>(r.spin[a]) - half_spin_change(i, a)));
-        }
-        leave_over(field_, i, residual);
-    }
+    shift_velocities(-1);
     clumps_.gather(field_, space_.scale);
     clumps_.shift(-0.5, space_.scale.time, acceleration_);
     clumps_.write_motions(field_, space_.scale);

@@ -120,6 +120,7 @@ private:
     void advance_particles();
     void sweep_pairs(bool goes_on, bool advance, bool keep_histories);
     void join_lists() const { subdomains_.join(field_, columns_); }
+    void shift_velocities(double way);
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
     void shake();
