@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/wall_lists.hpp"
 #include "solver/dem/material.hpp"
 
@@ -119,8 +120,7 @@ void ContactReader::for_each_parked(Visit&& visit) const {
 
 template <class Visit>
 void ContactReader::look_at(std::int32_t k, std::optional<std::int64_t> place, Visit&& visit) const {
-    const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
-    const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
+    const std::int32_t i = index_at(field_.inner_first[k]), j = index_at(field_.inner_second[k]);
     if (i >= field_.count || j >= field_.count) return;  // they fill the list up
     Touch<Partner::particle> t;
     if (!near(i, j, t)) return;

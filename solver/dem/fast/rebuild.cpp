@@ -1,6 +1,7 @@
 #include "solver/dem/fast/rebuild.hpp"
 
 #include "solver/dem/fast/clumps.hpp"
+#include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/parts.hpp"
 #include "solver/dem/fast/resting.hpp"
 #include "solver/dem/fast/wall_lists.hpp"
@@ -215,18 +216,11 @@ void sort_particles(Field& f, Columns& c, const ListSpace& space, std::int32_t k
 
 // ---- pairs and their contacts
 
-Place place_of(std::int32_t index) {
-    return static_cast<Place>(index * places_per_index);
-}
-std::int32_t index_of(Place place) {
-    return static_cast<std::int32_t>(place / places_per_index);
-}
-
 void pad_pairs(const Field& f, Columns& c) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(spare); ++k) {
         const std::size_t at = static_cast<std::size_t>(f.outer_count) + k;
-        c.outer_first[at] = place_of(f.count);
-        c.outer_second[at] = place_of(f.count + 1);
+        c.outer_first[at] = place_at(f.count);
+        c.outer_second[at] = place_at(f.count + 1);
         c.outer_reach[at] = 0;
     }
 }
@@ -306,7 +300,7 @@ void leave_out_own_pairs(Field& f) {
         const std::int32_t begin = f.row[i], end = f.row[i + 1], body = body_of(i);
         f.row[i] = to;
         for (std::int32_t k = begin; k < end; ++k) {
-            if (body >= 0 && body_of(index_of(f.outer_second[k])) == body) continue;
+            if (body >= 0 && body_of(index_at(f.outer_second[k])) == body) continue;
             f.outer_first[to] = f.outer_first[k];
             f.outer_second[to] = f.outer_second[k];
             f.outer_reach[to] = f.outer_reach[k];
@@ -334,7 +328,7 @@ void for_each_contact(const Field& f, Range vectors, std::int32_t stream, std::i
     for (std::int32_t b = vectors.begin; b < vectors.end; ++b)
         for (unsigned m = f.touching[b]; m != 0; m &= m - 1) {
             const std::int32_t k = b * width + std::countr_zero(m);
-            visit(index_of(f.inner_first[k]), index_of(f.inner_second[k]), stream++, k);
+            visit(index_at(f.inner_first[k]), index_at(f.inner_second[k]), stream++, k);
         }
 }
 
@@ -345,7 +339,7 @@ void claim(const Field& f, Columns& c, std::int32_t i, std::int32_t j, std::int3
     const bool swapped = a > b;
     if (swapped) std::swap(a, b);
     for (std::int32_t o = f.row[a]; o < f.row[a + 1]; ++o)
-        if (f.outer_second[o] == place_of(b)) {
+        if (f.outer_second[o] == place_at(b)) {
             c.owner[static_cast<std::size_t>(o)] = swapped ? -(contact + 1) : contact + 1;
             return;
         }
