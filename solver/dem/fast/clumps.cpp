@@ -11,14 +11,6 @@ namespace grainsweep::dem::fast {
 
 using namespace geometry;
 
-namespace {
-
-double force_unit(const Scale& scale) {
-    return scale.mass * scale.length / (scale.time * scale.time);
-}
-
-}  // namespace
-
 void Clumps::append(std::span<const Body> bodies, std::size_t id) {
     BodyColumns::append(bodies, id);
     fallen.resize(size(), 0.0);
@@ -144,7 +136,7 @@ ClumpView Clumps::view(const Scale& scale) {
     v.mass = lane_mass_.data(), v.inverse_mass = lane_inverse_mass_.data();
     v.inverse_mass_single = lane_single_mass_.data(), v.reach = lane_reach_.data();
     v.place = slot_place_.data(), v.radius = row_radius_.data(), v.inverse_radius = row_inverse_radius_.data();
-    v.length = scale.length, v.time = scale.time, v.force = force_unit(scale);
+    v.length = scale.length, v.time = scale.time, v.force = scale.force();
     v.inverse_length = 1 / scale.length, v.inverse_speed = 1 / scale.speed();
     for (std::size_t a = 0; a < 3; ++a) {
         v.inverse_inertia[a] = lane_inverse_inertia_[a].data();
@@ -211,7 +203,7 @@ std::pair<Vec3, Vec3> Clumps::sums(const Field& field, const Scale& scale, std::
         f += force_on;
         t += cross(in_space(now, this->scale[b] * shape_of(b).members[k].place), force_on) + scale.length * turn_on;
     }
-    return {force_unit(scale) * f, force_unit(scale) * t};
+    return {scale.force() * f, scale.force() * t};
 }
 
 void Clumps::gather(const Field& field, const Scale& scale) {

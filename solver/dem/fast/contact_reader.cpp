@@ -176,7 +176,7 @@ void ContactReader::stand_still(ParkedContact& contact) const {
     const ContactForce c = read(laws_of(contact.first, contact.second), t, contact.first, contact.second, of_pair,
                                 [](std::span<const Velocities>) { return RelativeMotion{}; });
     const Scale& s = space_.scale;
-    const double unit = s.mass * s.length / (s.time * s.time);
+    const double unit = s.force();
     const Vec3 force = c.normal_force * c.normal + c.tangential_force;
     const Vec3 turn = cross(c.tangential_force, c.normal);  // n x (-F_t)
     for (std::size_t a = 0; a < 3; ++a) {

@@ -13,6 +13,7 @@ struct Scale {
     std::array<double, 3> unit{};  ///< length of one position unit, m
 
     [[nodiscard]] double speed() const { return length / time; }
+    [[nodiscard]] double force() const { return mass * length / (time * time); }
     /// Returns a coordinate in position units, before wrapping to 32 bits.
     [[nodiscard]] double units(double coordinate, std::size_t axis) const {
         return (coordinate - centre[axis]) / unit[axis];

@@ -216,7 +216,7 @@ double Walls::book(const WallSums* sums, bool of_step) {
 }
 
 WallLoad Walls::load(std::size_t w, const Vec3& about) const {
-    const double force = scale_.mass * scale_.length / (scale_.time * scale_.time);
+    const double force = scale_.force();
     const WallSums& s = sums_.at(w);
     WallLoad load;
     for (std::size_t a = 0; a < 3; ++a) {
