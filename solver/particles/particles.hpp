@@ -6,12 +6,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace grainsweep::particles {
 
 using geometry::Vec3;
+
+/// Makes value order[k] value k; values not in `order` are removed.
+template <class T>
+void reorder(std::vector<T>& column, std::span<const std::uint32_t> order) {
+    std::vector<T> fresh(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) fresh[k] = column[order[k]];
+    column.swap(fresh);
+}
 
 struct Particles {
     std::vector<std::int32_t> id;
@@ -46,11 +53,7 @@ struct Particles {
 
     /// Makes particle order[k] particle k; particles not in `order` are removed.
     void reorder(std::span<const std::uint32_t> order) {
-        for_each_column(*this, [order](auto& column) {
-            std::remove_reference_t<decltype(column)> fresh(order.size());
-            for (std::size_t k = 0; k < order.size(); ++k) fresh[k] = column[order[k]];
-            column.swap(fresh);
-        });
+        for_each_column(*this, [order](auto& column) { particles::reorder(column, order); });
     }
 };
 
