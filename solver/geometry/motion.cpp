@@ -111,50 +111,34 @@ double pulsation(const Vibration& v) {
     return 2 * std::numbers::pi * v.frequency;
 }
 
+/// Of motions that do not shift the wall.
+Vec3 displacement(const auto&, double) {
+    return {};
+}
 Vec3 displacement(const Translation& m, double t) {
     return elapsed(m, t) * m.velocity;
-}
-Vec3 displacement(const Conveyance&, double) {
-    return {};
 }
 Vec3 displacement(const Vibration& m, double t) {
     const double sine = std::sin(pulsation(m) * elapsed(m, t) + m.phase) - std::sin(m.phase);
     return sine * m.amplitude;
 }
-Vec3 displacement(const Rotation&, double) {
-    return {};
-}
 Vec3 displacement(const Press& m, double) {
     return m.way * m.along;
-}
-Vec3 displacement(const Drive&, double) {
-    return {};
 }
 Vec3 displacement(const Flight& m, double) {
     return m.way;
 }
 
-Vec3 velocity(const Translation& m, double) {
-    return m.velocity;
-}
-Vec3 velocity(const Conveyance& m, double) {
-    return m.velocity;
+Vec3 velocity(const auto& m, double) {
+    if constexpr (requires { m.velocity; }) return m.velocity;
+    return {};
 }
 Vec3 velocity(const Vibration& m, double t) {
     const double cosine = std::cos(pulsation(m) * elapsed(m, t) + m.phase);
     return cosine * (pulsation(m) * m.amplitude);
 }
-Vec3 velocity(const Rotation&, double) {
-    return {};
-}
 Vec3 velocity(const Press& m, double) {
     return m.speed * m.along;
-}
-Vec3 velocity(const Drive&, double) {
-    return {};
-}
-Vec3 velocity(const Flight& m, double) {
-    return m.velocity;
 }
 
 Vec3 displacement_of(std::span<const Motion> motions, double t) {
@@ -456,10 +440,7 @@ bool has_sound_spring(const auto& m) {
     return m.stiffness >= 0 && m.damping >= 0 && std::isfinite(m.stiffness) && std::isfinite(m.damping);
 }
 
-std::string flaw_of(const Translation& m) {
-    return finite(m.velocity) ? "" : "a motion must be finite";
-}
-std::string flaw_of(const Conveyance& m) {
+std::string flaw_of(const auto& m) {
     return finite(m.velocity) ? "" : "a motion must be finite";
 }
 std::string flaw_of(const Vibration& m) {
