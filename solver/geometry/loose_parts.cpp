@@ -1,9 +1,12 @@
 #include "solver/geometry/loose_parts.hpp"
 
+#include "solver/geometry/bounds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -82,9 +85,9 @@ struct Edge {
 struct Part {
     std::vector<std::uint32_t> triangles;
     double area = 0;
-    Vec3 low{}, high{};
+    Bounds box;
 
-    [[nodiscard]] double reach(const End& end) const { return end.high ? high[end.axis] : -low[end.axis]; }
+    [[nodiscard]] double reach(const End& end) const { return end.high ? box.high[end.axis] : -box.low[end.axis]; }
 };
 
 class Parts {
@@ -184,16 +187,14 @@ private:
             std::uint32_t& n = number[first_of(t)];
             if (n == none) {
                 n = static_cast<std::uint32_t>(parts_.size());
-                parts_.push_back({{}, 0, triangle.corner[0], triangle.corner[0]});
+                parts_.push_back({{}, 0, {triangle.corner[0], triangle.corner[0]}});
             }
             part_[t] = n;
             Part& part = parts_[n];
             part.triangles.push_back(t);
             part.area += area(triangle);
             area_ += area(triangle);
-            for (const Vec3& x : triangle.corner)
-                for (std::size_t k = 0; k < 3; ++k)
-                    part.low[k] = std::min(part.low[k], x[k]), part.high[k] = std::max(part.high[k], x[k]);
+            part.box.widen(bounds_around(triangle.corner));
             free_sides_ += count_free(t);
         }
     }
@@ -311,15 +312,11 @@ std::optional<Needle> needle_at(const Mesh& mesh, const End& end, double share) 
     Needle needle{outermost(outer[0], end), reach(outer[0], end) - reach(outer[count], end), 0};
     if (!(needle.length > same * size_of(mesh))) return std::nullopt;
     const double half = reach(outer[0], end) - needle.length / 2;
-    std::optional<Vec3> low, high;
-    for (std::size_t n = 0; n < count; ++n)
-        for (const Vec3& x : cut(outer[n], end, half)) {
-            if (!low) low = high = x;
-            for (std::size_t k = 0; k < 3; ++k)
-                (*low)[k] = std::min((*low)[k], x[k]), (*high)[k] = std::max((*high)[k], x[k]);
-        }
-    if (!low) return std::nullopt;
-    needle.width = norm(*high - *low);
+    std::vector<Vec3> section;
+    for (std::size_t n = 0; n < count; ++n) std::ranges::copy(cut(outer[n], end, half), std::back_inserter(section));
+    if (section.empty()) return std::nullopt;
+    const auto [low, high] = bounds_around(section);
+    needle.width = norm(high - low);
     if (needle.length < slender * needle.width) return std::nullopt;
     return needle;
 }

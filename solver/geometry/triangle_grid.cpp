@@ -1,24 +1,12 @@
 #include "solver/geometry/triangle_grid.hpp"
 
+#include "solver/geometry/bounds.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace grainsweep::geometry {
 namespace {
-
-struct Box {
-    Vec3 low, high;
-};
-
-Box box_of(const Triangle& t) {
-    Box box{t.corner[0], t.corner[0]};
-    for (std::size_t n = 1; n < 3; ++n)
-        for (std::size_t k = 0; k < 3; ++k) {
-            box.low[k] = std::min(box.low[k], t.corner[n][k]);
-            box.high[k] = std::max(box.high[k], t.corner[n][k]);
-        }
-    return box;
-}
 
 /// Twice the mean distance between the middles of evenly spread triangles, so that a cell of a fine surface has a few
 /// triangles.
@@ -32,7 +20,7 @@ double natural_edge(std::span<const Triangle> triangles) {
 double visited(std::span<const Triangle> triangles, double margin, double edge) {
     double sum = 0;
     for (const Triangle& t : triangles) {
-        const Box box = box_of(t);
+        const Bounds box = bounds_around(t.corner);
         double cells = 1;
         for (std::size_t k = 0; k < 3; ++k) cells *= (box.high[k] - box.low[k] + 2 * margin) / edge + 2;
         sum += cells;
@@ -58,14 +46,9 @@ TriangleGrid::TriangleGrid(std::span<const Triangle> triangles, double margin) :
 void TriangleGrid::choose_cells(std::span<const Triangle> triangles, double edge) {
     const auto count = static_cast<double>(triangles.size());
     const double most = (margin_ > 0 ? 1048576 : 4096) + 8 * count, most_visited = 2e6 + 300 * count;
-    const Box first = box_of(triangles.front());
-    low_ = first.low, high_ = first.high;
-    for (const Triangle& t : triangles)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Box box = box_of(t);
-            low_[k] = std::min(low_[k], box.low[k]);
-            high_[k] = std::max(high_[k], box.high[k]);
-        }
+    Bounds all = bounds_around(triangles.front().corner);
+    for (const Triangle& t : triangles) all.widen(bounds_around(t.corner));
+    low_ = all.low, high_ = all.high;
     Vec3 extent = high_ - low_;
     for (std::size_t k = 0; k < 3; ++k) extent[k] += 2 * margin_, origin_[k] = low_[k] - margin_;
     const auto cells = [&](double h) {
@@ -82,7 +65,7 @@ void TriangleGrid::fill(std::span<const Triangle> triangles) {
     const double near_middle = 1.01 * (std::sqrt(0.75) * edge_ + margin_);
     const auto for_each_entry = [&](auto&& visit) {
         for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-            Box box = box_of(triangles[t]);
+            Bounds box = bounds_around(triangles[t].corner);
             for (std::size_t k = 0; k < 3; ++k) box.low[k] -= margin_, box.high[k] += margin_;
             for_each_cell(range(box.low, box.high), [&](const std::array<std::size_t, 3>& place, std::size_t cell) {
                 Vec3 middle = origin_;

@@ -1,5 +1,7 @@
 #include "solver/geometry/weld.hpp"
 
+#include "solver/geometry/bounds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -88,12 +90,7 @@ WeldedSurface weld(const std::vector<std::array<Vec3, 3>>& triangles) {
 
     WeldedSurface welded;
     if (points.empty()) return welded;
-    Vec3 low = points.front(), high = points.front();
-    for (const Vec3& x : points)
-        for (std::size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], x[k]);
-            high[k] = std::max(high[k], x[k]);
-        }
+    const auto [low, high] = bounds_around(points);
     const double tolerance = weld_tolerance * norm(high - low);
     Sets sets = near_sets(points, tolerance);
 

@@ -200,14 +200,8 @@ Bounds bounds_of(const Region::All& all) {
 }
 
 Bounds bounds_of(const Region::Any& any) {
-    Bounds bounds{everywhere.high, everywhere.low};
-    for (const Region& region : any.of) {
-        const Bounds one = region.bounds();
-        for (std::size_t k = 0; k < 3; ++k) {
-            bounds.low[k] = std::min(bounds.low[k], one.low[k]);
-            bounds.high[k] = std::max(bounds.high[k], one.high[k]);
-        }
-    }
+    Bounds bounds = geometry::nowhere;
+    for (const Region& region : any.of) bounds.widen(region.bounds());
     return bounds;
 }
 
@@ -333,14 +327,6 @@ RegionNow::RegionNow(const Region& region) : still_(&region) {
     }
     box_ = std::get_if<BoxRegion>(&still_->is);
     half_ = std::get_if<HalfRegion>(&still_->is);
-}
-
-Bounds shared(Bounds one, const Bounds& other) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        one.low[k] = std::max(one.low[k], other.low[k]);
-        one.high[k] = std::min(one.high[k], other.high[k]);
-    }
-    return one;
 }
 
 bool Region::contains(const Vec3& x) const {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "solver/field.hpp"
+#include "solver/geometry/bounds.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/geometry/tpms.hpp"
 #include "solver/geometry/vector.hpp"
@@ -18,13 +19,9 @@
 
 namespace grainsweep::machine {
 
+using geometry::Bounds;
+using geometry::shared;
 using geometry::Vec3;
-
-struct Bounds {
-    Vec3 low{}, high{};
-};
-/// Returns what two boxes share: nothing where a lower end lies above the upper one.
-[[nodiscard]] Bounds shared(Bounds one, const Bounds& other);
 
 struct Region;
 

@@ -43,10 +43,11 @@ double widest_of(const Spec& spec) {
     return largest;
 }
 
-void widen(Bounds& all, const Vec3& x) {
+/// Widens a box by the ends of another one that are finite.
+void widen_by_ends(Bounds& all, const Bounds& other) {
     for (std::size_t k = 0; k < 3; ++k) {
-        all.low[k] = std::min(all.low[k], x[k]);
-        all.high[k] = std::max(all.high[k], x[k]);
+        if (std::isfinite(other.low[k])) all.low[k] = std::min(all.low[k], other.low[k]);
+        if (std::isfinite(other.high[k])) all.high[k] = std::max(all.high[k], other.high[k]);
     }
 }
 
@@ -69,21 +70,10 @@ void widen_by(Bounds& all, const MachineWall& wall, const std::vector<Phase>& ph
     const bool turns = std::ranges::any_of(motions, geometry::turns);
     for (int n = 0; n <= (motions.empty() ? 0 : poses); ++n) {
         const auto pose = geometry::pose_at(motions, end * n / poses);
-        for (unsigned corner = 0; corner < 8; ++corner) {
-            Vec3 x{};
-            bool finite = true;
-            for (std::size_t k = 0; k < 3; ++k) {
-                x[k] = (corner >> k & 1U) != 0 ? body.high[k] : body.low[k];
-                finite = finite && std::isfinite(x[k]);
-            }
-            if (finite) widen(all, pose.from_body(x));
-        }
+        for (std::size_t corner = 0; corner < 8; ++corner)
+            if (const Vec3 x = body.corner(corner); geometry::finite(x)) all.widen(pose.from_body(x));
         // What is without end along an axis bounds the others, as long as it is not turned.
-        if (!turns)
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (std::isfinite(body.low[k])) all.low[k] = std::min(all.low[k], body.low[k] + pose.shift[k]);
-                if (std::isfinite(body.high[k])) all.high[k] = std::max(all.high[k], body.high[k] + pose.shift[k]);
-            }
+        if (!turns) widen_by_ends(all, {body.low + pose.shift, body.high + pose.shift});
     }
 }
 
@@ -277,11 +267,9 @@ double fastest_of(const Spec& spec) {
     const auto consider = [&](const Region& region) {
         if (!(g > 0)) return;
         const Bounds bounds = region.bounds();
-        for (unsigned corner = 0; corner < 8; ++corner) {
-            Vec3 x{};
-            for (std::size_t k = 0; k < 3; ++k)
-                x[k] = std::clamp((corner >> k & 1U) != 0 ? bounds.high[k] : bounds.low[k], spec.domain.low[k],
-                                  spec.domain.high[k]);
+        for (std::size_t corner = 0; corner < 8; ++corner) {
+            Vec3 x = bounds.corner(corner);
+            for (std::size_t k = 0; k < 3; ++k) x[k] = std::clamp(x[k], spec.domain.low[k], spec.domain.high[k]);
             // Distance from there to the lower end of the domain.
             double drop = 0;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -328,22 +316,16 @@ double fastest_of(const Spec& spec) {
 }
 
 geometry::Domain domain_around(const Spec& spec, const std::array<bool, 3>& given) {
-    Bounds all{{never, never, never}, {-never, -never, -never}};
+    Bounds all = geometry::nowhere;
     for (const MachineWall& wall : spec.walls) {
         widen_by(all, wall, spec.phases);
         if (const auto* plane = std::get_if<geometry::Plane>(&wall.shape)) bound_by(all, *plane);
     }
-    const auto include = [&](const Region& region) {
-        const Bounds bounds = region.bounds();
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (std::isfinite(bounds.low[k])) all.low[k] = std::min(all.low[k], bounds.low[k]);
-            if (std::isfinite(bounds.high[k])) all.high[k] = std::max(all.high[k], bounds.high[k]);
-        }
-    };
+    const auto include = [&](const Region& region) { widen_by_ends(all, region.bounds()); };
     for (const auto& fill : spec.fills) {
         if (const auto* region = std::get_if<Fill>(&fill)) include(region->in);
         if (const auto* placed = std::get_if<std::vector<Placed>>(&fill))
-            for (const Placed& one : *placed) widen(all, one.sphere.position);
+            for (const Placed& one : *placed) all.widen(one.sphere.position);
         if (const auto* cut = std::get_if<Cut>(&fill)) include({Region::Box{{}, {cut->edge, cut->edge, cut->edge}}});
     }
     for (const Feed& feed : spec.feeds) include(feed.through);

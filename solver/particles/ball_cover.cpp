@@ -1,5 +1,6 @@
 #include "solver/particles/ball_cover.hpp"
 
+#include "solver/geometry/bounds.hpp"
 #include "solver/geometry/triangle.hpp"
 #include "stats/random.hpp"
 
@@ -31,9 +32,7 @@ std::int64_t whole(double x) {
 class Voxels {
 public:
     explicit Voxels(const TriangleSurface& surface) {
-        Vec3 low = surface.corners.front(), high = low;
-        for (const Vec3& x : surface.corners)
-            for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], x[k]), high[k] = std::max(high[k], x[k]);
+        const auto [low, high] = geometry::bounds_around(surface.corners);
         const Vec3 size = high - low;
         shortest_ = std::ranges::min(size);
         edge_ = std::max(shortest_ / cells_across, std::cbrt(size[0] * size[1] * size[2] / most_voxels));

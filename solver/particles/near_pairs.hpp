@@ -1,6 +1,7 @@
 // All pairs of points closer than a range, each once, for measurements of a state (not for time steps).
 #pragma once
 
+#include "solver/geometry/bounds.hpp"
 #include "solver/particles/neighbour_list.hpp"
 
 #include <cmath>
@@ -18,12 +19,8 @@ template <class Visit>
 void for_each_near_pair(std::span<const Vec3> position, double range, Visit&& visit) {
     using namespace geometry;
     if (position.empty()) return;
-    Domain box{position.front(), position.front(), {}};
-    for (const Vec3& x : position)
-        for (std::size_t k = 0; k < 3; ++k) {
-            box.low[k] = std::min(box.low[k], x[k]);
-            box.high[k] = std::max(box.high[k], x[k]);
-        }
+    const auto [low, high] = bounds_around(position);
+    const Domain box{low, high, {}};
     std::vector<std::uint32_t> among(position.size());
     std::iota(among.begin(), among.end(), 0U);
     Cells cells;

@@ -1,5 +1,7 @@
 #include "solver/particles/reach.hpp"
 
+#include "solver/geometry/bounds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -92,13 +94,8 @@ private:
 };
 
 OpenSpace::OpenSpace(std::span<const Point> frozen, double closest) {
-    low_ = frozen.front();
-    Point high = low_;
-    for (const Point& x : frozen)
-        for (std::size_t k = 0; k < 3; ++k) {
-            low_[k] = std::min(low_[k], x[k]);
-            high[k] = std::max(high[k], x[k]);
-        }
+    const auto [low, high] = geometry::bounds_around(frozen);
+    low_ = low;
     for (std::size_t k = 0; k < 3; ++k) {
         low_[k] -= 1.5;
         blocks_[k] = static_cast<std::int32_t>(std::ceil(high[k] + 1.5 - low_[k]));

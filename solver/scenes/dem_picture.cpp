@@ -1,5 +1,6 @@
 #include "solver/scenes/dem_picture.hpp"
 
+#include "solver/geometry/bounds.hpp"
 #include "solver/geometry/motion.hpp"
 #include "solver/observables/particle_loads.hpp"
 
@@ -264,12 +265,8 @@ Snapshot picture_of(const dem::Engine& engine) {
 
 std::int32_t add_box(const std::array<double, 3>& low, const std::array<double, 3>& high, WallSurface& surface) {
     const auto first = static_cast<std::int32_t>(surface.corners.size());
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-        std::array<double, 3> x = low;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            if ((corner >> axis & 1U) != 0) x[axis] = high[axis];
-        surface.corners.push_back(x);
-    }
+    for (std::size_t corner = 0; corner < 8; ++corner)
+        surface.corners.push_back(geometry::Bounds{low, high}.corner(corner));
     for (std::int32_t corner = 0; corner < 8; ++corner)
         for (const std::int32_t bit : {1, 2, 4})
             if ((corner & bit) == 0) surface.edges.push_back({first + corner, first + corner + bit});

@@ -182,8 +182,7 @@ void Walls::bound_velocities(double time, bool free, Tally& tally) const {
     if (free && !any_free_) return;
     for (const MovingWall& wall : moving_) {
         if (wall.at_rest() || !wall.present() || wall.free() != free) continue;
-        Vec3 low, high;
-        wall.surface_velocities(time, scale_.time, low, high);
+        const auto [low, high] = wall.surface_velocities(time, scale_.time);
         for (std::size_t a = 0; a < 3; ++a) {
             tally.velocity_high[a] = std::max(tally.velocity_high[a], static_cast<float>(high[a] / scale_.speed()));
             tally.velocity_low[a] = std::min(tally.velocity_low[a], static_cast<float>(low[a] / scale_.speed()));

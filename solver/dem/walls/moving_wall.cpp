@@ -238,8 +238,7 @@ void MovingWall::place(double time) {
 std::array<Vec3, 8> MovingWall::corners(const Pose& pose) const {
     std::array<Vec3, 8> all{};
     for (std::size_t c = 0; c < 8; ++c) {
-        const Vec3 corner{(c & 1U) != 0 ? high_[0] : low_[0], (c & 2U) != 0 ? high_[1] : low_[1],
-                          (c & 4U) != 0 ? high_[2] : low_[2]};
+        const Vec3 corner = geometry::Bounds{low_, high_}.corner(c);
         all[c] = bounded_ ? pose.from_body(corner) : corner;
     }
     return all;
@@ -255,22 +254,16 @@ Vec3 MovingWall::moved_since(const Pose& before) const {
     return farthest;
 }
 
-void MovingWall::surface_velocities(double time, double step, Vec3& low, Vec3& high) const {
-    const auto include = [&](const Vec3& v) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], v[k]);
-            high[k] = std::max(high[k], v[k]);
-        }
-    };
+geometry::Bounds MovingWall::surface_velocities(double time, double step) const {
+    geometry::Bounds all = geometry::nowhere;
     const auto include_at = [&](double t) {
         const Twist twist = twist_at(displacing_, t);
-        if (!twist.turns) return include(twist.velocity);
-        for (const Vec3& x : corners(geometry::pose_at(displacing_, t))) include(twist.at(x));
+        if (!twist.turns) return all.widen(twist.velocity);
+        for (const Vec3& x : corners(geometry::pose_at(displacing_, t))) all.widen(twist.at(x));
     };
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
     include_at(time);
     if (switches_) include_at(time + step);
+    return all;
 }
 
 double MovingWall::bound_of_speed(std::span<const Motion> motions) const {

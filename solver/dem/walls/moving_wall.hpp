@@ -7,6 +7,7 @@
 #pragma once
 
 #include "solver/dem/walls/wall.hpp"
+#include "solver/geometry/bounds.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/particles/cells.hpp"
 
@@ -95,9 +96,9 @@ public:
     /// Returns an upper bound of the displacement since `before` of any point of the surface that a particle can reach,
     /// m.
     [[nodiscard]] Vec3 moved_since(const geometry::Pose& before) const;
-    /// Computes the smallest and largest velocity components of the surface within reach of particles, during the
+    /// Returns the smallest and largest velocity components of the surface within reach of particles, during the
     /// `step` after `time`, m/s.
-    void surface_velocities(double time, double step, Vec3& low, Vec3& high) const;
+    [[nodiscard]] geometry::Bounds surface_velocities(double time, double step) const;
     /// Return upper bounds at all times, m/s, of the speed of the material, and of the surface (without motions that do
     /// not move it).
     [[nodiscard]] double fastest() const { return fastest_; }
