@@ -4,15 +4,14 @@
 #include "solver/machine/frames.hpp"
 #include "solver/machine/plan.hpp"
 #include "solver/scenes/dem_picture.hpp"
-#include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/kit/sentence.hpp"
-#include "solver/scenes/kit/slices.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace grainsweep::machine {
@@ -63,6 +62,15 @@ std::vector<dem::ToCome> to_come_of(const Spec& spec) {
                 announce(species.shape->balls[k].radius);
         }
     return all;
+}
+
+/// Runs at most to a stop, or to the first step that is not before `until`, both in steps from here; at least one step.
+/// Returns the number of completed steps: an unsound state ends the run early. The slices do not change the stops.
+std::int64_t run_towards(dem::Engine& engine, std::int64_t stop, double until) {
+    const double left = std::ceil(until);
+    const std::int64_t before = engine.work().steps;
+    engine.run(left < static_cast<double>(stop) ? std::max<std::int64_t>(1, std::llround(left)) : stop);
+    return engine.work().steps - before;
 }
 
 }  // namespace
@@ -171,7 +179,7 @@ void Run::advance(double until) {
     while (!finished() && health().stable() && time() < until) {
         const std::int64_t stop = next_stop();
         if (at_steps_[phase_].empty())
-            step_ = kit::run_towards(*engine_, step_, stop, spec_.time_step, until);
+            step_ += run_towards(*engine_, stop - step_, until / spec_.time_step - static_cast<double>(step_));
         else
             step_ += run_watched_step();
         give_crossings();
@@ -555,18 +563,25 @@ void Run::fields(State& run, Visit&& visit) {
 }
 
 void Run::save(Bytes& into) const {
-    kit::write_checkpoint(into, checkpoint_format, *engine_, [this](ByteWriter& out) {
-        fields(*this, [&out](const auto& value) { out.put(value); });
-        for (const auto& feeder : feeders_) feeder.save(out);
-        for (const auto& probe : probes_) probe->save(out);
-        for (const auto& watching : watching_)
-            for (const auto& probe : watching)
-                if (probe) probe->save(out);
-    });
+    into.clear();
+    ByteWriter out(into);
+    out.put(checkpoint_format);
+    fields(*this, [&out](const auto& value) { out.put(value); });
+    for (const auto& feeder : feeders_) feeder.save(out);
+    for (const auto& probe : probes_) probe->save(out);
+    for (const auto& watching : watching_)
+        for (const auto& probe : watching)
+            if (probe) probe->save(out);
+    Bytes of_engine;
+    engine_->save(of_engine);
+    out.put(of_engine);
 }
 
 void Run::restore(std::span<const std::byte> from) {
-    ByteReader in = kit::open_checkpoint(from, checkpoint_format);
+    ByteReader in(from);
+    std::uint64_t format = 0;
+    in.get(format);
+    if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");
     fields(*this, [&in](auto& value) { in.get(value); });
     for (auto& feeder : feeders_) feeder.restore(in);
     for (auto& probe : probes_) probe->restore(in);
@@ -589,7 +604,10 @@ void Run::restore(std::span<const std::byte> from) {
     for (const auto& record : records_)
         in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size() &&
                    record.bins.size() == record.last.size());
-    engine_->restore(kit::engine_at_end(in));
+    Bytes of_engine;
+    in.get(of_engine);
+    in.finish();
+    engine_->restore(of_engine);
     seen_at_.reset();
     engine_->state(spheres_);
     in.require(spheres_.id.empty() || static_cast<std::size_t>(spheres_.id.back()) < species_.size());
