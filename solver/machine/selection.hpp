@@ -114,4 +114,15 @@ private:
     std::optional<Region> in_;
 };
 
+/// Probe whose value is a function of the frame and of the particles in it that count.
+template <double (*value)(const Frame&, const Selection&)>
+class SelectionProbe final : public Probe {
+public:
+    explicit SelectionProbe(const Options& options) : selection_(options) {}
+    double look(const Frame& frame) override { return value(frame, selection_); }
+
+private:
+    Selection selection_;
+};
+
 }  // namespace grainsweep::machine

@@ -49,21 +49,14 @@ private:
     std::optional<double> slower_than_;
 };
 
-class MeanDiameter final : public machine::Probe {
-public:
-    explicit MeanDiameter(const Options& options) : selection_(options) {}
-    double look(const Frame& frame) override {
-        double diameters = 0, number = 0;
-        selection_.each(frame, [&](std::size_t i) {
-            diameters += 2 * frame.state.radius[i];
-            number += 1;
-        });
-        return number > 0 ? diameters / number : undefined;
-    }
-
-private:
-    Selection selection_;
-};
+double mean_diameter_of(const Frame& frame, const Selection& selection) {
+    double diameters = 0, number = 0;
+    selection.each(frame, [&](std::size_t i) {
+        diameters += 2 * frame.state.radius[i];
+        number += 1;
+    });
+    return number > 0 ? diameters / number : undefined;
+}
 
 constexpr std::array mean_diameter_options = {of_option, in_option};
 constexpr std::array<std::string_view, 2> filling_words = {"any", "latest"}, gone_words = {"leave", "stay"};
@@ -90,8 +83,8 @@ ProbeInfo amount_volume() {
                                                   amount_options);
 }
 ProbeInfo mean_diameter() {
-    return probe_row<MeanDiameter>("mean_diameter", "m", "mean diameter of the particles in a region, by number",
-                                   mean_diameter_options);
+    return probe_row<SelectionProbe<mean_diameter_of>>(
+        "mean_diameter", "m", "mean diameter of the particles in a region, by number", mean_diameter_options);
 }
 
 }  // namespace grainsweep::machine::probes

@@ -12,29 +12,22 @@ namespace grainsweep::machine::probes {
 namespace {
 
 template <bool each_contact>
-class Coordination final : public machine::Probe {
-public:
-    explicit Coordination(const Options& options) : selection_(options) {}
-    double look(const Frame& frame) override {
-        std::vector<char> counts(frame.species.size(), 0);
-        double particles = 0, partners = 0;
-        selection_.each(frame, [&](std::size_t i) {
-            counts[frame.id(i)] = 1;
-            ++particles;
-        });
-        std::set<std::pair<std::int32_t, std::int32_t>> met;  // of clumps
-        for (const auto& contact : frame.contacts) {
-            if (contact.second < 0) continue;
-            const std::int32_t a = frame.particle_of(contact.first), b = frame.particle_of(contact.second);
-            if (!each_contact && frame.members != nullptr && !met.insert(std::minmax(a, b)).second) continue;
-            partners += counts[static_cast<std::size_t>(a)] + counts[static_cast<std::size_t>(b)];
-        }
-        return particles > 0 ? partners / particles : undefined;
+double contacts_per_particle(const Frame& frame, const Selection& selection) {
+    std::vector<char> counts(frame.species.size(), 0);
+    double particles = 0, partners = 0;
+    selection.each(frame, [&](std::size_t i) {
+        counts[frame.id(i)] = 1;
+        ++particles;
+    });
+    std::set<std::pair<std::int32_t, std::int32_t>> met;  // of clumps
+    for (const auto& contact : frame.contacts) {
+        if (contact.second < 0) continue;
+        const std::int32_t a = frame.particle_of(contact.first), b = frame.particle_of(contact.second);
+        if (!each_contact && frame.members != nullptr && !met.insert(std::minmax(a, b)).second) continue;
+        partners += counts[static_cast<std::size_t>(a)] + counts[static_cast<std::size_t>(b)];
     }
-
-private:
-    Selection selection_;
-};
+    return particles > 0 ? partners / particles : undefined;
+}
 
 class Overlap final : public machine::Probe {
 public:
@@ -58,11 +51,12 @@ constexpr std::array overlap_options = {
 }  // namespace
 
 ProbeInfo coordination() {
-    return probe_row<Coordination<false>>("coordination", "1", "mean number of other particles that a particle touches",
-                                          contacts_options, {.contacts = true});
+    return probe_row<SelectionProbe<contacts_per_particle<false>>>(
+        "coordination", "1", "mean number of other particles that a particle touches", contacts_options,
+        {.contacts = true});
 }
 ProbeInfo contact_number() {
-    return probe_row<Coordination<true>>(
+    return probe_row<SelectionProbe<contacts_per_particle<true>>>(
         "contacts", "1", "mean number of contacts of a particle with others; a clump may touch one at several spheres",
         contacts_options, {.contacts = true});
 }

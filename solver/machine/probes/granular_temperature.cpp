@@ -12,37 +12,30 @@ using geometry::operator-;
 using geometry::operator+=;
 using geometry::operator*;
 
-class GranularTemperatureProbe final : public machine::Probe {
-public:
-    explicit GranularTemperatureProbe(const Options& options) : selection_(options) {}
-    double look(const Frame& frame) override {
-        double mass = 0, squares = 0;
-        Vec3 momentum{};
-        selection_.each(frame, [&](std::size_t i) {
-            mass += frame.mass(i);
-            momentum += frame.mass(i) * frame.state.velocity[i];
-        });
-        if (!(mass > 0)) return undefined;
-        const Vec3 mean = (1 / mass) * momentum;
-        selection_.each(frame, [&](std::size_t i) {
-            const Vec3 v = frame.state.velocity[i] - mean;
-            squares += frame.mass(i) * dot(v, v);
-        });
-        return squares / (3 * mass);
-    }
-
-private:
-    Selection selection_;
-};
+double granular_temperature_of(const Frame& frame, const Selection& selection) {
+    double mass = 0, squares = 0;
+    Vec3 momentum{};
+    selection.each(frame, [&](std::size_t i) {
+        mass += frame.mass(i);
+        momentum += frame.mass(i) * frame.state.velocity[i];
+    });
+    if (!(mass > 0)) return undefined;
+    const Vec3 mean = (1 / mass) * momentum;
+    selection.each(frame, [&](std::size_t i) {
+        const Vec3 v = frame.state.velocity[i] - mean;
+        squares += frame.mass(i) * dot(v, v);
+    });
+    return squares / (3 * mass);
+}
 
 constexpr std::array granular_temperature_options = {of_option, in_option};
 
 }  // namespace
 
 ProbeInfo granular_temperature() {
-    return probe_row<GranularTemperatureProbe>("granular_temperature", "m2/s2",
-                                               "a third of the mean square velocity about the mean",
-                                               granular_temperature_options);
+    return probe_row<SelectionProbe<granular_temperature_of>>("granular_temperature", "m2/s2",
+                                                              "a third of the mean square velocity about the mean",
+                                                              granular_temperature_options);
 }
 
 }  // namespace grainsweep::machine::probes
