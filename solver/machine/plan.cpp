@@ -8,7 +8,6 @@
 #include "solver/machine/setup.hpp"
 #include "solver/machine/shapes.hpp"
 #include "solver/scenes/kit/pace.hpp"
-#include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 
 #include <algorithm>
@@ -33,6 +32,8 @@ constexpr double most_loose = 0.35;                    // solid fraction of part
 constexpr double most_on_lattice = 0.345, most_packed = 0.62, most_rain = 0.16;  // of fillings
 constexpr double longest_way = 0.05;     // of a wall in a time step, smallest diameters
 constexpr double steps_per_period = 20;  // of a vibration
+constexpr double rare_part = 0.1;        // of the volume of a powder
+constexpr double fewest_of_part = 3;     // spheres that hold it
 // Pressed beds: their packing fraction and contacts of a grain; frequency of the network divided by sqrt(S/m) of the
 // mean contact, and by that of the fastest one (measured at 20 and 60 kPa: 4.5 and 4.4, 2.5 and 2.6).
 constexpr double pressed_fraction = 0.6, pressed_contacts = 6, over_mean = 4.5, over_fastest = 2.5;
@@ -281,6 +282,36 @@ void warn_of_needles(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
+/// Returns the share by number of the largest spheres that hold `rare_part` of the volume: E[d^3; u > 1 - s] summed
+/// over s.
+double share_of_largest(const particles::SizeDistribution& sizes) {
+    constexpr double finest = 1e-9;  // share by number from which the volume is summed
+    constexpr double growth = 1.02;  // from one share to the next
+    const double whole = sizes.moment(3);
+    double held = 0, above = 0;
+    for (double share = finest; share < 1; share *= growth) {
+        held += std::pow(sizes.diameter(1 - (above + share) / 2), 3) * (share - above);
+        above = share;
+        if (held >= rare_part * whole) return share;
+    }
+    return 1;
+}
+
+/// Warns of species of which fewer than three spheres are expected among the largest sizes with a tenth of the volume.
+void warn_of_rare_sizes(const Spec& spec, std::vector<Warning>& warnings) {
+    for (const Species& species : spec.species) {
+        const double count = count_of(spec, species);
+        if (species.sizes.equal() || count <= 0) continue;
+        const double share = share_of_largest(species.sizes);
+        if (share * count >= fewest_of_part) continue;
+        warnings.push_back(
+            {"sizes too rare for the number of particles",
+             sentence("spheres above %.3g m hold a tenth of the volume, and %.3g of %.0f particles are so "
+                      "large on average: the case cannot represent the distribution, take more particles",
+                      species.sizes.diameter(1 - share) * species.diameter, share * count, count)});
+    }
+}
+
 /// Volume of all particles at the start and of all that are fed, m3.
 double volume_of_powder(const Spec& spec) {
     double volume = 0;
@@ -506,8 +537,7 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     warn_of_frames(spec, warnings);
     std::set<std::string> kinds;
     std::erase_if(warnings, [&](const Warning& warning) { return !kinds.insert(warning.kind).second; });
-    for (const Species& species : spec.species)
-        kit::warn_of_rare_sizes(warnings, species.sizes, species.diameter, count_of(spec, species));
+    warn_of_rare_sizes(spec, warnings);
     return warnings;
 }
 
