@@ -189,7 +189,7 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const Observ
 
 /// Reads how many of the measured runs had no value, and the discrepancy of their share.
 void read_without_value(const Cursor& place, designs::MeasuredTarget& target) {
-    const Section section(place, without_value_keys());
+    const Section section(place, without_value_keys);
     const auto count = static_cast<double>(section.whole("count", 0)), of = static_cast<double>(section.whole("of", 1));
     if (count > of) section.at("count").refuse(fmt::format("must be at most the number of measured runs, {}", of));
     const double share = (count + 0.5) / (of + 1);  // neither 0 nor 1
@@ -203,7 +203,7 @@ void read_without_value(const Cursor& place, designs::MeasuredTarget& target) {
 /// One, or as many as its curve has lines.
 std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign& campaign, std::size_t calibrated,
                                                  const std::filesystem::path& folder, std::size_t curve) {
-    const Section section(element, target_keys());
+    const Section section(element, target_keys);
     if (const auto of = section.find("of")) of->refuse("the calibration has no \"experiments\"");
     const auto& scene = campaign.scene();
     designs::MeasuredTarget target;
@@ -273,7 +273,7 @@ void read_discrepancies(const Section& section, const SceneInfo& scene, std::vec
 }  // namespace
 
 void read_calibration(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder) {
-    const Section section(place, calibration_keys());
+    const Section section(place, calibration_keys);
     auto& space = campaign.space;
     const std::size_t calibrated = space.factors.size();
     for (const auto& factor : space.factors) {
@@ -316,7 +316,7 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
     options["points_per_wave"] = section.whole("points_per_wave", 40);
     options["checks"] = section.whole("checks", 8);
     options["shrink"] = 0.02;
-    if (const auto stop = section.find("stop")) options["shrink"] = Section(*stop, stop_keys()).number("shrink", 0.02);
+    if (const auto stop = section.find("stop")) options["shrink"] = Section(*stop, stop_keys).number("shrink", 0.02);
     set_factors(campaign);
     check_growing(place, campaign);
 }

@@ -110,19 +110,19 @@ std::variant<Between, stats::Distribution> read_distribution(const Section& fact
     const auto shaped = [&](std::span<const Field> keys, auto read) -> Ranges {
         return with(keys, [&](const Reading& reading) { return within_bounds(read(reading), reading); });
     };
-    if (key == "uniform") return with(uniform_keys(), read_uniform);
-    if (key == "lognormal") return shaped(lognormal_keys(), read_lognormal);
+    if (key == "uniform") return with(uniform_keys, read_uniform);
+    if (key == "lognormal") return shaped(lognormal_keys, read_lognormal);
     if (key == "weibull")
-        return shaped(weibull_keys(), [](const Reading& read) -> stats::Distribution::Form {
+        return shaped(weibull_keys, [](const Reading& read) -> stats::Distribution::Form {
             return stats::Weibull{read.amount("scale", above_zero), read.section.number("shape", 1)};
         });
     if (key == "gumbel")
-        return shaped(gumbel_keys(), [](const Reading& read) -> stats::Distribution::Form {
+        return shaped(gumbel_keys, [](const Reading& read) -> stats::Distribution::Form {
             return stats::Gumbel{read.amount("location"), read.amount("scale", above_zero, Reads::difference)};
         });
-    if (key == "triangular") return shaped(triangular_keys(), read_triangular);
-    if (key == "beta") return shaped(beta_keys(), read_beta);
-    return shaped(normal_keys(), [](const Reading& read) -> stats::Distribution::Form {
+    if (key == "triangular") return shaped(triangular_keys, read_triangular);
+    if (key == "beta") return shaped(beta_keys, read_beta);
+    return shaped(normal_keys, [](const Reading& read) -> stats::Distribution::Form {
         return stats::Normal{read.amount("mean"), read.amount("sd", above_zero, Reads::difference)};
     });
 }

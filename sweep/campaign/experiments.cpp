@@ -53,9 +53,9 @@ struct Experiment {
 /// The targets of an experiment without their "of".
 Json targets_of(const Cursor& calibration, const std::vector<std::string>& names, Experiment& experiment) {
     Json own = Json::array();
-    const auto all = Section(calibration, calibration_keys()).at("targets").elements();
+    const auto all = Section(calibration, calibration_keys).at("targets").elements();
     for (std::size_t t = 0; t < all.size(); ++t) {
-        const Section target(all[t], target_keys());
+        const Section target(all[t], target_keys);
         const auto of = target.find("of");
         if (!of)
             throw input_error(
@@ -106,7 +106,7 @@ Experiment experiment_file(const Json& file, const Cursor& place, const std::str
                            const std::vector<std::string>& names, const std::filesystem::path& folder) {
     Experiment experiment{name, file, {}, {}};
     auto& document = experiment.document;
-    const Section own(place, experiment_keys());
+    const Section own(place, experiment_keys);
     const Cursor calibration(file.at("calibration"), "$.calibration");
     if (document["campaign"].is_string()) document["campaign"] = document["campaign"].get<std::string>() + "_" + name;
     for (const auto key : scene_keys) {
@@ -135,7 +135,7 @@ Experiment experiment_file(const Json& file, const Cursor& place, const std::str
     else
         section.erase("discrepancy");
     try {
-        const auto scene = read_scene(Section(Cursor(document, "$"), campaign_keys()), folder);
+        const auto scene = read_scene(Section(Cursor(document, "$"), campaign_keys), folder);
         keep_known(file, place.json(), *scene, experiment);
     } catch (const InputError& wrong) {
         throw InputError(experiment.in_whole(wrong.what(), place.json()));
@@ -194,7 +194,7 @@ std::vector<std::string> experiment_names(const Json& document) {
 }
 
 std::vector<Campaign> read_experiments(const Json& document, const std::filesystem::path& folder) {
-    const Section top(Cursor(document, "$"), campaign_keys());
+    const Section top(Cursor(document, "$"), campaign_keys);
     for (const char* key : {"scene", "machine", "program", "where", "design"})
         if (const auto given = top.find(key))
             throw input_error(given->path(), "", "with several experiments it has no place here");

@@ -54,11 +54,11 @@ Levels read_levels(const Section& factor, const ParameterSpec& parameter, const 
 /// Returns the one key that defines the values of the factor.
 std::string_view range_key(const Section& section) {
     std::vector<std::string_view> given;
-    for (const auto key : range_keys())
+    for (const auto key : range_keys)
         if (section.find(key)) given.push_back(key);
     if (given.size() == 1) return given.front();
     throw input_error(section.place().path(), given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")),
-                      fmt::format("a factor has one of {}", in_words(range_keys())));
+                      fmt::format("a factor has one of {}", in_words(range_keys)));
 }
 
 void check_key(const Section& section, std::string_view key, const ParameterSpec& parameter) {
@@ -138,7 +138,7 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
     std::vector<Factor> factors;
     std::vector<NamedColumn> sampled;
     for (const auto& element : place.elements()) {
-        const Section section(element, factor_keys());
+        const Section section(element, factor_keys);
         const auto& parameter = read_parameter(section.at("name"), scene);
         if (std::ranges::find(factors, parameter.name, &Factor::name) != factors.end()) {
             section.at("name").refuse("this factor is there twice");

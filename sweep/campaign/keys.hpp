@@ -18,30 +18,30 @@ inline constexpr std::string_view notes_key = "notes";
 /// Key ignored in every object: where an editor finds the schema of the file.
 inline constexpr std::string_view schema_key = "$schema";
 
-[[nodiscard]] std::span<const Field> campaign_keys();
-[[nodiscard]] std::span<const Field> factor_keys();
-/// Returns those of factor_keys() that define the values of a factor; a factor has exactly one.
-[[nodiscard]] std::span<const std::string_view> range_keys();
-[[nodiscard]] std::span<const Field> uniform_keys();
-[[nodiscard]] std::span<const Field> normal_keys();
-[[nodiscard]] std::span<const Field> lognormal_keys();
-[[nodiscard]] std::span<const Field> weibull_keys();
-[[nodiscard]] std::span<const Field> gumbel_keys();
-[[nodiscard]] std::span<const Field> triangular_keys();
-[[nodiscard]] std::span<const Field> beta_keys();
-[[nodiscard]] std::span<const Field> sample_keys();
+extern const std::span<const Field> campaign_keys;
+extern const std::span<const Field> factor_keys;
+/// Those of factor_keys that define the values of a factor; a factor has exactly one.
+extern const std::span<const std::string_view> range_keys;
+extern const std::span<const Field> uniform_keys;
+extern const std::span<const Field> normal_keys;
+extern const std::span<const Field> lognormal_keys;
+extern const std::span<const Field> weibull_keys;
+extern const std::span<const Field> gumbel_keys;
+extern const std::span<const Field> triangular_keys;
+extern const std::span<const Field> beta_keys;
+extern const std::span<const Field> sample_keys;
 /// Returns the distributions with figures, in the order of stats::Distribution::Form.
 [[nodiscard]] std::span<const Type> distribution_types();
-[[nodiscard]] std::span<const Field> convergence_keys();
-[[nodiscard]] std::span<const Field> accuracy_keys();
-[[nodiscard]] std::span<const Field> model_keys();
-[[nodiscard]] std::span<const Field> calibration_keys();
-[[nodiscard]] std::span<const Field> experiment_keys();
-[[nodiscard]] std::span<const Field> target_keys();
-[[nodiscard]] std::span<const Field> without_value_keys();
-[[nodiscard]] std::span<const Field> stop_keys();
-[[nodiscard]] std::span<const Field> limits_keys();
-[[nodiscard]] std::span<const Field> execution_keys();
+extern const std::span<const Field> convergence_keys;
+extern const std::span<const Field> accuracy_keys;
+extern const std::span<const Field> model_keys;
+extern const std::span<const Field> calibration_keys;
+extern const std::span<const Field> experiment_keys;
+extern const std::span<const Field> target_keys;
+extern const std::span<const Field> without_value_keys;
+extern const std::span<const Field> stop_keys;
+extern const std::span<const Field> limits_keys;
+extern const std::span<const Field> execution_keys;
 /// Returns "kind", the design's options without their defaults and, if it has rows, "file".
 [[nodiscard]] std::vector<Field> design_keys(const designs::DesignInfo& design);
 
@@ -60,7 +60,7 @@ inline constexpr std::size_t most_features = 30;
 /// Longest name of a campaign, because NAME.db must be a file name.
 inline constexpr std::size_t longest_campaign_name = 128;
 
-/// Returns names that a campaign cannot have, because tables and views of the database have them.
-[[nodiscard]] std::span<const std::string_view> reserved_names();
+/// Names that a campaign cannot have, because tables and views of the database have them.
+extern const std::span<const std::string_view> reserved_names;
 
 }  // namespace grainsweep::campaign

@@ -121,7 +121,7 @@ machine::Vec3 gravity_of(const Section& top, const MachineScope& scope) {
     const auto place = top.find("gravity");
     if (!place) return {0, 0, -9.81};
     if (!place->json().is_object()) return scope.vector(*place, "m/s2");
-    const Section section(*place, machine_keys::gravity());
+    const Section section(*place, machine_keys::gravity);
     const double size = scope.number(section.at("size"), "m/s2", {0, 1e6});
     const double tilt = scope.number(section, "tilt", "rad", 0), azimuth = scope.number(section, "azimuth", "rad", 0);
     return {size * std::sin(tilt) * std::cos(azimuth), size * std::sin(tilt) * std::sin(azimuth),

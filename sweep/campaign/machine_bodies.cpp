@@ -50,7 +50,7 @@ std::uint8_t all_but(const Cursor& only, const MachineReading& reading) {
 
 machine::Again read_again(const Section& section, const MachineReading& reading) {
     machine::Again again;
-    reading.scope.read(section, machine_keys::again(), &again);
+    reading.scope.read(section, machine_keys::again, &again);
     again.each = reading.copies[reading.scope.place_in(section.at("each"), reading.phases, "phase")];
     if (const auto first = section.find("first")) again.first = reading.scope.whole(*first, {0, most_repeats});
     return again;
@@ -96,10 +96,10 @@ void read_materials(const Section& top, MachineReading& reading) {
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         require_name(place, name);
-        const Section section(place, machine_keys::material());
+        const Section section(place, machine_keys::material);
         reading.materials.push_back(name);
         auto& elasticity = reading.elasticities.emplace_back();
-        reading.scope.read(section, machine_keys::material(), &elasticity);
+        reading.scope.read(section, machine_keys::material, &elasticity);
         elasticity.youngs_modulus *= reading.stiffness_scale;
         reading.densities.push_back(reading.scope.number(section, "density", "kg/m3", 0, positive_number));
     }
@@ -189,7 +189,7 @@ void read_walls(const Section& top, MachineReading& reading) {
                 wall.scattered = reading.scope.vector(section, "scattered", "m");
                 wall.fitted = section.find("fit").has_value();
                 if (const auto again = section.find("again"))
-                    wall.again = read_again(Section(*again, machine_keys::again()), reading);
+                    wall.again = read_again(Section(*again, machine_keys::again), reading);
                 if (const auto only = section.find("only")) wall.passing = all_but(*only, reading);
                 numbers.push_back(reading.spec.walls.size());
                 reading.spec.walls.push_back(std::move(wall));

@@ -65,7 +65,7 @@ std::string_view unit_of_measure(const MachineReading& reading, std::size_t meas
 
 void read_scale(const Cursor& place, const MachineReading& reading, machine::Scale& into) {
     if (place.json().contains("scale"))
-        reading.scope.read(Section(place["scale"], machine_keys::scale()), machine_keys::scale(), &into);
+        reading.scope.read(Section(place["scale"], machine_keys::scale), machine_keys::scale, &into);
 }
 
 void read_counting(const Cursor& place, const MachineReading& reading, machine::Measure& into) {

@@ -34,7 +34,7 @@ std::string error_name(const Cursor& place, const std::string& name) {
 
 /// The text of an expression, alone or with its unit and meaning.
 Cursor expression_of(const Cursor& place) {
-    return place.json().is_string() ? place : Section(place, machine_keys::expression()).at("expression");
+    return place.json().is_string() ? place : Section(place, machine_keys::expression).at("expression");
 }
 
 /// The probe of an entry: its one key that is none of a measurement's own.
@@ -42,7 +42,7 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
     const machine::ProbeInfo* found = nullptr;
     std::string unknown;
     for (const auto& [key, here] : place.members("must be an object with a probe")) {
-        const auto own = machine_keys::measure();
+        const auto own = machine_keys::measure;
         if (std::ranges::find(own, key, &Field::name) != own.end()) continue;
         const auto* probe = machine::find_probe(key);
         if (probe == nullptr) {
@@ -55,7 +55,7 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
     }
     if (!unknown.empty()) {
         WordList known = names_of(machine::probe_catalogue());
-        for (const Field& key : machine_keys::measure()) known.push_back(key.name);
+        for (const Field& key : machine_keys::measure) known.push_back(key.name);
         throw input_error(path_of(place.path(), unknown), "", "there is no such probe", nearest_word(unknown, known));
     }
     if (found == nullptr)
@@ -231,7 +231,7 @@ void read_measures(const Section& top, MachineReading& reading) {
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         if (entry_kind(place) != EntryKind::time_of) continue;
-        const Section section(place, machine_keys::time_of());
+        const Section section(place, machine_keys::time_of);
         const std::size_t of = measure_named(section.at("time_of"), reading);
         const auto [threshold, above] = threshold_of(section, reading, unit_of_measure(reading, of));
         spec.times.push_back({name, of, threshold, above, {}});
@@ -262,7 +262,7 @@ namespace {
 /// Returns "unit" or "over" of a measurement's "scale".
 std::string scale_text(const Cursor& place, std::string_view key, const std::string& standard) {
     if (!place.json().contains("scale")) return standard;
-    const auto given = Section(place["scale"], machine_keys::scale()).find(key);
+    const auto given = Section(place["scale"], machine_keys::scale).find(key);
     return given ? given->text() : standard;
 }
 

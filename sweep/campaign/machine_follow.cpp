@@ -155,7 +155,7 @@ geometry::LoadCourse read_load(const Section& motion, std::string_view name, std
 std::vector<machine::WallMotion> read_follow(const Section& motion, MachineReading& reading) {
     const auto& scope = reading.scope;
     if (!scope.present(motion)) return {};
-    const Section follow(motion.at("follow"), machine_keys::follow());
+    const Section follow(motion.at("follow"), machine_keys::follow);
     for (const char* key : {"to", "during"})
         if (const auto place = motion.find(key))
             place->refuse("has no effect beside \"follow\", which has its own times");

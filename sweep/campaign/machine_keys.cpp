@@ -44,6 +44,19 @@ constexpr auto parameter_keys = std::to_array<Field>({
      "where it has an effect: by the name of another parameter 0, \"set\" (not 0), a word or a list of words"},
 });
 
+constexpr auto follow_keys = std::to_array<Field>({
+    {"times", MachineKey::array, "rising times from the start of the run, or from \"from\", s"},
+    {"positions", MachineKey::array,
+     "where the wall is at each time, a vector from where it is drawn, m; the first is 0"},
+    {"angles", MachineKey::array, "or how far it has turned at each time, right hand, rad; the first is 0"},
+    {"position", MachineKey::vector, "or three expressions of the time t, m"},
+    {"angle", MachineKey::quantity, "or an expression of the time t, rad"},
+    {"every", MachineKey::quantity, "with an expression: time from value to value, s"},
+    {"until", MachineKey::quantity, "with an expression: the last time, s"},
+    {"axis", MachineKey::direction, "of angles"},
+    {"through", MachineKey::vector, "of angles: a point on the axis, as of rotate, m", "[0, 0, 0]"},
+});
+
 constexpr auto extent_keys = std::to_array<Field>({
     needed({"stl", MachineKey::text, "the file, as of a wall"}),
     {"scale", MachineKey::quantity, "length of the file's unit, m", "1"},
@@ -370,27 +383,11 @@ std::vector<Field> with_alternatives(std::span<const Type> types, std::string_vi
 
 }  // namespace
 
-std::span<const Field> follow() {
-    static constexpr auto keys = std::to_array<Field>({
-        {"times", MachineKey::array, "rising times from the start of the run, or from \"from\", s"},
-        {"positions", MachineKey::array,
-         "where the wall is at each time, a vector from where it is drawn, m; the first is 0"},
-        {"angles", MachineKey::array, "or how far it has turned at each time, right hand, rad; the first is 0"},
-        {"position", MachineKey::vector, "or three expressions of the time t, m"},
-        {"angle", MachineKey::quantity, "or an expression of the time t, rad"},
-        {"every", MachineKey::quantity, "with an expression: time from value to value, s"},
-        {"until", MachineKey::quantity, "with an expression: the last time, s"},
-        {"axis", MachineKey::direction, "of angles"},
-        {"through", MachineKey::vector, "of angles: a point on the axis, as of rotate, m", "[0, 0, 0]"},
-    });
-    return keys;
-}
-
 std::span<const Field> motion() {
     static const auto keys = with_alternatives(
         geometry::motion_types(), {},
         {
-            holding({"follow", MachineKey::object, "a table of times, or an expression of the time"}, follow()),
+            holding({"follow", MachineKey::object, "a table of times, or an expression of the time"}, follow_keys),
             {"from", MachineKey::quantity,
              "a phase, at whose beginning it starts, or a time, s; of follow a time; default: at the start"},
             {"to", MachineKey::quantity, "a phase, at whose end it ends, or a time, s; default: never"},
@@ -502,72 +499,29 @@ std::span<const Field> top() {
     return keys;
 }
 
-std::span<const Field> parameter() {
-    return parameter_keys;
-}
-std::span<const Field> extent() {
-    return extent_keys;
-}
-std::span<const Field> gravity() {
-    return gravity_keys;
-}
-std::span<const Field> domain() {
-    return domain_keys;
-}
-std::span<const Field> material() {
-    return material_keys;
-}
-std::span<const Field> species() {
-    return species_keys;
-}
-std::span<const Field> sizes() {
-    return size_keys;
-}
-std::span<const Field> grain_shape() {
-    return grain_shape_keys;
-}
-std::span<const Field> fill() {
-    return fill_keys;
-}
-std::span<const Field> sphere() {
-    return sphere_keys;
-}
-std::span<const Field> removal() {
-    return removal_keys;
-}
-std::span<const Field> feed() {
-    return feed_keys;
-}
-std::span<const Field> phase() {
-    return phase_keys;
-}
-std::span<const Field> until() {
-    return until_keys;
-}
-std::span<const Field> known() {
-    return known_keys;
-}
-std::span<const Field> again() {
-    return again_keys;
-}
-std::span<const Field> start() {
-    return start_keys;
-}
-std::span<const Field> check() {
-    return check_keys;
-}
-std::span<const Field> scale() {
-    return scale_keys;
-}
-std::span<const Field> measure() {
-    return measure_keys;
-}
-std::span<const Field> expression() {
-    return expression_keys;
-}
-std::span<const Field> time_of() {
-    return time_of_keys;
-}
+constinit const std::span<const Field> parameter = parameter_keys;
+constinit const std::span<const Field> extent = extent_keys;
+constinit const std::span<const Field> gravity = gravity_keys;
+constinit const std::span<const Field> domain = domain_keys;
+constinit const std::span<const Field> material = material_keys;
+constinit const std::span<const Field> species = species_keys;
+constinit const std::span<const Field> sizes = size_keys;
+constinit const std::span<const Field> grain_shape = grain_shape_keys;
+constinit const std::span<const Field> follow = follow_keys;
+constinit const std::span<const Field> fill = fill_keys;
+constinit const std::span<const Field> sphere = sphere_keys;
+constinit const std::span<const Field> removal = removal_keys;
+constinit const std::span<const Field> feed = feed_keys;
+constinit const std::span<const Field> phase = phase_keys;
+constinit const std::span<const Field> until = until_keys;
+constinit const std::span<const Field> known = known_keys;
+constinit const std::span<const Field> again = again_keys;
+constinit const std::span<const Field> start = start_keys;
+constinit const std::span<const Field> check = check_keys;
+constinit const std::span<const Field> scale = scale_keys;
+constinit const std::span<const Field> measure = measure_keys;
+constinit const std::span<const Field> expression = expression_keys;
+constinit const std::span<const Field> time_of = time_of_keys;
 
 std::span<const Type> shapes() {
     return machine::shape_types();
@@ -606,7 +560,7 @@ std::span<const Type> all() {
             {"A motion of a wall", "", motion()},
         };
         all.insert(all.end(), motions().begin(), motions().end());
-        all.push_back({"follow", "", follow()});
+        all.push_back({"follow", "", follow_keys});
         const Type others[] = {
             {"A filling", "", fill_keys, fields::initial<Fill>},
             {"packing, of a filling", "", packing_keys, fields::initial<Cut>},

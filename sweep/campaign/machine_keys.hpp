@@ -1,4 +1,5 @@
-// Keys of a machine file, one table per object. Shapes, regions, motions and contacts are those of the solver.
+// Keys of a machine file, one table per object. Shapes, regions, motions and contacts are those of the solver; a table
+// that holds some of them is a function.
 #pragma once
 
 #include "sweep/campaign/keys.hpp"
@@ -9,32 +10,32 @@
 namespace grainsweep::campaign::machine_keys {
 
 [[nodiscard]] std::span<const Field> top();
-[[nodiscard]] std::span<const Field> parameter();
-[[nodiscard]] std::span<const Field> extent();
-[[nodiscard]] std::span<const Field> gravity();
-[[nodiscard]] std::span<const Field> domain();
-[[nodiscard]] std::span<const Field> material();
+extern const std::span<const Field> parameter;
+extern const std::span<const Field> extent;
+extern const std::span<const Field> gravity;
+extern const std::span<const Field> domain;
+extern const std::span<const Field> material;
 [[nodiscard]] std::span<const Field> contacts();
-[[nodiscard]] std::span<const Field> species();
-[[nodiscard]] std::span<const Field> sizes();
-[[nodiscard]] std::span<const Field> grain_shape();
+extern const std::span<const Field> species;
+extern const std::span<const Field> sizes;
+extern const std::span<const Field> grain_shape;
 [[nodiscard]] std::span<const Field> wall();
 [[nodiscard]] std::span<const Field> motion();
-[[nodiscard]] std::span<const Field> follow();
-[[nodiscard]] std::span<const Field> fill();
-[[nodiscard]] std::span<const Field> sphere();
-[[nodiscard]] std::span<const Field> removal();
-[[nodiscard]] std::span<const Field> feed();
-[[nodiscard]] std::span<const Field> phase();
-[[nodiscard]] std::span<const Field> until();
-[[nodiscard]] std::span<const Field> known();
-[[nodiscard]] std::span<const Field> again();
-[[nodiscard]] std::span<const Field> start();
-[[nodiscard]] std::span<const Field> check();
-[[nodiscard]] std::span<const Field> scale();
-[[nodiscard]] std::span<const Field> measure();
-[[nodiscard]] std::span<const Field> time_of();
-[[nodiscard]] std::span<const Field> expression();
+extern const std::span<const Field> follow;
+extern const std::span<const Field> fill;
+extern const std::span<const Field> sphere;
+extern const std::span<const Field> removal;
+extern const std::span<const Field> feed;
+extern const std::span<const Field> phase;
+extern const std::span<const Field> until;
+extern const std::span<const Field> known;
+extern const std::span<const Field> again;
+extern const std::span<const Field> start;
+extern const std::span<const Field> check;
+extern const std::span<const Field> scale;
+extern const std::span<const Field> measure;
+extern const std::span<const Field> time_of;
+extern const std::span<const Field> expression;
 [[nodiscard]] std::span<const Type> shapes();
 [[nodiscard]] std::span<const Type> regions();
 [[nodiscard]] std::span<const Type> motions();

@@ -89,7 +89,7 @@ ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
 ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
     for (const char* key : {"unit", "counted_in", "bounds", "above", "whole"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a file has none");
-    const auto rows = machine_keys::parameter();
+    const auto rows = machine_keys::parameter;
     const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Field::name)->words);
     spec.unit = "";
     const std::string none = section.at("default").text();
@@ -284,7 +284,7 @@ double opening_in(const Cursor& place, const MachineScope& scope) {
 
 /// Reads {"extent": ...}: how far the surface of a file reaches from its origin along a direction; 0 where it is none.
 double extent_in(const Cursor& place, const MachineScope& scope) {
-    const Section section(place, machine_keys::extent());
+    const Section section(place, machine_keys::extent);
     if (!scope.present(section)) return 0;
     const double facets = scope.number(section, "facet_angle", "rad", 0, {0, 0.76});
     const double scale = scope.number(section, "scale", "m", 1, positive_number);
@@ -440,7 +440,7 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
                                [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (!folded.insert(lower).second)
             throw input_error(here.path(), "", "two names that differ by case only are one name in SQL; rename one");
-        const Section section(here, machine_keys::parameter());
+        const Section section(here, machine_keys::parameter);
         const auto common = std::ranges::find(all, name, &ParameterSpec::name);
         ParameterSpec spec = common != all.end() ? *common : ParameterSpec{name, "1", name, 0.0, Interval{}, {}};
         if (const auto meaning = section.find("meaning")) spec.meaning = meaning->text();
@@ -457,7 +457,7 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
     }
     for (auto& parameter : all)
         if (place->json().contains(parameter.name) && (*place)[parameter.name].json().contains("only_if"))
-            parameter.relevant_if = relevance_of(Section((*place)[parameter.name], machine_keys::parameter()), all);
+            parameter.relevant_if = relevance_of(Section((*place)[parameter.name], machine_keys::parameter), all);
     refuse_names_twice(*place, all);
     std::ranges::sort(all, {}, &ParameterSpec::name);
     return all;

@@ -17,7 +17,7 @@ constexpr std::size_t most_phases = 3000;
 
 machine::Known read_known(const Section& section, const MachineReading& reading) {
     machine::Known known;
-    reading.scope.read(section, machine_keys::known(), &known);
+    reading.scope.read(section, machine_keys::known, &known);
     const Cursor measure = section.at("measure");
     known.measure = measure_named(measure, reading);
     const auto& measured = reading.spec.measures[known.measure];
@@ -38,7 +38,7 @@ machine::Known read_known(const Section& section, const MachineReading& reading)
 }
 
 machine::Until read_until(const Cursor& place, const MachineReading& reading) {
-    const Section section(place, machine_keys::until());
+    const Section section(place, machine_keys::until);
     const auto rest = section.find("at_rest"), empty = section.find("empty"), stops = section.find("flow_stops"),
                quiet = section.find("quiet"), measure = section.find("measure"), known = section.find("known");
     if (std::ranges::count_if(std::array{rest, empty, stops, quiet, measure, known},
@@ -56,7 +56,7 @@ machine::Until read_until(const Cursor& place, const MachineReading& reading) {
     if (empty) return machine::Empty{reading.scope.region(*empty)};
     if (machine::FlowStops condition; reading.scope.read(section, "flow_stops", &condition)) return condition;
     if (machine::Quiet condition; reading.scope.read(section, "quiet", &condition)) return condition;
-    if (known) return read_known(Section(*known, machine_keys::known()), reading);
+    if (known) return read_known(Section(*known, machine_keys::known), reading);
     const std::size_t number = measure_named(*measure, reading);
     if (reading.spec.measures[number].relative) measure->refuse("a relative value ends no phase");
     const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
@@ -67,7 +67,7 @@ machine::Until read_until(const Cursor& place, const MachineReading& reading) {
 template <class Visit>
 void each_phase(const Cursor& list, MachineReading& reading, const Visit& visit) {
     for (const auto& place : list.elements()) {
-        const Section section(place, machine_keys::phase());
+        const Section section(place, machine_keys::phase);
         const auto group = section.find("phases"), repeat = section.find("repeat"), as = section.find("as");
         if (!group) {
             for (const auto& other : {repeat, as})
@@ -75,7 +75,7 @@ void each_phase(const Cursor& list, MachineReading& reading, const Visit& visit)
             visit(section);
             continue;
         }
-        for (const Field& key : machine_keys::phase())
+        for (const Field& key : machine_keys::phase)
             if (const auto other = section.find(key.name);
                 other && key.name != "phases" && key.name != "repeat" && key.name != "as")
                 other->refuse("a group of phases has only \"phases\", \"repeat\" and \"as\"");
@@ -134,7 +134,7 @@ void read_start(const Section& top, MachineReading& reading) {
     const auto place = top.find("start");
     if (!place) return;
     auto& spec = reading.spec;
-    const Section section(*place, machine_keys::start());
+    const Section section(*place, machine_keys::start);
     const Cursor end = section.at("phase");
     spec.start.phases = reading.copies[reading.scope.place_in(end, reading.phases, "phase")].front() + 1;
     if (spec.start.phases == spec.phases.size()) end.refuse("the start is not measured: a phase must follow it");
@@ -169,7 +169,7 @@ void read_phases(const Section& top, MachineReading& reading) {
         if (until && until->json().is_array())
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
         if (until && phase.until.empty()) until->refuse("must name a condition");
-        reading.scope.read(section, machine_keys::phase(), &phase);
+        reading.scope.read(section, machine_keys::phase, &phase);
         if (phase.every && phase.frames_given) section.at("every").refuse("beside \"frames\" it says too much");
         phase.frames_given = phase.frames_given || phase.every;
         if (phase.expected && !until) section.at("expected").refuse("it belongs to \"until\"");

@@ -32,7 +32,7 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     if (!place && !file) throw input_error(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
     // If a parameter chooses, the values of all choices are beside it.
     const bool chosen = place && place->json().is_string() && place->text().find('{') != std::string::npos;
-    const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Field::name)->words;
+    const auto words = std::ranges::find(machine_keys::sizes, std::string_view("spread"), &Field::name)->words;
     const auto spread = place ? scope.word(*place, words) : std::string("file");
     for (const auto& [key, of] :
          {std::pair{"half_width", "uniform"}, std::pair{"sigma", "lognormal"}, std::pair{"file", "file"}})
@@ -85,7 +85,7 @@ machine::Mix read_mix(const Section& section, const MachineReading& reading) {
     if (one) return {{reading.scope.place_in(*one, reading.species, "species"), 1.0}};
     if (!several->json().is_object() || several->json().empty())
         several->refuse("must be an object of shares by species");
-    const auto words = std::ranges::find(machine_keys::fill(), std::string_view("by"), &Field::name)->words;
+    const auto words = std::ranges::find(machine_keys::fill, std::string_view("by"), &Field::name)->words;
     const auto by = reading.scope.word(section, "by", words, "mass");
     machine::Mix mix;
     double sum = 0;
@@ -205,10 +205,10 @@ void each_time(const Section& section, MachineReading& reading, Read read) {
 }
 
 machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading, std::size_t species) {
-    const Section section(place, machine_keys::sphere());
+    const Section section(place, machine_keys::sphere);
     const auto& scope = reading.scope;
     dem::Sphere sphere;
-    scope.read(section, machine_keys::sphere(), &sphere);
+    scope.read(section, machine_keys::sphere, &sphere);
     sphere.radius = scope.number(section, "diameter", "m", reading.spec.species[species].diameter, positive_number) / 2;
     const auto given = section.find("orientation");
     if (!given) return {species, sphere, {}};
@@ -343,7 +343,7 @@ void read_species(const Section& top, MachineReading& reading) {
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         require_name(place, name);
-        const Section section(place, machine_keys::species());
+        const Section section(place, machine_keys::species);
         const auto named = section.find("material");
         const auto has_density = [](double density) { return density > 0; };
         if (!named && reading.materials.size() > 1 && std::ranges::count_if(reading.densities, has_density) != 1)
@@ -376,7 +376,7 @@ void read_species(const Section& top, MachineReading& reading) {
         species.material = static_cast<std::uint8_t>(kind);
         species.diameter = reading.scope.number(section, "diameter", "m", 0, {1e-7, 10});
         if (const auto sizes = section.find("sizes"))
-            species.sizes = sizes_of(Section(*sizes, machine_keys::sizes()), reading, species.diameter);
+            species.sizes = sizes_of(Section(*sizes, machine_keys::sizes), reading, species.diameter);
         if (const auto shape = section.find("shape"))
             read_grain_shape(*shape, reading, species);
         else if (powder.contains(name))
@@ -399,7 +399,7 @@ void read_fills(const Section& top, MachineReading& reading) {
     if (all->json().size() > most_fillings)
         all->refuse(fmt::format("a machine has at most {} fillings", most_fillings));
     for (const auto& place : all->elements()) {
-        const Section section(place, machine_keys::fill());
+        const Section section(place, machine_keys::fill);
         if (!reading.scope.present(section)) continue;
         if (const auto packing = section.find("packing")) {
             reading.spec.fills.emplace_back(read_cut(section, *packing, reading));
@@ -417,7 +417,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             if (spheres->json().is_array())
                 for (const auto& one : spheres->elements()) {
                     placed.push_back(placed_sphere(one, reading, species));
-                    if (const auto name = Section(one, machine_keys::sphere()).find("name"))
+                    if (const auto name = Section(one, machine_keys::sphere).find("name"))
                         placed.back().named = take_name(*name, reading, glued && reading.spec.species[species].shape);
                 }
             else if (spheres->json().is_string())
@@ -434,7 +434,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             machine::Fill fill;
             fill.mix = read_mix(section, reading);
             fill.count = count_of(section, reading, fill.mix);
-            reading.scope.read(section, machine_keys::fill(), &fill);
+            reading.scope.read(section, machine_keys::fill, &fill);
             if (section.flag("exact", false)) fill.drawn_to = volume_of(section, reading, fill.mix);
             fill.at = phase;
             warn_of_none(place, fill, reading);
@@ -447,11 +447,11 @@ void read_removals(const Section& top, MachineReading& reading) {
     const auto all = top.find("remove");
     if (!all) return;
     for (const auto& place : all->elements()) {
-        const Section section(place, machine_keys::removal());
+        const Section section(place, machine_keys::removal);
         if (!reading.scope.present(section)) continue;
         each_time(section, reading, [&](std::size_t phase) {
             machine::Removal removal;
-            reading.scope.read(section, machine_keys::removal(), &removal);
+            reading.scope.read(section, machine_keys::removal, &removal);
             removal.at = phase;
             if (phase > 0) reading.spec.removals.push_back(std::move(removal));
         });
@@ -462,7 +462,7 @@ void read_feeds(const Section& top, MachineReading& reading) {
     const auto all = top.find("feed");
     if (!all) return;
     for (const auto& place : all->elements()) {
-        const Section section(place, machine_keys::feed());
+        const Section section(place, machine_keys::feed);
         const auto named = section.find("name");
         machine::Feed feed;
         feed.name = named ? named->text() : "feed";
@@ -471,7 +471,7 @@ void read_feeds(const Section& top, MachineReading& reading) {
         if (std::ranges::find(reading.spec.feeds, feed.name, &machine::Feed::name) != reading.spec.feeds.end())
             place.refuse("several feeds need names of their own", feed.name + "_2");
         feed.mix = read_mix(section, reading);
-        reading.scope.read(section, machine_keys::feed(), &feed);
+        reading.scope.read(section, machine_keys::feed, &feed);
         const Cursor through = section.at("through");
         feed.through = feed_region(through, reading, feed.mix);
         const auto bounds = feed.through.bounds();

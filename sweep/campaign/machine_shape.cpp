@@ -109,7 +109,7 @@ geometry::Inertia inertia_of(const Cursor& place, const MachineReading& reading)
 }  // namespace
 
 void read_grain_shape(const Cursor& place, const MachineReading& reading, machine::Species& species) {
-    const Section section(place, machine_keys::grain_shape());
+    const Section section(place, machine_keys::grain_shape);
     auto shape = described_shape(section, reading);
     constexpr std::array<std::string_view, 3> of_mass = {"mass", "inertia", "centre"};
     if (!shape) return;
@@ -134,7 +134,7 @@ void read_grain_shape(const Cursor& place, const MachineReading& reading, machin
         section.find(*key)->refuse(why.what());
     }
     const auto words =
-        std::ranges::find(machine_keys::grain_shape(), std::string_view("damping_mass"), &Field::name)->words;
+        std::ranges::find(machine_keys::grain_shape, std::string_view("damping_mass"), &Field::name)->words;
     species.damping_mass = reading.scope.word(section, "damping_mass", words, "contact") == "body"
                                ? dem::DampingMass::body
                                : dem::DampingMass::contact;

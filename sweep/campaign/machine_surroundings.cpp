@@ -38,7 +38,7 @@ void read_surroundings(const Section& top, MachineReading& reading) {
     const auto place = top.find("domain");
     std::array<std::optional<double>, 3> low, high;
     if (place) {
-        const Section section(*place, machine_keys::domain());
+        const Section section(*place, machine_keys::domain);
         if (const auto sides = section.find("sides")) {
             if (!sides->json().is_array() || sides->json().size() != 3)
                 sides->refuse("must be a list of three words: of x, y, z");
@@ -91,7 +91,7 @@ void read_checks(const Section& top, MachineReading& reading) {
     const auto all = top.find("checks");
     if (!all) return;
     for (const auto& place : all->elements()) {
-        const Section section(place, machine_keys::check());
+        const Section section(place, machine_keys::check);
         const auto refuse = section.find("refuse"), warn = section.find("warn"), that = section.find("that");
         if (refuse.has_value() == warn.has_value() || warn.has_value() != that.has_value())
             place.refuse("a check has \"refuse\", or \"warn\" and \"that\"");

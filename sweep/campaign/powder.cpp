@@ -38,7 +38,7 @@ constexpr double standard_diameter = 0.002, standard_step_fraction = 0.2;
 /// Calls visit(field) for the members of a material that a powder file may give.
 template <class Visit>
 void for_each_member(const Visit& visit) {
-    for (const Field& field : powder_keys::material()) visit(field);
+    for (const Field& field : powder_keys::material) visit(field);
     for (const auto fields : {dem::contact_fields(), dem::law_fields()})
         for (const Field& field : fields)
             if (std::ranges::find(powder_keys::contacts(), field.name, &Field::name) != powder_keys::contacts().end())
@@ -99,7 +99,7 @@ dem::Material material_of(const Inputs& inputs) {
 template <class Visit>
 void for_each_property(const Section& top, const Visit& visit) {
     for (const auto& [object, keys] :
-         {std::pair{"material", powder_keys::material()}, std::pair{"contacts", powder_keys::contacts()}})
+         {std::pair{"material", powder_keys::material}, std::pair{"contacts", powder_keys::contacts()}})
         if (const auto place = top.find(object)) {
             const Section section(*place, keys);
             for (const auto& key : keys)
@@ -108,14 +108,14 @@ void for_each_property(const Section& top, const Visit& visit) {
 }
 
 Section top_of(const Powder& powder) {
-    return {Cursor(*powder.document, "$"), powder_keys::top()};
+    return {Cursor(*powder.document, "$"), powder_keys::top};
 }
 
 void check_measured(const Section& top) {
     const auto all = top.find("measured");
     if (!all) return;
     for (const auto& one : all->elements()) {
-        const Section section(one, powder_keys::measured());
+        const Section section(one, powder_keys::measured);
         (void)section.at("what").text();
         for (const char* key : {"value", "error"})
             if (const auto value = section.find(key); value && !value->json().is_number()) (void)value->text();
@@ -202,7 +202,7 @@ std::string PowderUse::sentence() const {
 std::string lacks_of(const Powder& powder) {
     const bool sizes = powder.diameter || powder.sizes;
     const auto material = top_of(powder).find("material");
-    const bool density = material && Section(*material, powder_keys::material()).find("density");
+    const bool density = material && Section(*material, powder_keys::material).find("density");
     return sizes ? density ? "" : "density" : density ? "sizes" : "sizes and no density";
 }
 

@@ -82,12 +82,8 @@ constexpr auto measured_keys = std::to_array<Field>({
 
 }  // namespace
 
-std::span<const Field> top() {
-    return top_keys;
-}
-std::span<const Field> material() {
-    return material_keys;
-}
+constinit const std::span<const Field> top = top_keys;
+constinit const std::span<const Field> material = material_keys;
 std::span<const Field> contacts() {
     static const auto keys = [] {
         std::vector<Field> all(contact_keys.begin(), contact_keys.end());
@@ -100,26 +96,16 @@ std::span<const Field> contacts() {
     }();
     return keys;
 }
-std::span<const Field> sizes() {
-    return size_keys;
-}
-std::span<const Field> lognormal() {
-    return lognormal_keys;
-}
-std::span<const Field> rosin_rammler() {
-    return rosin_rammler_keys;
-}
-std::span<const Field> cut() {
-    return cut_keys;
-}
-std::span<const Field> measured() {
-    return measured_keys;
-}
+constinit const std::span<const Field> sizes = size_keys;
+constinit const std::span<const Field> lognormal = lognormal_keys;
+constinit const std::span<const Field> rosin_rammler = rosin_rammler_keys;
+constinit const std::span<const Field> cut = cut_keys;
+constinit const std::span<const Field> measured = measured_keys;
 
 std::vector<std::pair<std::string_view, std::span<const Field>>> all() {
-    return {{"powder", top()},  {"material", material()},   {"contacts", contacts()},
-            {"sizes", sizes()}, {"lognormal", lognormal()}, {"rosin_rammler", rosin_rammler()},
-            {"cut", cut()},     {"measured", measured()}};
+    return {{"powder", top},  {"material", material},   {"contacts", contacts()},
+            {"sizes", sizes}, {"lognormal", lognormal}, {"rosin_rammler", rosin_rammler},
+            {"cut", cut},     {"measured", measured}};
 }
 
 }  // namespace grainsweep::campaign::powder_keys

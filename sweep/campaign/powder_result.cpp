@@ -56,7 +56,7 @@ bool is_key_of(std::span<const Field> keys, const std::string& name) {
 
 /// The object of a powder file that holds a parameter; empty: the parameter is of no powder.
 const char* object_of(const std::string& name) {
-    if (is_key_of(powder_keys::material(), name)) return "material";
+    if (is_key_of(powder_keys::material, name)) return "material";
     return is_key_of(powder_keys::contacts(), name) ? "contacts" : "";
 }
 

@@ -58,9 +58,9 @@ std::string csv_of(const Section& sizes, const std::function<std::string(const s
             file->refuse(why.what());
         }
     }
-    if (const auto law = sizes.find("lognormal")) return of_lognormal(Section(*law, powder_keys::lognormal()), power);
+    if (const auto law = sizes.find("lognormal")) return of_lognormal(Section(*law, powder_keys::lognormal), power);
     if (const auto law = sizes.find("rosin_rammler"))
-        return of_rosin_rammler(Section(*law, powder_keys::rosin_rammler()), power);
+        return of_rosin_rammler(Section(*law, powder_keys::rosin_rammler), power);
     return of_three(sizes, power);
 }
 
@@ -97,7 +97,7 @@ void read_powder_sizes(const Section& top, const std::function<std::string(const
         if (cut) cut->refuse("it cuts \"sizes\", and there are none");
         return;
     }
-    const Section sizes(*place, powder_keys::sizes());
+    const Section sizes(*place, powder_keys::sizes);
     const auto given = [&](const char* key) { return sizes.find(key) ? 1 : 0; };
     const bool three = given("d10") + given("d50") + given("d90") > 0;
     if (given("file") + given("diameter") + given("lognormal") + given("rosin_rammler") + (three ? 1 : 0) != 1)
@@ -114,7 +114,7 @@ void read_powder_sizes(const Section& top, const std::function<std::string(const
     try {
         SizeTable table = SizeTable::read(result.csv);
         if (cut) {
-            table = cut_table(table, Section(*cut, powder_keys::cut()), result);
+            table = cut_table(table, Section(*cut, powder_keys::cut), result);
             result.csv = table.text();
             result.file.clear();
             table = SizeTable::read(result.csv);

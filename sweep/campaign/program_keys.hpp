@@ -7,10 +7,10 @@
 
 namespace grainsweep::campaign {
 
-[[nodiscard]] std::span<const Field> program_keys();
-[[nodiscard]] std::span<const Field> program_parameter_keys();
-[[nodiscard]] std::span<const Field> program_observable_keys();
-[[nodiscard]] std::span<const Field> program_from_keys();
-[[nodiscard]] std::span<const Field> program_version_keys();
+extern const std::span<const Field> program_keys;
+extern const std::span<const Field> program_parameter_keys;
+extern const std::span<const Field> program_observable_keys;
+extern const std::span<const Field> program_from_keys;
+extern const std::span<const Field> program_version_keys;
 
 }  // namespace grainsweep::campaign

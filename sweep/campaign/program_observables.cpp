@@ -105,7 +105,7 @@ ProgramObservable read_output(const std::string& name, const Section& section, P
                                 : "with the protocol \"lines\" a value comes in the reply and has no \"from\"");
     bool over = false;
     if (files) {
-        observable.from = read_from(Section(*from, program_from_keys()));
+        observable.from = read_from(Section(*from, program_from_keys));
         over = runs_over(observable.from);
     }
     const auto shape = section.word("shape", over ? "profile" : "scalar");
@@ -153,7 +153,7 @@ void read_program_observables(const Section& section, Program& program) {
     for (const auto& [name, here] : all->members("must be an object of names and where each value is found")) {
         if (program.observables.size() >= most_observables)
             here.refuse(fmt::format("at most {} observables", most_observables));
-        program.observables.push_back(read_output(name, Section(here, program_observable_keys()), program.protocol));
+        program.observables.push_back(read_output(name, Section(here, program_observable_keys), program.protocol));
     }
 }
 

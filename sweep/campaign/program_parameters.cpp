@@ -136,7 +136,7 @@ private:
             return;
         }
         values.range = true;
-        for (const auto key : range_keys())
+        for (const auto key : range_keys)
             if (factor.json().contains(key) && !has_whole_steps(factor.json())) values.ranges.push_back(factor[key]);
     }
     void add_conditions(const Cursor& calibration) {
@@ -238,7 +238,7 @@ std::optional<Value> read_standard(const Section& told, const ProgramParameter& 
 }
 
 void read_notes(const std::string& name, const Cursor& here, const Given& given, ProgramParameter& parameter) {
-    const Section told(here, program_parameter_keys());
+    const Section told(here, program_parameter_keys);
     if (const auto unit = told.find("unit")) parameter.unit = unit->text();
     if (const auto meaning = told.find("meaning")) parameter.meaning = meaning->text();
     parameter.whole = told.flag("whole", false);

@@ -47,7 +47,7 @@ void check_arguments(const Cursor& place, const std::vector<std::string>& words)
 void read_version(const Section& section, Program& program) {
     const auto place = section.find("version");
     if (!place) return;
-    const Section version(*place, program_version_keys());
+    const Section version(*place, program_version_keys);
     program.version_command = version.words("command", {});
     check_arguments(version.at("command"), program.version_command);
     program.version_match = read_output_pattern(version.at("match"), "version");
@@ -156,7 +156,7 @@ std::shared_ptr<const Program> read_program(const Section& top, const std::files
     if (!place)
         throw input_error(top.place().path(), "",
                           "key 'program' is missing: the command that answers a case (grainsweep scenes program)");
-    const Section section(*place, program_keys());
+    const Section section(*place, program_keys);
     auto program = std::make_shared<Program>();
     program->command = section.words("command", {});
     check_arguments(section.at("command"), program->command);

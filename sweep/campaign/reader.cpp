@@ -43,7 +43,7 @@ std::string read_name(const Cursor& place) {
     }
     // SQL folds the case of names, so do we.
     const std::string folded = lower(name);
-    if (std::ranges::find(reserved_names(), folded) != reserved_names().end() || folded.starts_with("sqlite_")) {
+    if (std::ranges::find(reserved_names, folded) != reserved_names.end() || folded.starts_with("sqlite_")) {
         place.refuse("the database has a table or view of this name; take another",
                      folded.starts_with("sqlite_") ? "my_" + name : name + "_1");
     }
@@ -153,7 +153,7 @@ SharedScene read_scene(const Section& top, const fs::path& folder) {
 }
 
 Campaign campaign_in(const Json& document, const fs::path& folder) {
-    const Section top(Cursor(document, "$"), campaign_keys());
+    const Section top(Cursor(document, "$"), campaign_keys);
     if (!top.find("scene")) throw input_error("$", "", "key 'scene' is missing: the experiment every case runs");
     Campaign campaign;
     campaign.name = read_name(top.at("campaign"));

@@ -103,7 +103,7 @@ NamedColumn read_named_column(const Section& section, std::size_t factor, const 
     if (place.json().is_string()) return {factor, place, place.text(), parameter.name};
     if (!place.json().is_object())
         place.refuse("must be the name of a CSV file, or {\"file\": ... or \"powder\": ..., \"column\": ...}");
-    const Section named(place, sample_keys());
+    const Section named(place, sample_keys);
     const auto column = named.find("column"), file = named.find("file"), powder = named.find("powder");
     if (file.has_value() == powder.has_value()) place.refuse("needs \"file\" or \"powder\", one of the two");
     return {factor, place, file ? file->text() : posterior_of(*powder, folder),

@@ -193,9 +193,9 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
 /// Adds the figures of distributions. `value`: schema of one value of the parameter.
 void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
     const std::pair<const char*, std::span<const Field>> forms[] = {
-        {"uniform", uniform_keys()}, {"normal", normal_keys()}, {"lognormal", lognormal_keys()},
-        {"weibull", weibull_keys()}, {"gumbel", gumbel_keys()}, {"triangular", triangular_keys()},
-        {"beta", beta_keys()}};
+        {"uniform", uniform_keys}, {"normal", normal_keys}, {"lognormal", lognormal_keys},
+        {"weibull", weibull_keys}, {"gumbel", gumbel_keys}, {"triangular", triangular_keys},
+        {"beta", beta_keys}};
     for (const auto& [name, keys] : forms) {
         auto& form = properties[name];
         form.update(section(keys));
@@ -203,7 +203,7 @@ void add_distribution_keys(OrderedJson& properties, const OrderedJson& value) {
             if (key.kind == Field::Kind::value) form["properties"][std::string(key.name)]["type"] = value["type"];
     }
     properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
-    OrderedJson named = section(sample_keys());
+    OrderedJson named = section(sample_keys);
     named["oneOf"] = {{{"required", {"file"}}}, {{"required", {"powder"}}}};
     properties["sample"]["oneOf"] = {{{"type", "string"}, {"minLength", 1}}, std::move(named)};
 }
@@ -214,7 +214,7 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
     const std::string meaning = value["description"];
     value.erase("description");
     value.erase("default");
-    OrderedJson schema = section(factor_keys());
+    OrderedJson schema = section(factor_keys);
     schema["description"] = meaning;
     schema["properties"]["name"] = {{"const", parameter.name}, {"description", meaning}};
     schema["properties"]["levels"].update(
@@ -222,7 +222,7 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
     auto& properties = schema["properties"];
     const bool whole = std::holds_alternative<std::int64_t>(parameter.default_value);
     if (!std::holds_alternative<double>(parameter.default_value))
-        for (const auto key : range_keys())
+        for (const auto key : range_keys)
             if (key != "levels" && !(whole && key == "between")) properties.erase(std::string(key));
     if (std::holds_alternative<std::string>(parameter.default_value)) {
         for (const char* key : {"scale", "step", "whole"}) properties.erase(key);
@@ -239,13 +239,13 @@ OrderedJson factor_schema(const ParameterSpec& parameter) {
     }
     add_distribution_keys(properties, value);
     schema["oneOf"] = OrderedJson::array();
-    for (const auto key : range_keys()) schema["oneOf"].push_back({{"required", {std::string(key)}}});
+    for (const auto key : range_keys) schema["oneOf"].push_back({{"required", {std::string(key)}}});
     return schema;
 }
 
 /// A setting by its name, or a goal.
 OrderedJson accuracy_schema(const OrderedJson& offered, const OrderedJson& scalars) {
-    OrderedJson goal = section(accuracy_keys());
+    OrderedJson goal = section(accuracy_keys);
     if (!scalars.empty()) goal["properties"]["observable"]["enum"] = scalars;
     goal["properties"]["setting"]["enum"] = offered;
     OrderedJson schema;
@@ -322,11 +322,11 @@ OrderedJson positive_values(std::span<const Field> keys) {
 }
 
 OrderedJson sizes_of_powder() {
-    OrderedJson schema = positive_values(powder_keys::sizes());
+    OrderedJson schema = positive_values(powder_keys::sizes);
     auto& properties = schema["properties"];
-    properties["lognormal"].update(positive_values(powder_keys::lognormal()));
+    properties["lognormal"].update(positive_values(powder_keys::lognormal));
     properties["lognormal"]["oneOf"] = {{{"required", {"sigma"}}}, {{"required", {"ratio"}}}};
-    properties["rosin_rammler"].update(positive_values(powder_keys::rosin_rammler()));
+    properties["rosin_rammler"].update(positive_values(powder_keys::rosin_rammler));
     schema["oneOf"] = OrderedJson::array();
     for (const char* key : {"file", "diameter", "d50", "lognormal", "rosin_rammler"})
         schema["oneOf"].push_back({{"required", {key}}});
@@ -338,7 +338,7 @@ OrderedJson sizes_of_powder() {
 OrderedJson defined_scene_rule(std::string_view word, OrderedJson accuracy) {
     OrderedJson then = OrderedJson::object();
     const OrderedJson name = {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}};
-    then["factors"]["items"] = section(factor_keys());
+    then["factors"]["items"] = section(factor_keys);
     then["factors"]["items"]["properties"]["name"].update(name);
     then["fixed"] = {{"additionalProperties", {{"type", {"number", "string"}}}},
                      {"properties", {{std::string(notes_key), notes_schema()}}}};
@@ -354,17 +354,17 @@ OrderedJson defined_scene_rule(std::string_view word, OrderedJson accuracy) {
 }
 
 OrderedJson program_section_schema() {
-    OrderedJson schema = section(program_keys());
+    OrderedJson schema = section(program_keys);
     auto& properties = schema["properties"];
     properties["command"]["minItems"] = 1;
     properties["environment"]["additionalProperties"] = {{"type", "string"}};
-    properties["parameters"].update(named_schema(section(program_parameter_keys())));
-    OrderedJson observable = section(program_observable_keys());
-    observable["properties"]["from"].update(section(program_from_keys()));
+    properties["parameters"].update(named_schema(section(program_parameter_keys)));
+    OrderedJson observable = section(program_observable_keys);
+    observable["properties"]["from"].update(section(program_from_keys));
     observable["properties"]["from"]["oneOf"] = {
         {{"required", {"json", "path"}}}, {{"required", {"csv", "column"}}}, {{"required", {"output"}}}};
     properties["observables"].update(named_schema(std::move(observable)));
-    properties["version"].update(section(program_version_keys()));
+    properties["version"].update(section(program_version_keys));
     return schema;
 }
 
@@ -377,7 +377,7 @@ std::string pattern_of_reserved_names() {
         return pattern;
     };
     std::string pattern = fmt::format("^(?:{}.*", folded("sqlite_"));
-    for (const auto& name : reserved_names()) pattern += "|" + folded(name);
+    for (const auto& name : reserved_names) pattern += "|" + folded(name);
     return pattern + ")$";
 }
 
@@ -395,14 +395,14 @@ OrderedJson file_schema(std::string_view file, std::string_view description, Ord
 }  // namespace
 
 std::string powder_schema(int indentation) {
-    OrderedJson schema = file_schema("powder", "material, sizes, contacts", section(powder_keys::top()));
+    OrderedJson schema = file_schema("powder", "material, sizes, contacts", section(powder_keys::top));
     auto& properties = schema["properties"];
-    properties["material"].update(properties_of_powder(powder_keys::material()));
+    properties["material"].update(properties_of_powder(powder_keys::material));
     properties["contacts"].update(properties_of_powder(powder_keys::contacts()));
     properties["sizes"].update(sizes_of_powder());
-    properties["cut"].update(positive_values(powder_keys::cut()));
+    properties["cut"].update(positive_values(powder_keys::cut));
     properties["cut"]["minProperties"] = 1;
-    properties["measured"]["items"] = section(powder_keys::measured());
+    properties["measured"]["items"] = section(powder_keys::measured);
     for (const char* key : {"value", "error"})
         properties["measured"]["items"]["properties"][key]["type"] = {"number", "string"};
     return schema.dump(indentation);
@@ -420,14 +420,14 @@ std::string machine_schema(int indentation) {
     };
     auto& properties = schema["properties"];
     properties["let"] = named_schema({{"type", {"number", "string", "object"}}});
-    properties["gravity"]["anyOf"] = {vector_schema(), section(keys::gravity())};
+    properties["gravity"]["anyOf"] = {vector_schema(), section(keys::gravity)};
     auto& wall = properties["walls"]["additionalProperties"];
     wall["oneOf"] = one_of(keys::shapes(), {"triangles", "stl"});
     wall["properties"]["during"] = names_schema();
     wall["properties"]["motion"]["items"]["oneOf"] = one_of(keys::motions(), {});
     wall["properties"]["motion"]["items"]["properties"]["during"] = names_schema();
     auto& fill = properties["fill"]["items"]["properties"];
-    fill["spheres"]["anyOf"] = {{{"type", "string"}}, {{"type", "array"}, {"items", section(keys::sphere())}}};
+    fill["spheres"]["anyOf"] = {{{"type", "string"}}, {{"type", "array"}, {"items", section(keys::sphere)}}};
     fill["mix"] = named_schema(quantity_schema());
     fill["by"] = word_or_parameter(fill["by"]);
     auto& spread = properties["species"]["additionalProperties"]["properties"]["sizes"]["properties"]["spread"];
@@ -440,10 +440,10 @@ std::string machine_schema(int indentation) {
     disc["properties"]["disc"] =
         section(std::ranges::find(keys::shapes(), std::string_view("disc"), &Type::name)->fields);
     feed["through"]["anyOf"] = {{{"$ref", "#/$defs/region"}}, std::move(disc)};
-    OrderedJson until = section(keys::until());
+    OrderedJson until = section(keys::until);
     properties["phases"]["items"]["properties"]["until"]["anyOf"] = {until, {{"type", "array"}, {"items", until}}};
 
-    OrderedJson probe = section(keys::measure());
+    OrderedJson probe = section(keys::measure);
     probe["properties"]["during"] = names_schema();
     OrderedJson probes = OrderedJson::array();
     for (const auto& info : keys::probes()) {
@@ -453,7 +453,7 @@ std::string machine_schema(int indentation) {
     }
     probe["oneOf"] = std::move(probes);
     OrderedJson entry;
-    entry["anyOf"] = {{{"type", "string"}}, section(keys::expression()), section(keys::time_of()), std::move(probe)};
+    entry["anyOf"] = {{{"type", "string"}}, section(keys::expression), section(keys::time_of), std::move(probe)};
     properties["measure"].update(named_schema(std::move(entry)));
 
     OrderedJson region = {{"type", "object"}, {"minProperties", 1}, {"maxProperties", 1}};
@@ -477,7 +477,7 @@ std::string program_schema(int indentation) {
 
 std::string campaign_schema(int indentation) {
     OrderedJson schema = file_schema("campaign", "one scene, factors that vary, a design over them, and when to stop",
-                                     section(campaign_keys()));
+                                     section(campaign_keys));
     // Members are kept in a vector: all of this level stand before one of them is referred to.
     schema["oneOf"] = {{{"required", {"design"}}}, {{"required", {"calibration"}}}};
     schema["allOf"] = OrderedJson::array();
@@ -487,27 +487,27 @@ std::string campaign_schema(int indentation) {
     properties["campaign"]["not"]["pattern"] = pattern_of_reserved_names();
     properties["factors"]["minItems"] = 1;
     properties["simplex"].update({{"minItems", 2}, {"uniqueItems", true}});
-    properties["convergence"].update(section(convergence_keys()));
-    properties["accuracy"]["oneOf"] = {{{"type", "string"}}, section(accuracy_keys())};
-    properties["model"].update(section(model_keys()));
+    properties["convergence"].update(section(convergence_keys));
+    properties["accuracy"]["oneOf"] = {{{"type", "string"}}, section(accuracy_keys)};
+    properties["model"].update(section(model_keys));
     properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});
-    properties["calibration"].update(section(calibration_keys()));
+    properties["calibration"].update(section(calibration_keys));
     auto& calibration = properties["calibration"]["properties"];
-    calibration["targets"]["items"] = section(target_keys());
+    calibration["targets"]["items"] = section(target_keys);
     for (const char* key : {"value", "error"})
         calibration["targets"]["items"]["properties"][key]["type"] = {"number", "string"};
-    calibration["targets"]["items"]["properties"]["without_value"].update(section(without_value_keys()));
+    calibration["targets"]["items"]["properties"]["without_value"].update(section(without_value_keys));
     calibration["experiments"]["minProperties"] = 1;
-    calibration["experiments"]["additionalProperties"] = section(experiment_keys());
+    calibration["experiments"]["additionalProperties"] = section(experiment_keys);
     calibration["experiments"]["properties"][std::string(notes_key)] = notes_schema();
     OrderedJson several;
     several["required"] = {"calibration"};
     several["properties"]["calibration"]["required"] = {"experiments"};
     schema["anyOf"] = {{{"required", {"scene"}}}, several};
-    properties["calibration"]["properties"]["stop"].update(section(stop_keys()));
+    properties["calibration"]["properties"]["stop"].update(section(stop_keys));
     properties["program"].update(program_section_schema());
-    properties["limits"].update(section(limits_keys()));
-    properties["execution"].update(section(execution_keys()));
+    properties["limits"].update(section(limits_keys));
+    properties["execution"].update(section(execution_keys));
     properties["design"]["oneOf"] = OrderedJson::array();
     for (const auto& design : designs::design_catalogue())
         properties["design"]["oneOf"].push_back(design_schema(design));
@@ -518,7 +518,7 @@ std::string campaign_schema(int indentation) {
     }
     scenes.push_back(program_word);
     schema["allOf"].push_back(
-        defined_scene_rule(program_word, {{"oneOf", {{{"type", "string"}}, section(accuracy_keys())}}}));
+        defined_scene_rule(program_word, {{"oneOf", {{{"type", "string"}}, section(accuracy_keys)}}}));
     scenes.push_back(machine_word);
     schema["allOf"].push_back(defined_scene_rule(
         machine_word, accuracy_schema(OrderedJson::array({"fast", "balanced", "fine", "reference"}), {})));

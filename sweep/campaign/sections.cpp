@@ -101,7 +101,7 @@ std::optional<double> read_time_limit(const Section& section, std::string_view k
 constexpr std::int64_t fewest_rounds = 4;
 
 AccuracyGoal read_goal(const Cursor& place, const SceneInfo& scene, const std::vector<std::string>& offered) {
-    const Section section(place, accuracy_keys());
+    const Section section(place, accuracy_keys);
     if (!scene.accuracy.contains(AccuracyGoal::measure))
         place.refuse(
             fmt::format("scene '{}' has no setting '{}' to compare with", scene.shown(), AccuracyGoal::measure));
@@ -197,7 +197,7 @@ void check_accuracy(const Cursor& place, const Campaign& campaign) {
 }
 
 Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
-    const Section section(place, convergence_keys());
+    const Section section(place, convergence_keys);
     Convergence convergence;
     convergence.observable = read_scalar(section.at("observable"), campaign.scene());
     convergence.rule = section.word("rule", convergence.rule);
@@ -219,7 +219,7 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
 }
 
 std::vector<std::string> read_features(const Cursor& place) {
-    const Section section(place, model_keys());
+    const Section section(place, model_keys);
     auto features = section.words("features", {});
     const auto list = section.at("features");
     if (features.empty()) list.refuse("a model needs at least one feature; leave it out for those by default");
@@ -233,7 +233,7 @@ std::vector<std::string> read_features(const Cursor& place) {
 }
 
 Limits read_limits(const Cursor& place) {
-    const Section section(place, limits_keys());
+    const Section section(place, limits_keys);
     Limits limits;
     limits.wall_seconds = read_time_limit(section, "wall_seconds", limits.wall_seconds, shortest_limit);
     limits.attempts = section.whole("attempts", limits.attempts);
@@ -241,7 +241,7 @@ Limits read_limits(const Cursor& place) {
 }
 
 Execution read_execution(const Cursor& place) {
-    const Section section(place, execution_keys());
+    const Section section(place, execution_keys);
     Execution execution;
     execution.workers = unless_zero(section.whole("workers", 0));
     execution.launcher = section.words("launcher", {});

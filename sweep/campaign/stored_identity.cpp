@@ -195,7 +195,7 @@ std::vector<Factor> factors_of(const Cursor& place, const SceneInfo* scene) {
     Samples samples;
     for (const auto& element : place.elements()) {
         const auto parameter = resolved_parameter(element.json(), scene);
-        factors.push_back(read_factor(Section(element, factor_keys()), parameter, {}));
+        factors.push_back(read_factor(Section(element, factor_keys), parameter, {}));
         factors.back().unit = scene == nullptr ? "" : parameter.unit;
         if (const auto sample = element.json().find("sample"); sample != element.json().end())
             samples.add(factors.size() - 1, {sample->at("column"), sample->at("of"), sample->at("values")});

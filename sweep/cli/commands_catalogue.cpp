@@ -204,11 +204,11 @@ store::Table program_table() {
     const auto add = [&](const char* object, std::span<const Field> keys) {
         add_fields(table, object, {object, {}, keys});
     };
-    add("program", campaign::program_keys());
-    add("parameters.NAME", campaign::program_parameter_keys());
-    add("observables.NAME", campaign::program_observable_keys());
-    add("observables.NAME.from", campaign::program_from_keys());
-    add("version", campaign::program_version_keys());
+    add("program", campaign::program_keys);
+    add("parameters.NAME", campaign::program_parameter_keys);
+    add("observables.NAME", campaign::program_observable_keys);
+    add("observables.NAME.from", campaign::program_from_keys);
+    add("version", campaign::program_version_keys);
     return table;
 }
 

@@ -127,16 +127,16 @@ std::string keys_section() {
             text += item(bold(std::string(key.name)), plain(meaning) + ".");
         }
     };
-    add("The campaign", campaign::campaign_keys());
-    add("A factor", campaign::factor_keys());
-    add("Convergence", campaign::convergence_keys());
-    add("A calibration", campaign::calibration_keys());
-    add("An experiment of a calibration", campaign::experiment_keys());
-    add("A target of a calibration", campaign::target_keys());
-    add("Runs without a value of a target", campaign::without_value_keys());
-    add("Program", campaign::program_keys());
-    add("Limits", campaign::limits_keys());
-    add("Execution", campaign::execution_keys());
+    add("The campaign", campaign::campaign_keys);
+    add("A factor", campaign::factor_keys);
+    add("Convergence", campaign::convergence_keys);
+    add("A calibration", campaign::calibration_keys);
+    add("An experiment of a calibration", campaign::experiment_keys);
+    add("A target of a calibration", campaign::target_keys);
+    add("Runs without a value of a target", campaign::without_value_keys);
+    add("Program", campaign::program_keys);
+    add("Limits", campaign::limits_keys);
+    add("Execution", campaign::execution_keys);
     return text;
 }
 

@@ -68,12 +68,12 @@ TEST(Schema, IsDraft2020AndRefusesUnknownKeysEverywhere) {
 
 TEST(Schema, HasTheKeysOfTheReader) {
     const auto& properties = schema()["properties"];
-    auto of_the_file = key_names(campaign_keys());
+    auto of_the_file = key_names(campaign_keys);
     of_the_file.emplace(schema_key);
     EXPECT_EQ(keys_of(properties), of_the_file);
-    EXPECT_EQ(keys_of(properties["convergence"]["properties"]), key_names(convergence_keys()));
-    EXPECT_EQ(keys_of(properties["limits"]["properties"]), key_names(limits_keys()));
-    EXPECT_EQ(keys_of(properties["execution"]["properties"]), key_names(execution_keys()));
+    EXPECT_EQ(keys_of(properties["convergence"]["properties"]), key_names(convergence_keys));
+    EXPECT_EQ(keys_of(properties["limits"]["properties"]), key_names(limits_keys));
+    EXPECT_EQ(keys_of(properties["execution"]["properties"]), key_names(execution_keys));
     const auto designs = designs::design_catalogue();
     ASSERT_EQ(properties["design"]["oneOf"].size(), designs.size());
     for (std::size_t k = 0; k < designs.size(); ++k) {
@@ -86,7 +86,7 @@ TEST(Schema, RefusesTheNamesTheReaderRefuses) {
     const std::regex allowed(schema()["properties"]["campaign"]["pattern"].get<std::string>());
     std::vector<std::string> names = {"trial",   "seriess", "my_series", "SQLite_x",
                                       "sqlitex", "2nd",     "a-b",       "Case_Input"};
-    for (const auto& name : reserved_names()) {
+    for (const auto& name : reserved_names) {
         names.emplace_back(name);
         names.push_back(static_cast<char>(name.front() - 'a' + 'A') + std::string(name.substr(1)));
     }
@@ -135,7 +135,7 @@ TEST(Schema, EveryKeyItHasIsReadAndEveryOtherRefused) {
         unknown[place]["note"] = "a remark";
         EXPECT_FALSE(reads(unknown)) << section;
     }
-    for (const auto& key : campaign_keys()) {
+    for (const auto& key : campaign_keys) {
         json without = sound;
         without.erase(std::string(key.name));
         const bool needed = key.required || key.name == "design" || key.name == "scene";  // or a calibration

@@ -63,7 +63,7 @@ TEST(Synonyms, AWordThatOnlyOneNameHasBetweenItsUnderscoresIsThatName) {
 
 TEST(Synonyms, OfKeysShowHowTheKeyIsUsed) {
     std::vector<std::string> keys;
-    for (const auto& key : campaign::factor_keys()) keys.emplace_back(key.name);
+    for (const auto& key : campaign::factor_keys) keys.emplace_back(key.name);
     for (const char* word : {"min", "max", "low", "high", "range"})
         EXPECT_EQ(nearest_word(word, keys), "\"between\": [low, high]") << word;
     EXPECT_EQ(nearest_word("values", keys), "\"levels\": [...]");
