@@ -2,7 +2,6 @@
 
 #include "sweep/study/answers.hpp"
 #include "sweep/study/box_search.hpp"
-#include "sweep/study/factor_axis.hpp"
 
 #include <algorithm>
 #include <array>

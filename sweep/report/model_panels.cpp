@@ -1,7 +1,7 @@
 #include "sweep/report/model_panels.hpp"
 
 #include "sweep/report/figure_kinds.hpp"
-#include "sweep/study/factor_axis.hpp"
+#include "sweep/study/box_search.hpp"
 
 #include <algorithm>
 #include <cmath>

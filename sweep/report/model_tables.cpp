@@ -1,8 +1,8 @@
 #include "sweep/report/model_tables.hpp"
 
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/study/box_search.hpp"
 #include "sweep/study/error_text.hpp"
-#include "sweep/study/factor_axis.hpp"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/window_tables.hpp"
-#include "sweep/study/factor_axis.hpp"
+#include "sweep/study/box_search.hpp"
 
 #include <fmt/format.h>
 

@@ -21,8 +21,8 @@ designs::PointSet sobol(std::size_t dimensions, std::size_t count) {
 
 constexpr int digits_of_range = 3, digits_of_share = 3, digits_of_last_share = 12;
 
-bool has_levels(const ModelFactor& factor) {
-    return factor.is_word() || !factor.numbers.empty();
+std::size_t levels_of(const ModelFactor& factor) {
+    return factor.is_word() ? factor.choices() : factor.numbers.size();
 }
 
 std::size_t level_at(double u, std::size_t levels) {
@@ -60,6 +60,21 @@ double number_at(std::span<const ModelFactor> factors, std::size_t j, std::span<
     return joint ? *joint : factor.number(u[j]);
 }
 
+std::size_t places_of(const ModelFactor& factor, std::size_t count) {
+    const auto levels = levels_of(factor);
+    if (levels > 0) return levels;
+    if (const auto multiples = along_axis(factor).multiples()) count = std::min(count, *multiples);
+    return factor.high() > factor.low() ? count : 1;
+}
+
+/// Returns the numbers at the fractions (k + offset)/parts of the range, for k below count.
+std::vector<double> numbers_at(const ModelFactor& factor, std::size_t count, double offset, std::size_t parts) {
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < count; ++k)
+        numbers.push_back(number_along(factor, (static_cast<double>(k) + offset) / static_cast<double>(parts)));
+    return numbers;
+}
+
 /// Puts shares in the place of the coordinates of shares; rounded, they still add to one.
 void share_out(std::span<const ModelFactor> factors, std::span<const double> u, bool round, Setting& setting) {
     std::vector<std::size_t> places;
@@ -89,8 +104,8 @@ template <class Finish>
 Setting setting_at(std::span<const ModelFactor> factors, std::span<const double> u, Finish finish, bool round) {
     Setting setting;
     for (std::size_t j = 0; j < factors.size(); ++j)
-        setting.push_back(has_levels(factors[j]) ? number_along(factors[j], u[j])
-                                                 : finish(factors[j], number_at(factors, j, u)));
+        setting.push_back(levels_of(factors[j]) > 0 ? number_along(factors[j], u[j])
+                                                    : finish(factors[j], number_at(factors, j, u)));
     share_out(factors, u, round, setting);
     if (setting.size() > 1) fold(factors, setting);  // a factor by itself stands on its axis
     return setting;
@@ -148,12 +163,42 @@ std::vector<BoxPoint> points_about(const BoxPoint& centre, double reach, std::sp
     for (std::size_t p = 0; p < set.size(); ++p) {
         BoxPoint point = centre;
         for (std::size_t j = 0; j < factors.size(); ++j)
-            if (!has_levels(factors[j]))
+            if (levels_of(factors[j]) == 0)
                 point.u[j] = std::clamp(centre.u[j] + reach * (2 * set.point(p)[j] - 1), 0.0, 1.0);
         point.setting = rounded_setting(factors, point.u);
         if (!admits || admits(point.setting)) points.push_back(std::move(point));
     }
     return points;
+}
+
+std::vector<double> points_along(const ModelFactor& factor, std::size_t count) {
+    const auto places = places_of(factor, count);
+    if (levels_of(factor) > 0 || places == 1) return cells_along(factor, count);
+    return numbers_at(factor, places, 0, places - 1);
+}
+
+std::vector<double> cells_along(const ModelFactor& factor, std::size_t count) {
+    const auto places = places_of(factor, count);
+    return numbers_at(factor, places, 0.5, places);
+}
+
+std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count) {
+    if (levels_of(factor) > 0) return {};
+    const auto places = places_of(factor, count);
+    return numbers_at(factor, places + 1, 0, places);
+}
+
+std::vector<Setting> settings_of_map(std::span<const ModelFactor> factors, const Setting& centre, std::size_t a,
+                                     std::size_t b, std::size_t count) {
+    const auto across = cells_along(factors[a], count), up = cells_along(factors[b], count);
+    std::vector<Setting> settings;
+    for (const double y : up)
+        for (const double x : across) {
+            settings.push_back(centre);
+            place(factors, settings.back(), a, x);
+            place(factors, settings.back(), b, y, std::span(&a, 1));
+        }
+    return settings;
 }
 
 }  // namespace grainsweep::study
