@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace grainsweep::campaign {
@@ -67,6 +68,29 @@ std::optional<CsvRecord> CsvTable::next() {
     auto record = take();
     if (record && record->size() != header_.size())
         refuse_(fmt::format("record {} has {} cells and the header {}", number_, record->size(), header_.size()));
+    return record;
+}
+
+CsvRecord take_csv_record(std::string_view& rest, char separator) {
+    CsvRecord record(1);
+    bool quoted = false;
+    std::size_t k = 0;
+    for (; k < rest.size(); ++k) {
+        const char c = rest[k];
+        if (quoted && c == '"' && k + 1 < rest.size() && rest[k + 1] == '"') {
+            record.back() += rest[++k];
+        } else if (c == '"') {
+            quoted = !quoted;
+        } else if (!quoted && c == separator) {
+            record.emplace_back();
+        } else if (!quoted && c == '\n') {
+            break;
+        } else if (quoted || c != '\r') {
+            record.back() += c;
+        }
+    }
+    rest.remove_prefix(std::min(k + 1, rest.size()));
+    for (auto& cell : record) cell = trimmed(cell);
     return record;
 }
 

@@ -1,15 +1,20 @@
 // A CSV file of numbers or words under a header (RFC 4180), record by record.
 #pragma once
 
-#include "sweep/campaign/csv_record.hpp"
-
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::campaign {
+
+/// Record of cells, without blanks around them.
+using CsvRecord = std::vector<std::string>;
+
+/// Takes one record from `rest`, which advances behind its line end. Quoted cells may contain separators and line ends.
+[[nodiscard]] CsvRecord take_csv_record(std::string_view& rest, char separator = ',');
 
 /// Table with a header. Empty lines are skipped. Refused are a first line of numbers, a column without a name (row
 /// names of data frames), a repeated name, another separator, a record of another length, and UTF-16.

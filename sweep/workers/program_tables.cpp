@@ -1,7 +1,7 @@
 #include "sweep/workers/program_tables.hpp"
 
 #include "solver/plain_text.hpp"
-#include "sweep/campaign/csv_record.hpp"
+#include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/workers/worker_state.hpp"
 
