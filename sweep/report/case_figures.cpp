@@ -2,7 +2,6 @@
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/report/figure_kinds.hpp"
-#include "sweep/study/cell_means.hpp"
 #include "sweep/study/effects.hpp"
 
 #include <fmt/format.h>

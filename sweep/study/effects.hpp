@@ -1,5 +1,5 @@
-// Histogram of a response and its mean in bins of each factor. A figure of ten thousand cases therefore has no more
-// elements than one of a hundred.
+// Histogram of a response, and its mean in bins of each factor and in cells of two. A figure of ten thousand cases
+// therefore has no more elements than one of a hundred.
 #pragma once
 
 #include "stats/variance_split.hpp"
@@ -52,5 +52,15 @@ struct EffectBin {
 /// 16 bins of equal count, or fewer so that each has at least 8 cases. Rows without a response are left out.
 [[nodiscard]] std::vector<EffectBin> main_effect(const FactorColumn& factor, std::span<const double> response,
                                                  const EffectErrors& errors);
+
+/// Mean response in cells of two factors. Each level, and each of up to 12 distinct values, is a cell of its own.
+/// Otherwise sqrt(n/8) cells, 3 to 14, divide the range evenly, a logarithmic range in its logarithm.
+struct CellMeans {
+    std::vector<double> x_edges, y_edges;  ///< for levels -0.5, 0.5, ...
+    std::vector<double> means;             ///< row by row along y; NaN: cell without a case
+};
+
+/// Returns the means over the rows that have values of both factors and of the response.
+[[nodiscard]] CellMeans cell_means(const FactorColumn& across, const FactorColumn& up, const ResponseColumn& response);
 
 }  // namespace grainsweep::study

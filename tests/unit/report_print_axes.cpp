@@ -1,6 +1,6 @@
 // Units of figures for print, and the cells of their maps.
 #include "sweep/report/print_axes.hpp"
-#include "sweep/study/cell_means.hpp"
+#include "sweep/study/effects.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
