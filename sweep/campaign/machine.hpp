@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -55,6 +56,12 @@ using FileReader = std::function<std::string(const std::string& name)>;
 [[nodiscard]] std::shared_ptr<const Machine> read_machine(const std::filesystem::path& file);
 /// Returns the machine as numbers, for complete inputs and the contents of their files. Throws InputError.
 [[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs, const Files& files = {});
+
+/// Calls show(picture, time) of a machine before it runs, for equally spaced times from the start to the latest end. If
+/// the fillings do not fit, the machine is drawn without particles; returns why they do not, in one sentence, else
+/// empty. Throws InputError if the combination of inputs is impossible otherwise.
+[[nodiscard]] std::string draw_machine(const Machine& machine, const Inputs& inputs, std::int64_t frames,
+                                       const std::function<void(const Snapshot&, double time)>& show);
 
 /// Returns the value in the unit with which expressions of a machine calculate: "12.6 rad/s" for 120 rpm. Empty: it is
 /// the unit of the parameter.

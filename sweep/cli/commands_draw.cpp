@@ -1,7 +1,6 @@
 // draw: a machine in three dimensions before it runs.
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine.hpp"
-#include "sweep/campaign/machine_drawing.hpp"
 #include "sweep/cli/asked_case.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"

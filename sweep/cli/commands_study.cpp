@@ -2,7 +2,6 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/machine.hpp"
-#include "sweep/campaign/machine_drawing.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/stored_case.hpp"
