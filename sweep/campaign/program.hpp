@@ -105,6 +105,9 @@ struct Program {
     [[nodiscard]] std::int64_t cores_of_a_case() const { return processes * cores; }
 };
 
+/// Returns why a file of this name, from a campaign file or an untrusted database, would not lie in the folder of its
+/// case; empty: it would.
+[[nodiscard]] std::string_view flaw_of_file_name(std::string_view name);
 /// Returns "program:" and 32 hexadecimal digits.
 [[nodiscard]] std::string program_scene_name(const Program& program);
 /// Convert a program, without the contents of its files, to JSON and back. Throws std::invalid_argument for another

@@ -1,7 +1,6 @@
 // "files" and "templates" of a program: the files in every case's folder.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/campaign/program_file_name.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/files/whole_file.hpp"
 

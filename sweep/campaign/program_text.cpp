@@ -3,7 +3,6 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/program_file_name.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
