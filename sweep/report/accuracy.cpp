@@ -1,7 +1,6 @@
 #include "sweep/report/accuracy.hpp"
 
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/report/corrected_tables.hpp"
 #include "sweep/report/print_axes.hpp"
 #include "sweep/study/error_text.hpp"
 

@@ -1,10 +1,14 @@
 // Output of `accuracy` in all forms: cost and bias of each setting, and the cheapest setting within a tolerance; figure
-// of the numerical error against cost, and of the error of a campaign's mean against its cost.
+// of the numerical error against cost, and of the error of a campaign's mean against its cost. Moments of a campaign
+// with an error goal.
 #pragma once
 
 #include "sweep/plot/plot.hpp"
 #include "sweep/report/document.hpp"
+#include "sweep/report/result.hpp"
+#include "sweep/report/results/study.hpp"
 #include "sweep/study/accuracy.hpp"
+#include "sweep/study/corrected.hpp"
 
 #include <span>
 #include <string>
@@ -25,5 +29,10 @@ namespace grainsweep::report {
 /// All errors are relative to the mean at the most accurate setting; an observable whose mean is 0 has no panel.
 [[nodiscard]] plot::Figure accuracy_figure(std::span<const study::NumericsCost> costs,
                                            std::span<const std::string> observables, double tolerance);
+
+/// Returns one row per statistic of a campaign with an error goal: value at the chosen setting, corrected value, and
+/// the parts of the relative error.
+[[nodiscard]] store::Table corrected_table(const study::Corrected& corrected);
+[[nodiscard]] Result<results::corrected> corrected_json(const study::Corrected& corrected);
 
 }  // namespace grainsweep::report

@@ -1,7 +1,7 @@
 #include "sweep/report/convergence_tables.hpp"
 
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/report/corrected_tables.hpp"
+#include "sweep/report/accuracy.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
 
