@@ -10,7 +10,7 @@
 #include "sweep/cli/compute_options.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/run_campaign.hpp"
-#include "sweep/cli/run_summary.hpp"
+#include "sweep/cli/run_ending.hpp"
 #include "sweep/files/aside_file.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/study/calibration_files.hpp"

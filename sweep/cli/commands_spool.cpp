@@ -9,7 +9,7 @@
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/run_campaign.hpp"
-#include "sweep/cli/run_summary.hpp"
+#include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/designs/design.hpp"
 #include "sweep/files/artefacts.hpp"
