@@ -1,7 +1,7 @@
 // "design": its options against the OptionSpecs that the design declares.
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/designs/step.hpp"
+#include "sweep/designs/factor.hpp"
 
 #include <fmt/format.h>
 

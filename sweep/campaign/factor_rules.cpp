@@ -2,7 +2,7 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/simplex.hpp"
-#include "sweep/designs/step.hpp"
+#include "sweep/designs/factor.hpp"
 
 #include <fmt/format.h>
 

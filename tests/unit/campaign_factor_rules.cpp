@@ -4,7 +4,7 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/simplex.hpp"
 #include "sweep/campaign/stored_request.hpp"
-#include "sweep/designs/step.hpp"
+#include "sweep/designs/factor.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/when_clauses.hpp"
 #include "tests/support/stored_both_ways.hpp"
