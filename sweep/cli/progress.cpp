@@ -1,6 +1,7 @@
 #include "sweep/cli/progress.hpp"
 
 #include "sweep/campaign/visible_text.hpp"
+#include "sweep/cli/build_facts.hpp"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -11,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace grainsweep::cli {
@@ -173,6 +175,38 @@ std::string ProgressLine::describe(const schedule::Progress& progress) const {
     if (tally.failed > 0) text += fmt::format(", {} failed", tally.failed);
     if (!progress.judgement.empty()) text += "; " + progress.judgement;
     return text;
+}
+
+NowWriter::NowWriter(const std::filesystem::path& database, std::string campaign, std::size_t cores)
+    : file_(live::now_file(database)), cores_(cores) {
+    now_.campaign = std::move(campaign);
+    now_.host = this_computer().host;
+    now_.process = ::getpid();
+}
+
+NowWriter::~NowWriter() {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+}
+
+void NowWriter::update(const schedule::Progress& progress) {
+    const auto now = Clock::now();
+    if (now - written_ < std::chrono::seconds(1)) return;
+    written_ = now;
+    const auto& tally = progress.tally;
+    now_.questions = static_cast<std::int64_t>(tally.questions);
+    now_.decided = static_cast<std::int64_t>(tally.decided);
+    now_.failed = static_cast<std::int64_t>(tally.failed);
+    now_.settled = static_cast<std::int64_t>(progress.durable);
+    now_.seconds = progress.seconds;
+    now_.seconds_left = seconds_left(progress, cores_);
+    now_.at_most = progress.at_most;
+    now_.judgement = progress.judgement;
+    now_.running.clear();
+    for (const auto& [id, one] : progress.under_way)
+        now_.running.push_back({id, one.attempt, one.share, progress.seconds - one.given,
+                                one.computer ? one.computer->host : std::string()});
+    live::write_now(file_, now_);
 }
 
 }  // namespace grainsweep::cli

@@ -1,10 +1,13 @@
-// Progress on standard error: a bar with rate and time left on a terminal, plain lines elsewhere.
+// Progress of a run: on standard error, a bar with rate and time left on a terminal and plain lines elsewhere; and in a
+// file, for other commands.
 #pragma once
 
+#include "sweep/live/now.hpp"
 #include "sweep/schedule/scheduler.hpp"
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -47,5 +50,25 @@ private:
 
 /// Returns a duration as text: 75 -> "1 min 15 s".
 [[nodiscard]] std::string duration(double seconds);
+
+/// Writer of the file with the present state of a run (live/now.hpp), once a second.
+class NowWriter {
+public:
+    NowWriter(const std::filesystem::path& database, std::string campaign, std::size_t cores);
+    NowWriter(const NowWriter&) = delete;
+    NowWriter& operator=(const NowWriter&) = delete;
+    /// Removes the file.
+    ~NowWriter();
+
+    void update(const schedule::Progress& progress);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    std::filesystem::path file_;
+    live::Now now_;
+    std::size_t cores_;
+    Clock::time_point written_{};
+};
 
 }  // namespace grainsweep::cli

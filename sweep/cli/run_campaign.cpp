@@ -9,7 +9,6 @@
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/folder_beside.hpp"
-#include "sweep/cli/now_writer.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/run_ending.hpp"
