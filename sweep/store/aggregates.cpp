@@ -114,7 +114,7 @@ std::optional<double> stddev_samp(std::span<double> x) {
     return in_range(std::sqrt(d.moment(2) * (n / (n - 1))), d.exponent);
 }
 
-/// Rows of two numbers as two columns.
+/// Sampled of two numbers as two columns.
 std::array<std::vector<double>, 2> transposed(std::span<const double> rows) {
     std::array<std::vector<double>, 2> columns;
     for (std::size_t k = 0; k + 1 < rows.size(); k += 2) {
@@ -133,15 +133,7 @@ std::optional<double> quantile_of(std::span<const double> rows, double whole, co
     return stats::quantile_of_sorted(x, p);
 }
 
-std::optional<double> quantile(std::span<double> rows) {
-    return quantile_of(rows, 1, "quantile(x, p): p is one number from 0 to 1");
-}
-
-std::optional<double> percentile(std::span<double> rows) {
-    return quantile_of(rows, 100, "percentile(x, P): P is one number from 0 to 100");
-}
-
-/// Rows of value, level and sequence as a sample; the level is the same in every row.
+/// Sampled of value, level and sequence as a sample; the level is the same in every row.
 std::optional<double> level_error(std::span<const double> rows, const char* rule, const auto& level_at) {
     std::map<double, std::vector<double>> by_sequence;
     std::vector<double> values, sorted, levels;
@@ -178,24 +170,8 @@ std::optional<double> share_beyond(std::span<const double> rows, const char* rul
     return static_cast<double>(beyond) / static_cast<double>(x.size());
 }
 
-std::optional<double> above(std::span<double> rows) {
-    return share_beyond(rows, "above(x, t): t is one number", true);
-}
-
-std::optional<double> below(std::span<double> rows) {
-    return share_beyond(rows, "below(x, t): t is one number", false);
-}
-
-std::optional<double> above_error(std::span<double> rows) {
-    return level_error(rows, "above_error(x, t, sequence): t is one number", [](double t) {
-        return stats::Exceedance{t, true};
-    });
-}
-
-std::optional<double> below_error(std::span<double> rows) {
-    return level_error(rows, "below_error(x, t, sequence): t is one number", [](double t) {
-        return stats::Exceedance{t, false};
-    });
+std::optional<double> exceedance_error(std::span<const double> rows, const char* rule, bool above) {
+    return level_error(rows, rule, [&](double t) { return stats::Exceedance{t, above}; });
 }
 
 double product_moment(const Deviations& x, const Deviations& y) {
@@ -210,10 +186,6 @@ std::optional<double> covariance(std::span<const double> rows, double factor) {
     return in_range(product_moment(x, y) * factor, x.exponent + y.exponent);
 }
 
-std::optional<double> covar_pop(std::span<double> rows) {
-    return covariance(rows, 1);
-}
-
 std::optional<double> covar_samp(std::span<double> rows) {
     const auto n = static_cast<double>(rows.size() / 2);
     return n < 2 ? std::nullopt : covariance(rows, n / (n - 1));
@@ -226,10 +198,12 @@ std::optional<double> corr(std::span<double> rows) {
     return std::clamp(product_moment(x, y) / (std::sqrt(x.moment(2)) * std::sqrt(y.moment(2))), -1.0, 1.0);
 }
 
+using Sampled = std::span<double>;
+
 struct Aggregate {
     const char* name;
     int arguments;
-    std::optional<double> (*statistic)(std::span<double> rows);
+    std::optional<double> (*statistic)(Sampled rows);
 };
 
 constexpr std::array aggregates = {
@@ -241,15 +215,19 @@ constexpr std::array aggregates = {
     Aggregate{"variance", 1, var_samp},
     Aggregate{"var_samp", 1, var_samp},
     Aggregate{"median", 1, median},
-    Aggregate{"quantile", 2, quantile},
-    Aggregate{"percentile", 2, percentile},
+    Aggregate{"quantile", 2,
+              [](Sampled x) { return quantile_of(x, 1, "quantile(x, p): p is one number from 0 to 1"); }},
+    Aggregate{"percentile", 2,
+              [](Sampled x) { return quantile_of(x, 100, "percentile(x, P): P is one number from 0 to 100"); }},
     Aggregate{"quantile_error", 3, quantile_error},
-    Aggregate{"above", 2, above},
-    Aggregate{"below", 2, below},
-    Aggregate{"above_error", 3, above_error},
-    Aggregate{"below_error", 3, below_error},
+    Aggregate{"above", 2, [](Sampled x) { return share_beyond(x, "above(x, t): t is one number", true); }},
+    Aggregate{"below", 2, [](Sampled x) { return share_beyond(x, "below(x, t): t is one number", false); }},
+    Aggregate{"above_error", 3,
+              [](Sampled x) { return exceedance_error(x, "above_error(x, t, sequence): t is one number", true); }},
+    Aggregate{"below_error", 3,
+              [](Sampled x) { return exceedance_error(x, "below_error(x, t, sequence): t is one number", false); }},
     Aggregate{"corr", 2, corr},
-    Aggregate{"covar_pop", 2, covar_pop},
+    Aggregate{"covar_pop", 2, [](Sampled x) { return covariance(x, 1); }},
     Aggregate{"covar_samp", 2, covar_samp},
     Aggregate{"pearson_skewness", 1, pearson_skewness},
     Aggregate{"g1", 1, g1},
