@@ -265,35 +265,21 @@ plot::Figure draw_against(const FigureSubject& subject, const PanelNames& panels
     return figure;
 }
 
-PanelNames cases_panels(const FigureSubject& subject) {
-    return has_values(subject) ? PanelNames{""} : PanelNames{};
-}
-
 PanelNames map_panels(const FigureSubject& subject) {
     return has_values(subject) && subject.responses.factors.size() > 1 ? PanelNames{""} : PanelNames{};
 }
 
-PanelNames against_panels(const FigureSubject& subject) {
-    return has_values(subject) ? factor_panels(subject) : PanelNames{};
-}
-
 }  // namespace
 
-FigureKind cases_figure() {
-    return {"cases",        "one variable against another, a point per case, coloured by a third",
-            cases_panels,   draw_cases,
-            OnPage::script, {.choice = true, .colour = true, .axis = true, .lines = true}};
-}
+constinit const FigureKind cases_figure{
+    "cases",        "one variable against another, a point per case, coloured by a third", panel_of_values, draw_cases,
+    OnPage::script, {.choice = true, .colour = true, .axis = true, .lines = true}};
 
-FigureKind map_figure() {
-    return {"map",          "mean response over two factors", map_panels, draw_map,
-            OnPage::script, {.choice = true, .axis = true}};
-}
+constinit const FigureKind map_figure{"map",          "mean response over two factors", map_panels, draw_map,
+                                      OnPage::script, {.choice = true, .axis = true}};
 
-FigureKind against_figure() {
-    return {"against",      "response against each factor: cases and binned mean",
-            against_panels, draw_against,
-            OnPage::script, {.axis = true}};
-}
+constinit const FigureKind against_figure{"against",         "response against each factor: cases and binned mean",
+                                          panels_of_factors, draw_against,
+                                          OnPage::script,    {.axis = true}};
 
 }  // namespace grainsweep::report

@@ -75,9 +75,7 @@ PanelNames curves_panels(const FigureSubject& subject) {
 
 }  // namespace
 
-FigureKind curves_figure() {
-    return {"curves",        "series and profiles, a line per case", curves_panels, draw_curves, OnPage::script,
-            {.colour = true}};
-}
+constinit const FigureKind curves_figure{
+    "curves", "series and profiles, a line per case", curves_panels, draw_curves, OnPage::script, {.colour = true}};
 
 }  // namespace grainsweep::report

@@ -31,18 +31,18 @@ struct FigureKind {
 };
 
 // Rows, by file.
-[[nodiscard]] FigureKind distribution_figure();  // response_figures.cpp
-[[nodiscard]] FigureKind convergence_figure();
-[[nodiscard]] FigureKind effects_figure();
-[[nodiscard]] FigureKind sensitivity_figure();  // influence_figures.cpp
-[[nodiscard]] FigureKind variance_figure();
-[[nodiscard]] FigureKind model_figure();  // model_figures.cpp
-[[nodiscard]] FigureKind model_map_figure();
-[[nodiscard]] FigureKind cases_figure();  // case_figures.cpp
-[[nodiscard]] FigureKind map_figure();
-[[nodiscard]] FigureKind against_figure();
-[[nodiscard]] FigureKind curves_figure();     // curve_figures.cpp
-[[nodiscard]] FigureKind posterior_figure();  // posterior_figures.cpp
+extern const FigureKind distribution_figure;  // response_figures.cpp
+extern const FigureKind convergence_figure;
+extern const FigureKind effects_figure;
+extern const FigureKind sensitivity_figure;  // influence_figures.cpp
+extern const FigureKind variance_figure;
+extern const FigureKind model_figure;  // model_figures.cpp
+extern const FigureKind model_map_figure;
+extern const FigureKind cases_figure;  // case_figures.cpp
+extern const FigureKind map_figure;
+extern const FigureKind against_figure;
+extern const FigureKind curves_figure;     // curve_figures.cpp
+extern const FigureKind posterior_figure;  // posterior_figures.cpp
 
 /// Width of figures on a page, and by `figure` without --width, in mm.
 inline constexpr double figure_width_mm = 85;
@@ -56,6 +56,9 @@ inline constexpr double figure_width_mm = 85;
 [[nodiscard]] const study::FactorColumn& factor_named(const FigureSubject& subject, std::string_view name);
 /// Returns whether the response has values.
 [[nodiscard]] bool has_values(const FigureSubject& subject);
+/// Return a single panel, or one per varied factor, if the response has values.
+[[nodiscard]] PanelNames panel_of_values(const FigureSubject& subject);
+[[nodiscard]] PanelNames panels_of_factors(const FigureSubject& subject);
 /// Returns the factors by their share of the response's variance, the most influential first.
 [[nodiscard]] std::vector<const study::FactorColumn*> by_influence(const FigureSubject& subject);
 /// Returns the variable that an option names: factor, response or "point". Throws InputError with the nearest name.

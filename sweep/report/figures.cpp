@@ -16,9 +16,8 @@ namespace {
 /// In the order of the report.
 const std::vector<FigureKind>& figure_kinds() {
     static const std::vector<FigureKind> kinds = {
-        posterior_figure(),   distribution_figure(), convergence_figure(), effects_figure(),
-        sensitivity_figure(), variance_figure(),     model_figure(),       model_map_figure(),
-        cases_figure(),       map_figure(),          against_figure(),     curves_figure(),
+        posterior_figure, distribution_figure, convergence_figure, effects_figure, sensitivity_figure, variance_figure,
+        model_figure,     model_map_figure,    cases_figure,       map_figure,     against_figure,     curves_figure,
     };
     return kinds;
 }
@@ -129,6 +128,14 @@ const study::FactorColumn& factor_named(const FigureSubject& subject, std::strin
 
 bool has_values(const FigureSubject& subject) {
     return std::ranges::any_of(subject.responses.judged(subject.response), [](double x) { return std::isfinite(x); });
+}
+
+PanelNames panel_of_values(const FigureSubject& subject) {
+    return has_values(subject) ? PanelNames{""} : PanelNames{};
+}
+
+PanelNames panels_of_factors(const FigureSubject& subject) {
+    return has_values(subject) ? factor_panels(subject) : PanelNames{};
 }
 
 std::vector<const study::FactorColumn*> by_influence(const FigureSubject& subject) {

@@ -138,13 +138,10 @@ PanelNames sensitivity_panels(const FigureSubject& subject) {
 
 }  // namespace
 
-FigureKind sensitivity_figure() {
-    return {"sensitivity", "what each factor explains of the response, with 95 % errors", sensitivity_panels,
-            draw_sensitivity};
-}
+constinit const FigureKind sensitivity_figure{
+    "sensitivity", "what each factor explains of the response, with 95 % errors", sensitivity_panels, draw_sensitivity};
 
-FigureKind variance_figure() {
-    return {"variance", "parts of the variance: main effects, interactions, scatter", variance_panels, draw_variance};
-}
+constinit const FigureKind variance_figure{"variance", "parts of the variance: main effects, interactions, scatter",
+                                           variance_panels, draw_variance};
 
 }  // namespace grainsweep::report

@@ -64,11 +64,7 @@ plot::Figure draw_model_map(const FigureSubject& subject, const PanelNames& pane
     return figure;
 }
 
-/// Returns the panels without fitting a model. If a model is refused, drawing its figure reports the reason.
-PanelNames model_panels(const FigureSubject& subject) {
-    return has_values(subject) ? factor_panels(subject) : PanelNames{};
-}
-
+/// Panels do not need a fitted model. If a model is refused, drawing its figure reports the reason.
 PanelNames model_map_panels(const FigureSubject& subject) {
     if (!has_values(subject) || subject.responses.factors.size() < 2) return {};
     return subject.responses.factors.size() == 2 ? PanelNames{"averaged"} : PanelNames{"averaged", "mid-range"};
@@ -76,17 +72,13 @@ PanelNames model_map_panels(const FigureSubject& subject) {
 
 }  // namespace
 
-FigureKind model_figure() {
-    return {"model",       "response model against each factor, with 95 % bands",
-            model_panels,  draw_model,
-            OnPage::model, {.axis = true}};
-}
+constinit const FigureKind model_figure{"model",           "response model against each factor, with 95 % bands",
+                                        panels_of_factors, draw_model,
+                                        OnPage::model,     {.axis = true}};
 
-FigureKind model_map_figure() {
-    return {
-        "model-map",      "response model over the two most influential factors; the others averaged, or at mid-range",
-        model_map_panels, draw_model_map,
-        OnPage::model,    {.axis = true}};
-}
+constinit const FigureKind model_map_figure{
+    "model-map",      "response model over the two most influential factors; the others averaged, or at mid-range",
+    model_map_panels, draw_model_map,
+    OnPage::model,    {.axis = true}};
 
 }  // namespace grainsweep::report

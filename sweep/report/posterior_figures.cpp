@@ -117,9 +117,8 @@ plot::Figure draw_posterior(const FigureSubject& subject, const PanelNames& pane
 
 }  // namespace
 
-FigureKind posterior_figure() {
-    return {"posterior", "calibrated factors: prior and posterior, and the settings that were run", posterior_panels,
-            draw_posterior, OnPage::campaign};
-}
+constinit const FigureKind posterior_figure{"posterior",
+                                            "calibrated factors: prior and posterior, and the settings that were run",
+                                            posterior_panels, draw_posterior, OnPage::campaign};
 
 }  // namespace grainsweep::report

@@ -154,30 +154,18 @@ plot::Figure draw_effects(const FigureSubject& subject, const PanelNames& panels
     return figure;
 }
 
-PanelNames single_of_values(const FigureSubject& subject) {
-    return has_values(subject) ? PanelNames{""} : PanelNames{};
-}
-
-PanelNames factors_of_values(const FigureSubject& subject) {
-    return has_values(subject) ? factor_panels(subject) : PanelNames{};
-}
-
 }  // namespace
 
-FigureKind distribution_figure() {
-    return {"distribution", "distribution of the response", single_of_values, draw_distribution, OnPage::response,
-            {.axis = true}};
-}
+constinit const FigureKind distribution_figure{"distribution",   "distribution of the response",
+                                               panel_of_values,  draw_distribution,
+                                               OnPage::response, {.axis = true}};
 
-FigureKind convergence_figure() {
-    return {"convergence", "moments against the number of design points, with 95 % errors", convergence_panels,
-            draw_convergence};
-}
+constinit const FigureKind convergence_figure{"convergence",
+                                              "moments against the number of design points, with 95 % errors",
+                                              convergence_panels, draw_convergence};
 
-FigureKind effects_figure() {
-    return {"effects",         "mean response against each factor, with 95 % errors",
-            factors_of_values, draw_effects,
-            OnPage::response,  {.axis = true}};
-}
+constinit const FigureKind effects_figure{"effects",         "mean response against each factor, with 95 % errors",
+                                          panels_of_factors, draw_effects,
+                                          OnPage::response,  {.axis = true}};
 
 }  // namespace grainsweep::report
