@@ -15,6 +15,7 @@
 #include "sweep/report/results/catalogues.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -31,7 +32,11 @@ namespace {
 
 // ---- manual page
 
-using Entries = std::vector<std::pair<std::string_view, std::string_view>>;
+using Entry = std::pair<std::string_view, std::string_view>;
+using TroffEscape = std::pair<char, std::string_view>;
+
+constexpr TroffEscape troff_escapes[] = {{'\\', "\\e"},  {'-', "\\-"},   {'\'', "\\(aq"},
+                                         {'^', "\\(ha"}, {'~', "\\(ti"}, {'`', "\\(ga"}};
 
 /// Text as troff reads it: no character of it is a request, a dash is one that can be copied.
 std::string plain(std::string_view text) {
@@ -40,21 +45,8 @@ std::string plain(std::string_view text) {
     for (const char c : text) {
         if (line_start && (c == '.' || c == '\'')) out += "\\&";
         line_start = c == '\n';
-        if (c == '\\') {
-            out += "\\e";
-        } else if (c == '-') {
-            out += "\\-";
-        } else if (c == '\'') {
-            out += "\\(aq";
-        } else if (c == '^') {
-            out += "\\(ha";
-        } else if (c == '~') {
-            out += "\\(ti";
-        } else if (c == '`') {
-            out += "\\(ga";
-        } else {
-            out += c;
-        }
+        const auto escape = std::ranges::find(troff_escapes, c, &TroffEscape::first);
+        out += escape == std::end(troff_escapes) ? std::string_view(&c, 1) : escape->second;
     }
     return out;
 }
@@ -149,55 +141,48 @@ std::string catalogue_sections() {
     return text;
 }
 
-std::string entries_section(std::string_view title, const Entries& entries) {
+std::string entries_section(std::string_view title, std::span<const Entry> entries) {
     std::string text = section(title);
     for (const auto& [tag, meaning] : entries) text += item(bold(tag), plain(meaning));
     return text;
 }
 
-const Entries& exit_codes() {
-    static const Entries codes = {
-        {"0", "Success. run: every case is completed or skipped, or the campaign converged."},
-        {"1",
-         "run: finished, but cases failed or are left. solve, replay: no result, or a different one. converge --check: "
-         "not converged."},
-        {"2", "Invalid arguments or campaign file. Nothing was written."},
-        {"3", "The disk is full, or the database is damaged or in use. Stored results are intact."},
-        {"75", "Out of time, or ended by TERM or USR1. Run again to resume."},
-        {"130", "Interrupted by Ctrl-C. Run again to resume."},
-    };
-    return codes;
-}
+constexpr Entry exit_codes[] = {
+    {"0", "Success. run: every case is completed or skipped, or the campaign converged."},
+    {"1",
+     "run: finished, but cases failed or are left. solve, replay: no result, or a different one. converge --check: "
+     "not converged."},
+    {"2", "Invalid arguments or campaign file. Nothing was written."},
+    {"3", "The disk is full, or the database is damaged or in use. Stored results are intact."},
+    {"75", "Out of time, or ended by TERM or USR1. Run again to resume."},
+    {"130", "Interrupted by Ctrl-C. Run again to resume."},
+};
 
-const Entries& files() {
-    static const Entries entries = {
-        {"NAME.db",
-         "The database of campaign NAME, in SQLite's format: one file after every command. While a run "
-         "writes it, NAME.db-wal and NAME.db-shm belong to it."},
-        {"NAME.artefacts",
-         "Folder beside the database with shared starting states and checkpoints. It may be removed while no "
-         "run is active."},
-        {"NAME.html", "The page that report writes."},
-    };
-    return entries;
-}
+constexpr Entry variables[] = {{"COLUMNS", "Width of text where standard output is not a terminal."}};
 
-const Entries& functions_of_query() {
-    static const Entries entries = {
-        {"sd(x), stddev_pop(x), var_pop(x)", "Standard deviation and variance, dividing by N."},
-        {"stddev(x), stddev_samp(x), variance(x), var_samp(x)", "The same, dividing by N - 1."},
-        {"median(x), quantile(x, p), percentile(x, P)", "p from 0 to 1, P from 0 to 100; linear between values."},
-        {"above(x, t), below(x, t)", "Share of the values beyond t."},
-        {"quantile_error(x, p, sequence), above_error(x, t, sequence), below_error(x, t, sequence)",
-         "95 % half-widths of these, over the independent sequences of the design; a view of a campaign has the column "
-         "sequence. NULL: too few values."},
-        {"corr(x, y), covar_pop(x, y), covar_samp(x, y)", "Pearson's correlation, covariances."},
-        {"pearson_skewness(x), g1(x), kurtosis(x)",
-         "3 (mean - median) / sd, the moment skewness, the kurtosis (3 for a "
-         "normal distribution)."},
-    };
-    return entries;
-}
+constexpr Entry working_files[] = {
+    {"NAME.db",
+     "The database of campaign NAME, in SQLite's format: one file after every command. While a run "
+     "writes it, NAME.db-wal and NAME.db-shm belong to it."},
+    {"NAME.artefacts",
+     "Folder beside the database with shared starting states and checkpoints. It may be removed while no "
+     "run is active."},
+    {"NAME.html", "The page that report writes."},
+};
+
+constexpr Entry functions_of_query[] = {
+    {"sd(x), stddev_pop(x), var_pop(x)", "Standard deviation and variance, dividing by N."},
+    {"stddev(x), stddev_samp(x), variance(x), var_samp(x)", "The same, dividing by N - 1."},
+    {"median(x), quantile(x, p), percentile(x, P)", "p from 0 to 1, P from 0 to 100; linear between values."},
+    {"above(x, t), below(x, t)", "Share of the values beyond t."},
+    {"quantile_error(x, p, sequence), above_error(x, t, sequence), below_error(x, t, sequence)",
+     "95 % half-widths of these, over the independent sequences of the design; a view of a campaign has the column "
+     "sequence. NULL: too few values."},
+    {"corr(x, y), covar_pop(x, y), covar_samp(x, y)", "Pearson's correlation, covariances."},
+    {"pearson_skewness(x), g1(x), kurtosis(x)",
+     "3 (mean - median) / sd, the moment skewness, the kurtosis (3 for a "
+     "normal distribution)."},
+};
 
 /// Returns grainsweep.1 in the man macros of troff.
 std::string manual_page(std::span<const CommandInfo> commands) {
@@ -215,7 +200,7 @@ std::string manual_page(std::span<const CommandInfo> commands) {
     text += commands_section(commands);
     text += keys_section();
     text += catalogue_sections();
-    text += entries_section("FUNCTIONS OF QUERY", functions_of_query());
+    text += entries_section("FUNCTIONS OF QUERY", functions_of_query);
     text += section("OUTPUT");
     text += plain(
                 "Text is wrapped to the terminal, else to COLUMNS, else to 100 columns. Columns that do not fit are "
@@ -223,9 +208,9 @@ std::string manual_page(std::span<const CommandInfo> commands) {
                 "double. Whole numbers beyond 2^53, such as seeds, are text: \"5577006791947779410\" in json, "
                 "5_577_006_791_947_779_410 in csv; --seed reads both.") +
             "\n";
-    text += entries_section("EXIT STATUS", exit_codes());
-    text += entries_section("ENVIRONMENT", {{"COLUMNS", "Width of text where standard output is not a terminal."}});
-    text += entries_section("FILES", files());
+    text += entries_section("EXIT STATUS", exit_codes);
+    text += entries_section("ENVIRONMENT", variables);
+    text += entries_section("FILES", working_files);
     text += section("EXAMPLES");
     text += example(
         "grainsweep plan configs/quickstart.json\ngrainsweep run configs/quickstart.json\n"
@@ -319,9 +304,7 @@ const Values* values_of(const CommandInfo& command, const ArgumentInfo& argument
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view between) {
-    std::string text;
-    for (const auto& word : words) text += (text.empty() ? "" : std::string(between)) + word;
-    return text;
+    return fmt::format("{}", fmt::join(words, between));
 }
 
 /// A word of the shell, whatever it holds.
