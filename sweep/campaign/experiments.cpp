@@ -1,5 +1,6 @@
 #include "sweep/campaign/experiments.hpp"
 
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/stored_identity.hpp"
 #include "sweep/designs/calibration.hpp"
@@ -183,10 +184,8 @@ std::vector<std::string> experiment_names(const Json& document) {
     const Cursor experiments = calibration["experiments"];
     std::vector<std::string> names;
     for (const auto& [name, place] : experiments.members("must be an object of names and experiments")) {
-        const bool plain = !name.empty() && std::ranges::all_of(name, [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-        });
-        if (!plain) place.refuse("the name of an experiment has letters, digits and '_'");
+        if (name.empty() || !std::ranges::all_of(name, is_name_sign))
+            place.refuse("the name of an experiment has letters, digits and '_'");
         names.push_back(name);
     }
     if (names.empty()) experiments.refuse("must have at least one experiment");

@@ -1,5 +1,6 @@
 // Rules of factors besides their values: steps, groups, conditions, and shares that add to one.
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/simplex.hpp"
 #include "sweep/designs/factor.hpp"
@@ -56,9 +57,7 @@ std::string one_line(std::string text) {
 }
 
 void check_group_name(const Cursor& place, const std::string& name) {
-    const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-    if (std::isdigit(static_cast<unsigned char>(name.front())) != 0 || !std::ranges::all_of(name, allowed))
-        place.refuse("the name of a group is letters, digits and _, not a digit first");
+    if (!is_plain_name(name)) place.refuse("the name of a group is letters, digits and _, not a digit first");
     if (name == group_of_shares) place.refuse("the shares that add to one have this group; take another name");
 }
 

@@ -1,5 +1,7 @@
 #include "sweep/campaign/formula.hpp"
 
+#include "sweep/campaign/plain_name.hpp"
+
 #include <fmt/format.h>
 #include <muParser.h>
 
@@ -120,12 +122,11 @@ private:
         while (here_ < text_.size() && text_[here_] == ' ') ++here_;
     }
 
-    static bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
     static bool digit(char c) { return c >= '0' && c <= '9'; }
 
     [[nodiscard]] std::string_view word() const {
         std::size_t end = here_;
-        while (end < text_.size() && (letter(text_[end]) || digit(text_[end]))) ++end;
+        while (end < text_.size() && is_name_sign(text_[end])) ++end;
         return text_.substr(here_, end - here_);
     }
 
@@ -198,7 +199,7 @@ private:
     void operand() {
         const char c = text_[here_];
         if (digit(c) || c == '.') return number();
-        if (letter(c)) return named();
+        if (is_name_letter(c)) return named();
         if (c == '(') return open(nullptr);
         if (c != '-' && c != '+')
             return refuse(fmt::format("a number or a name must stand where '{}' is,", character()));
@@ -298,11 +299,10 @@ namespace {
 
 /// Calls visit(word) for every run of letters, digits and _ that a name may be.
 void each_word(std::string_view text, auto&& visit) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
     for (std::size_t at = 0; at < text.size();) {
         std::size_t end = at;
-        while (end < text.size() && (letter(text[end]) || (text[end] >= '0' && text[end] <= '9'))) ++end;
-        if (end > at && letter(text[at])) visit(text.substr(at, end - at));
+        while (end < text.size() && is_name_sign(text[end])) ++end;
+        if (end > at && is_name_letter(text[at])) visit(text.substr(at, end - at));
         at = std::max(end, at + 1);
     }
 }

@@ -1,5 +1,6 @@
 #include "sweep/campaign/input_error.hpp"
 
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/synonyms.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +17,6 @@ namespace {
 constexpr std::size_t longest_value = 400;  // bytes
 constexpr std::size_t longest_word = 64;    // longer ones are no misspelling of a name of ours
 
-char folded(char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
-
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours, case ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     const std::size_t columns = b.size() + 1;
@@ -29,9 +26,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            const bool same = folded(a[i - 1]) == folded(b[j - 1]);
+            const bool same = small_letter(a[i - 1]) == small_letter(b[j - 1]);
             std::size_t best = std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, at(i - 1, j - 1) + (same ? 0U : 1U)});
-            if (i > 1 && j > 1 && folded(a[i - 1]) == folded(b[j - 2]) && folded(a[i - 2]) == folded(b[j - 1])) {
+            if (i > 1 && j > 1 && small_letter(a[i - 1]) == small_letter(b[j - 2]) &&
+                small_letter(a[i - 2]) == small_letter(b[j - 1])) {
                 best = std::min(best, at(i - 2, j - 2) + 1);
             }
             at(i, j) = best;

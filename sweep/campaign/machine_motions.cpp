@@ -1,5 +1,6 @@
 // "motion" of a wall.
 #include "sweep/campaign/machine_reading.hpp"
+#include "sweep/campaign/plain_name.hpp"
 
 #include "solver/machine/shapes.hpp"
 
@@ -112,10 +113,7 @@ void read_motion(const Cursor& place, MachineReading& reading, machine::MachineW
             const auto& copies = reading.copies[static_cast<std::size_t>(found - reading.phases.begin())];
             return to && end.path() == to->path() ? copies.back() : copies.front();
         }
-        const auto of_name = [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-        };
-        if (!is_quantity(word) && std::ranges::all_of(word, of_name) && !scope.knows(word)) {
+        if (!is_quantity(word) && std::ranges::all_of(word, is_name_sign) && !scope.knows(word)) {
             const WordList phases(reading.phases);
             end.refuse(fmt::format("must be a time or a phase: {}", in_words(phases)), nearest_word(word, phases));
         }

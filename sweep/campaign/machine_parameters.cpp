@@ -4,6 +4,7 @@
 #include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_reading.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
 
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -406,10 +406,7 @@ std::vector<std::string> unused_parameters(const Json& machine, const std::vecto
 }
 
 void require_name(const Cursor& place, std::string_view name) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    const bool plain = !name.empty() && letter(name.front()) && name.size() <= longest_machine_name &&
-                       std::ranges::all_of(name, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
-    if (!plain)
+    if (!is_plain_name(name) || name.size() > longest_machine_name)
         throw input_error(
             place.path(), name,
             fmt::format("a name is letters, digits and _, not a digit first, at most {}", longest_machine_name));
@@ -435,10 +432,7 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
         require_name(here, name);
         if (name == "pi" || name == "nan")
             here.refuse(fmt::format("'{}' is a number in expressions; take another name", name));
-        std::string lower = name;
-        std::ranges::transform(lower, lower.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (!folded.insert(lower).second)
+        if (!folded.insert(small_letters(name)).second)
             throw input_error(here.path(), "", "two names that differ by case only are one name in SQL; rename one");
         const Section section(here, machine_keys::parameter);
         const auto common = std::ranges::find(all, name, &ParameterSpec::name);

@@ -3,12 +3,12 @@
 #include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/machine_parameters.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/quantity.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -109,11 +109,10 @@ std::variant<Formula, std::string> MachineScope::parsed_here(const std::string& 
 
 /// A word in an expression is named as such.
 void MachineScope::refuse_expression(const Cursor& place, const std::string& text, const std::string& why) const {
-    const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
     for (const auto& [name, word] : words_)
         for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
             const std::size_t end = at + name.size();
-            if ((at > 0 && letter(text[at - 1])) || (end < text.size() && letter(text[end]))) continue;
+            if ((at > 0 && is_name_sign(text[at - 1])) || (end < text.size() && is_name_sign(text[end]))) continue;
             place.refuse(fmt::format("'{}' is a word; expressions know {}_is_{}, which is 1 or 0", name, name, word));
         }
     place.refuse(why);

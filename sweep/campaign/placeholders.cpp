@@ -11,14 +11,6 @@
 namespace grainsweep::campaign {
 namespace {
 
-bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-bool is_word_sign(char c) {
-    return is_letter(c) || (c >= '0' && c <= '9');
-}
-
 /// Name and format that begin a text before `end`; an empty name: none do.
 struct Placeholder {
     std::string_view name, format;
@@ -26,7 +18,7 @@ struct Placeholder {
 };
 
 Placeholder placeholder_before(std::string_view text, std::string_view end) {
-    const auto last = std::ranges::find_if_not(text, is_word_sign);
+    const auto last = std::ranges::find_if_not(text, is_name_sign);
     const auto name = text.substr(0, static_cast<std::size_t>(last - text.begin()));
     if (!is_plain_name(name)) return {};
     const auto rest = text.substr(name.size());
@@ -39,10 +31,6 @@ Placeholder placeholder_before(std::string_view text, std::string_view end) {
 constexpr std::size_t most_digits = 60;
 
 }  // namespace
-
-bool is_plain_name(std::string_view word) {
-    return !word.empty() && is_letter(word.front()) && std::ranges::all_of(word, is_word_sign);
-}
 
 std::string filled_command(std::string_view text, const ValueOf& value_of) {
     std::string filled;

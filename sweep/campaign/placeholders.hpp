@@ -2,6 +2,8 @@
 // of C: {name:%.3e}.
 #pragma once
 
+#include "sweep/campaign/plain_name.hpp"
+
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,8 +16,6 @@ namespace grainsweep::campaign {
 /// placeholder. Throws if there is no such value.
 using ValueOf = std::function<std::optional<std::string>(std::string_view name, std::string_view format)>;
 
-/// Returns whether a word has only letters, digits and _, no digit first.
-[[nodiscard]] bool is_plain_name(std::string_view word);
 /// Replaces {name} by its value and {{name}} by {name}; other braces do not change.
 [[nodiscard]] std::string filled_command(std::string_view text, const ValueOf& value_of);
 /// Replaces {{ name }}, with any blanks, by its value. Throws std::invalid_argument with a sentence and the line if

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -266,8 +265,7 @@ void read_notes(const std::string& name, const Cursor& here, const Given& given,
 
 /// Returns whether two names are one in SQL, where upper case does not count.
 bool is_one_name_in_sql(const std::string& a, const std::string& b) {
-    const auto folded = [](unsigned char c) { return std::tolower(c); };
-    return std::ranges::equal(a, b, {}, folded, folded);
+    return small_letters(a) == small_letters(b);
 }
 
 }  // namespace

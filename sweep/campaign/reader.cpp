@@ -5,6 +5,7 @@
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_section.hpp"
@@ -16,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <iterator>
 #include <set>
 #include <system_error>
@@ -28,24 +28,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t largest_text = 64ULL << 20U;
-std::string lower(std::string_view word) {
-    std::string folded(word);
-    std::ranges::transform(folded, folded.begin(),
-                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-    return folded;
-}
 
 std::string read_name(const Cursor& place) {
     const auto name = place.text();
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9'); };
-    if (!letter(name.front()) || !std::ranges::all_of(name, allowed) || name.size() > longest_campaign_name) {
+    if (!is_plain_name(name) || name.size() > longest_campaign_name) {
         place.refuse(
             fmt::format("a name is letters, digits and _, not a digit first, at most {}: it names a view in SQL",
                         longest_campaign_name));
     }
     // SQL folds the case of names, so do we.
-    const std::string folded = lower(name);
+    const std::string folded = small_letters(name);
     if (std::ranges::find(reserved_names, folded) != reserved_names.end() || folded.starts_with("sqlite_")) {
         place.refuse("the database has a table or view of this name; take another",
                      folded.starts_with("sqlite_") ? "my_" + name : name + "_1");

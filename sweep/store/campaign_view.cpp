@@ -1,22 +1,16 @@
 // The view that bears a campaign's name: one row per case, a column per factor and per scalar observable.
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/schema.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 namespace grainsweep::store {
 
 namespace {
-
-std::string lower(std::string_view text) {
-    std::string folded(text);
-    std::ranges::transform(folded, folded.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return folded;
-}
 
 /// A value as SQL writes it, of its own type.
 std::string literal(const Value& value) {
@@ -31,7 +25,7 @@ class Columns {
 public:
     void add(const std::string& name, std::string_view suffix, const std::string& expression) {
         std::string free = name;
-        while (!taken_.insert(lower(free)).second) free += suffix;
+        while (!taken_.insert(campaign::small_letters(free)).second) free += suffix;
         text_ += fmt::format("{}{} AS {}", text_.empty() ? "" : ",\n       ", expression, quoted_name(free));
     }
     [[nodiscard]] const std::string& text() const { return text_; }

@@ -1,12 +1,12 @@
 // SQL from outside: one statement that only reads.
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <vector>
 
@@ -122,14 +122,13 @@ std::vector<std::string> table_columns(const Connection& db, const std::string& 
 
 /// Whether the text names the word, as a word of its own.
 bool mentions(std::string_view sql, std::string_view word) {
-    const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    const auto same = [](char a, char b) {
-        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-    };
+    const auto same = [](char a, char b) { return campaign::small_letter(a) == campaign::small_letter(b); };
     auto at = sql.begin();
     while ((at = std::search(at, sql.end(), word.begin(), word.end(), same)) != sql.end()) {
         const auto end = at + static_cast<std::ptrdiff_t>(word.size());
-        if ((at == sql.begin() || !letter(*(at - 1))) && (end == sql.end() || !letter(*end))) return true;
+        if ((at == sql.begin() || !campaign::is_name_sign(*(at - 1))) &&
+            (end == sql.end() || !campaign::is_name_sign(*end)))
+            return true;
         ++at;
     }
     return false;

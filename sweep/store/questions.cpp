@@ -1,5 +1,6 @@
 // Queries of the archive by the scheduler, the statistics and the commands.
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/soundness.hpp"
@@ -7,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 
 namespace grainsweep::store {
@@ -159,8 +159,7 @@ StoredPlaces Store::placement(std::string_view campaign) const {
 }
 
 std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) const {
-    std::string prefix(id_or_prefix);
-    std::ranges::transform(prefix, prefix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string prefix = campaign::small_letters(id_or_prefix);
     const std::string end = prefix + "g";  // above every hexadecimal digit
     std::vector<campaign::Case> found;
     {

@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/plain_name.hpp"
 #include "sweep/campaign/quantity.hpp"
 
 #include <fmt/format.h>
@@ -53,16 +54,14 @@ private:
     [[nodiscard]] std::string_view word_ahead() {
         skip();
         std::size_t end = at_;
-        const auto part_of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
         if (end < text_.size() && std::isdigit(static_cast<unsigned char>(text_[end])) != 0) return {};
-        while (end < text_.size() && part_of_word(text_[end])) ++end;
+        while (end < text_.size() && campaign::is_name_sign(text_[end])) ++end;
         return text_.substr(at_, end - at_);
     }
 
     bool take(std::string_view keyword) {
         const auto word = word_ahead();
-        const bool same = std::ranges::equal(
-            word, keyword, [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+        const bool same = campaign::small_letters(word) == keyword;
         if (same) at_ += word.size();
         return same;
     }
@@ -151,8 +150,7 @@ private:
             const auto rest = text_.substr(at_);
             const auto end = std::min(rest.find_first_of(" \t\n()<>=!"), rest.size());
             std::string part(rest.substr(0, end));
-            std::string small = part;
-            std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+            const std::string small = campaign::small_letters(part);
             const bool joins = small == "and" || small == "or" || small == "not";
             if (part.empty() || joins || std::ranges::find(names_, part) != names_.end()) return unit;
             unit += (unit.empty() ? "" : " ") + part;

@@ -1,11 +1,11 @@
 #include "sweep/study/window_space.hpp"
 
 #include "sweep/campaign/input_error.hpp"
+#include "sweep/campaign/plain_name.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -72,14 +72,11 @@ struct Stretch {
 
 /// The first "for all" that stands as two words, whatever their case.
 std::optional<Stretch> for_all_in(std::string_view where) {
-    const auto part_of_word = [&](std::size_t k) {
-        return k < where.size() && (std::isalnum(static_cast<unsigned char>(where[k])) != 0 || where[k] == '_');
-    };
+    const auto part_of_word = [&](std::size_t k) { return k < where.size() && campaign::is_name_sign(where[k]); };
     const auto is_word = [&](std::size_t at, std::string_view word) {
         if (at + word.size() > where.size() || (at > 0 && part_of_word(at - 1)) || part_of_word(at + word.size()))
             return false;
-        return std::ranges::equal(where.substr(at, word.size()), word, {},
-                                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return campaign::small_letters(where.substr(at, word.size())) == word;
     };
     for (std::size_t at = 0; at < where.size(); ++at) {
         if (!is_word(at, "for")) continue;
