@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -195,21 +196,30 @@ Vec3 MachineScope::direction(const Section& section, std::string_view key, const
     return place ? direction(*place) : standard;
 }
 
-std::string MachineScope::text(const Cursor& place) const {
+namespace {
+
+/// Returns the text with each "{NAME}" replaced by value_of(NAME).
+std::string with_values(const Cursor& place, const std::function<std::string(const std::string&)>& value_of) {
     std::string text = place.text();
     for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', open)) {
         const std::size_t close = text.find('}', open);
         if (close == std::string::npos) place.refuse("a '{' without its '}'");
-        const std::string name = text.substr(open + 1, close - open - 1);
-        const auto word = words_.find(name);
-        if (word == words_.end()) {
-            WordList known(std::views::transform(words_, [](const auto& one) { return std::string_view(one.first); }));
-            place.refuse(fmt::format("'{{{}}}' names no parameter that is a word", name), nearest_word(name, known));
-        }
-        text.replace(open, close - open + 1, word->second);
-        open += word->second.size();
+        const std::string value = value_of(text.substr(open + 1, close - open - 1));
+        text.replace(open, close - open + 1, value);
+        open += value.size();
     }
     return text;
+}
+
+}  // namespace
+
+std::string MachineScope::text(const Cursor& place) const {
+    return with_values(place, [&](const std::string& name) {
+        const auto word = words_.find(name);
+        if (word != words_.end()) return word->second;
+        const WordList known(std::views::keys(words_));
+        place.refuse(fmt::format("'{{{}}}' names no parameter that is a word", name), nearest_word(name, known));
+    });
 }
 
 std::string_view MachineScope::contents(const Cursor& place) const {
@@ -221,24 +231,13 @@ std::string_view MachineScope::contents(const Cursor& place) const {
 }
 
 std::string MachineScope::sentence(const Cursor& place) const {
-    std::string text = place.text();
-    for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', open)) {
-        const std::size_t close = text.find('}', open);
-        if (close == std::string::npos) place.refuse("a '{' without its '}'");
-        const std::string name = text.substr(open + 1, close - open - 1);
-        std::string value;
-        if (const auto word = words_.find(name); word != words_.end()) {
-            value = word->second;
-        } else {
-            const auto parsed = parsed_here(name);
-            if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
-            value = fmt::format("{:.4g}", std::get<Formula>(parsed)(
-                                              [this](std::string_view used) { return numbers_.find(used)->second; }));
-        }
-        text.replace(open, close - open + 1, value);
-        open += value.size();
-    }
-    return text;
+    return with_values(place, [&](const std::string& name) {
+        if (const auto word = words_.find(name); word != words_.end()) return word->second;
+        const auto parsed = parsed_here(name);
+        if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
+        return fmt::format(
+            "{:.4g}", std::get<Formula>(parsed)([this](std::string_view used) { return numbers_.find(used)->second; }));
+    });
 }
 
 std::string MachineScope::word(const Cursor& place, const WordList& words) const {
