@@ -47,6 +47,23 @@ void add_flag(const files::Descriptor& descriptor, int flag) {
     ::fcntl(descriptor.number(), F_SETFL, ::fcntl(descriptor.number(), F_GETFL) | flag);
 }
 
+/// Starts a program in its folder; `question`: nullptr for one that answers several. Throws SystemError.
+std::unique_ptr<ProgramProcess> started(const campaign::Program& program, const campaign::Case* question,
+                                        const ProgramFolder& folder, const std::array<int, 3>& streams,
+                                        ProgramGuard& guard) {
+    ProcessStart start{program_argv(program, question)};
+    start.environment = program_environment(program, question);
+    start.folder = folder.descriptor();
+    start.streams = streams;
+    start.memory = program.memory;
+    start.file = program.disk;
+    try {
+        return std::make_unique<ProgramProcess>(start, guard);
+    } catch (const std::runtime_error& error) {
+        throw SystemError(error.what());
+    }
+}
+
 }  // namespace
 
 /// A program that stays alive and answers line by line.
@@ -60,20 +77,11 @@ public:
         : folder_(cases / fmt::format("alive.{}{}", ::getpid(), running_suffix)) {
         std::signal(SIGPIPE, SIG_IGN);  // a write to one that ended is an error code
         fill_folder(folder_, program, nullptr);
-        ProcessStart start{program_argv(program, nullptr)};
-        start.environment = program_environment(program, nullptr);
-        start.folder = folder_.descriptor();
         log_ = folder_.create("stderr.txt");
         add_flag(log_, O_APPEND);  // it is cut now and then
         Pipe question, reply;
-        start.streams = {question.from.number(), reply.to.number(), log_.number()};
-        start.memory = program.memory;
-        start.file = program.disk;
-        try {
-            process_ = std::make_unique<ProgramProcess>(start, guard);
-        } catch (const std::runtime_error& error) {
-            throw SystemError(error.what());
-        }
+        process_ =
+            started(program, nullptr, folder_, {question.from.number(), reply.to.number(), log_.number()}, guard);
         in_ = std::move(question.to);
         out_ = std::move(reply.from);
         add_flag(in_, O_NONBLOCK);
@@ -285,18 +293,8 @@ std::string unasked_sentence(const ProgramLines& lines) {
 
 std::unique_ptr<ProgramProcess> start_case(const Program& program, const campaign::Case& question,
                                            const ProgramFolder& folder, ProgramGuard& guard) {
-    ProcessStart start{program_argv(program, &question)};
-    start.environment = program_environment(program, &question);
-    start.folder = folder.descriptor();
     const auto out = folder.create("stdout.txt"), err = folder.create("stderr.txt");
-    start.streams = {-1, out.number(), err.number()};
-    start.memory = program.memory;
-    start.file = program.disk;
-    try {
-        return std::make_unique<ProgramProcess>(start, guard);
-    } catch (const std::runtime_error& why) {
-        throw SystemError(why.what());
-    }
+    return started(program, &question, folder, {-1, out.number(), err.number()}, guard);
 }
 
 }  // namespace
