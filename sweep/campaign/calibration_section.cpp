@@ -2,7 +2,6 @@
 // levels, and the waves are a design of their own.
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/csv_table.hpp"
-#include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"

@@ -1,19 +1,23 @@
-// Listed rows from CSV (RFC 4180): a header that names the factors in any order, then one point a line.
+// CSV files that a campaign file names, and listed rows from one (RFC 4180): a header that names the factors in any
+// order, then one point a line.
 #include "sweep/campaign/csv_table.hpp"
-#include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 
 namespace grainsweep::campaign {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t largest_table = 256ULL << 20U;
 
 using Record = CsvRecord;
 
@@ -37,6 +41,18 @@ std::vector<std::size_t> columns_of(const Cursor& file, const Record& header, co
 }
 
 }  // namespace
+
+std::string read_csv_text(const Cursor& file, const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) file.refuse("there is no such file beside the campaign file");
+    if (fs::file_size(path, error) > largest_table || error)
+        file.refuse("the file must be readable and at most 256 MiB");
+    std::string text = files::whole_file(path, error);
+    if (error)  // the rows read so far are only a part, but would look like a shorter list
+        file.refuse(fmt::format("'{}' cannot be read beyond line {}: {}", path.string(),
+                                1 + std::ranges::count(text, '\n'), error.message()));
+    return text;
+}
 
 designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space, const fs::path& folder) {
     const std::string name = file.text();

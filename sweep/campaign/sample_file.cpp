@@ -1,6 +1,5 @@
 // "sample": columns of a CSV file as the distribution of factors.
 #include "sweep/campaign/csv_table.hpp"
-#include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/powder.hpp"
 #include "sweep/campaign/reader.hpp"

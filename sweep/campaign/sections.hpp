@@ -88,6 +88,9 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
 void set_factors(Campaign& campaign);
 /// Refuses keys that conflict with a growing design, which chooses its next points itself.
 void check_growing(const Cursor& place, const Campaign& campaign);
+/// Returns the contents of a CSV file. Refuses a missing file, one larger than 256 MiB, and one that cannot be read to
+/// its end. `file`: its place in the campaign file.
+[[nodiscard]] std::string read_csv_text(const Cursor& file, const std::filesystem::path& path);
 /// Reads rows of factor values from a CSV file whose header names the factors, in any order.
 [[nodiscard]] designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space,
                                            const std::filesystem::path& folder);
