@@ -19,10 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_table = 256ULL << 20U;
 
-using Record = CsvRecord;
-
 /// For each factor the column that holds it.
-std::vector<std::size_t> columns_of(const Cursor& file, const Record& header, const ParameterSpace& space) {
+std::vector<std::size_t> columns_of(const Cursor& file, const CsvRecord& header, const ParameterSpace& space) {
     const auto names = names_of(space.factors);
     for (std::size_t k = 0; k < header.size(); ++k) {
         if (std::ranges::find(names, header[k]) == names.end()) {

@@ -7,7 +7,7 @@
 #include "sweep/cli/compute_options.hpp"
 #include "sweep/cli/folder_beside.hpp"
 #include "sweep/cli/pictures.hpp"
-#include "sweep/cli/program_case.hpp"
+#include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/query.hpp"
 #include "sweep/cli/stored_case.hpp"

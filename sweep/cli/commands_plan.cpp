@@ -12,7 +12,6 @@
 #include "sweep/cli/adopt.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
-#include "sweep/cli/program_case.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/report/result.hpp"
 #include "sweep/report/results/runs.hpp"

@@ -8,7 +8,7 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/compute_options.hpp"
 #include "sweep/cli/pictures.hpp"
-#include "sweep/cli/program_case.hpp"
+#include "sweep/cli/program_campaign.hpp"
 #include "sweep/report/main_observables.hpp"
 #include "sweep/report/next_command.hpp"
 #include "sweep/report/print_axes.hpp"
