@@ -17,7 +17,6 @@ namespace {
 
 using export_curves::Meaning;
 using export_entries::Entry;
-using export_entries::refuse_export;
 using export_entries::share_rounding;
 using SizeKind = ExportSize::Kind;
 

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -56,6 +57,11 @@ inline constexpr std::array<std::string_view, 3> export_edges = {"lower", "upper
 
 // Steps of the import, internal.
 
+/// Throws InputError about the export.
+[[noreturn]] void refuse_export(const std::string& why);
+/// Returns whether a text holds one of the words.
+[[nodiscard]] bool has_word(std::string_view text, std::span<const std::string_view> words);
+
 /// Text of an export, or of one sheet of a workbook, in UTF-8.
 struct ExportText {
     std::string encoding, sheet, text;
@@ -92,6 +98,8 @@ struct ExportNumber {
     std::string unit;
 };
 [[nodiscard]] std::optional<ExportNumber> export_number(std::string_view cell, bool decimal_comma);
+/// Returns the number in a cell of the table; empty: it is no number.
+[[nodiscard]] std::optional<double> number_at(const ExportGrid& grid, std::size_t row, std::size_t column);
 /// Limits of a cell of sizes, in its unit: a number gives one, "20-45" both, "<20" and "pan" the upper one (without a
 /// value for a pan), ">90" the lower one.
 struct ExportSize {

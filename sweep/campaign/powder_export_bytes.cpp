@@ -2,7 +2,6 @@
 //
 // Of a workbook the parts that hold cells are read: the archive (PKWARE APPNOTE 6.3, methods stored and deflate), the
 // list of sheets, the shared strings, the sheets. Styles, formulas and dates are not read: a cell is its stored value.
-#include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/powder_export.hpp"
 
 #include "solver/plain_text.hpp"
@@ -89,12 +88,8 @@ ExportText decoded(std::string_view bytes) {
 constexpr std::size_t largest_part = 64U << 20U;  // of an unpacked file; an export has less than 1 MiB
 constexpr std::size_t most_rows = 100'000, most_columns = 4096;
 
-[[noreturn]] void refuse_workbook(const std::string& why) {
-    throw input_error("EXPORT", "", why);
-}
-
 std::uint32_t little_endian(std::string_view bytes, std::size_t at, std::size_t count) {
-    if (at + count > bytes.size()) refuse_workbook("this archive ends early: save the workbook again");
+    if (at + count > bytes.size()) refuse_export("this archive ends early: save the workbook again");
     std::uint32_t value = 0;
     for (std::size_t k = 0; k < count; ++k)
         value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << 8U * k;
@@ -102,10 +97,10 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at, std::size_t 
 }
 
 std::string inflated(std::string_view packed, std::size_t size) {
-    if (size > largest_part) refuse_workbook("a sheet of this workbook is larger than 64 MiB");
+    if (size > largest_part) refuse_export("a sheet of this workbook is larger than 64 MiB");
     std::string text(size, '\0');
     z_stream stream{};
-    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) refuse_workbook("this workbook cannot be unpacked");
+    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) refuse_export("this workbook cannot be unpacked");
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
     stream.avail_in = static_cast<uInt>(packed.size());
     stream.next_out = reinterpret_cast<Bytef*>(text.data());
@@ -113,7 +108,7 @@ std::string inflated(std::string_view packed, std::size_t size) {
     const int end = inflate(&stream, Z_FINISH);
     inflateEnd(&stream);
     if (end != Z_STREAM_END || stream.total_out != size)
-        refuse_workbook("this workbook is damaged: save it again, or as CSV");
+        refuse_export("this workbook is damaged: save it again, or as CSV");
     return text;
 }
 
@@ -124,12 +119,12 @@ public:
         constexpr std::size_t end_size = 22;
         const auto end = bytes.rfind("PK\x05\x06");
         if (end == std::string_view::npos || end + end_size > bytes.size())
-            refuse_workbook("this archive ends early: save the workbook again");
+            refuse_export("this archive ends early: save the workbook again");
         std::size_t at = little_endian(bytes, end + 16, 4);
         for (std::uint32_t left = little_endian(bytes, end + 10, 2); left > 0; --left) {
             const std::size_t name = little_endian(bytes, at + 28, 2);
             const std::size_t behind = little_endian(bytes, at + 30, 2) + little_endian(bytes, at + 32, 2);
-            if (at + 46 + name > bytes.size()) refuse_workbook("this archive is damaged: save the workbook again");
+            if (at + 46 + name > bytes.size()) refuse_export("this archive is damaged: save the workbook again");
             entries_[std::string(bytes.substr(at + 46, name))] = at;
             at += 46 + name + behind;
         }
@@ -143,11 +138,11 @@ public:
         const std::size_t local = little_endian(bytes_, at + 42, 4);
         const std::size_t begin =
             local + 30 + little_endian(bytes_, local + 26, 2) + little_endian(bytes_, local + 28, 2);
-        if (begin + packed > bytes_.size()) refuse_workbook("this archive is damaged: save the workbook again");
+        if (begin + packed > bytes_.size()) refuse_export("this archive is damaged: save the workbook again");
         const auto data = bytes_.substr(begin, packed);
         const auto method = little_endian(bytes_, at + 10, 2);
         if (method == 0) return std::string(data);
-        if (method != 8) refuse_workbook("this archive is packed in a way that no workbook is: save it as CSV");
+        if (method != 8) refuse_export("this archive is packed in a way that no workbook is: save it as CSV");
         return inflated(data, size);
     }
 
@@ -260,7 +255,7 @@ public:
         } else {
             ++column_;
         }
-        if (row_ >= most_rows || column_ >= most_columns) refuse_workbook("this sheet is too large for an export");
+        if (row_ >= most_rows || column_ >= most_columns) refuse_export("this sheet is too large for an export");
     }
     void begin_row(const XmlTag& tag) {
         const auto number = number_in(attribute(tag, "r"));
@@ -274,7 +269,7 @@ public:
         if (kind_ == "s") {
             const auto index = number_in(text);
             if (!index || *index < 0 || *index >= static_cast<double>(strings.size()))
-                refuse_workbook("this workbook is damaged: a text of it is missing; save it again, or as CSV");
+                refuse_export("this workbook is damaged: a text of it is missing; save it again, or as CSV");
             text = strings[static_cast<std::size_t>(*index)];
         } else if (kind_.empty() || kind_ == "n") {
             text = typed_number(text);
@@ -331,8 +326,8 @@ std::map<std::string, std::string> sheet_paths(const std::string& relations) {
 std::vector<ExportText> workbook_sheets(std::string_view bytes) {
     const ZipArchive archive(bytes);
     if (!archive.has("xl/workbook.xml"))
-        refuse_workbook(archive.has("content.xml") ? "this is an OpenDocument file: save the table as .xlsx or .csv"
-                                                   : "this is an archive without an Excel workbook: unpack it first");
+        refuse_export(archive.has("content.xml") ? "this is an OpenDocument file: save the table as .xlsx or .csv"
+                                                 : "this is an archive without an Excel workbook: unpack it first");
     const auto strings = shared_strings(archive.file("xl/sharedStrings.xml"));
     const auto paths = sheet_paths(archive.file("xl/_rels/workbook.xml.rels"));
     std::vector<ExportText> sheets;
@@ -350,18 +345,17 @@ std::vector<ExportText> workbook_sheets(std::string_view bytes) {
         const std::string name = attribute(*tag, "name");
         sheets.push_back({"Excel workbook, sheet '" + name + "'", name, std::move(text)});
     }
-    if (sheets.empty()) refuse_workbook("no sheet of this workbook has cells");
+    if (sheets.empty()) refuse_export("no sheet of this workbook has cells");
     return sheets;
 }
 
 }  // namespace
 
 std::vector<ExportText> export_texts(std::string_view bytes) {
-    const auto refuse = [](const char* why) { return input_error("EXPORT", "", why); };
     if (bytes.starts_with("\xD0\xCF\x11\xE0"))
-        throw refuse("this is a workbook of an old Excel (.xls): save it as .xlsx or as CSV");
-    if (bytes.starts_with("%PDF")) throw refuse("this is a report (PDF): export the table of the instrument as text");
-    if (bytes.starts_with("{\\rtf")) throw refuse("this is a document (RTF): save the table as text or CSV");
+        refuse_export("this is a workbook of an old Excel (.xls): save it as .xlsx or as CSV");
+    if (bytes.starts_with("%PDF")) refuse_export("this is a report (PDF): export the table of the instrument as text");
+    if (bytes.starts_with("{\\rtf")) refuse_export("this is a document (RTF): save the table as text or CSV");
     const bool archive = bytes.starts_with("PK\x03\x04");
     return archive ? workbook_sheets(bytes) : std::vector{decoded(bytes)};
 }

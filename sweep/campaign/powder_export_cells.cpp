@@ -2,6 +2,7 @@
 #include "sweep/campaign/powder_export.hpp"
 
 #include "solver/plain_text.hpp"
+#include "sweep/campaign/input_error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -241,6 +242,19 @@ std::optional<ExportSize> export_size(std::string_view cell, bool decimal_comma)
             return size;
         }
     return std::nullopt;
+}
+
+std::optional<double> number_at(const ExportGrid& grid, std::size_t row, std::size_t column) {
+    const auto number = export_number(grid.rows[row][column], grid.decimal_comma);
+    return number ? std::optional(number->value) : std::nullopt;
+}
+
+bool has_word(std::string_view text, std::span<const std::string_view> words) {
+    return std::ranges::any_of(words, [&](auto word) { return text.find(word) != std::string_view::npos; });
+}
+
+void refuse_export(const std::string& why) {
+    throw input_error("EXPORT", "", why);
 }
 
 }  // namespace grainsweep::campaign

@@ -17,10 +17,6 @@
 namespace grainsweep::campaign {
 namespace {
 
-bool has_any(std::string_view text, std::span<const std::string_view> words) {
-    return std::ranges::any_of(words, [&](auto word) { return text.find(word) != std::string_view::npos; });
-}
-
 constexpr auto around_volume = std::to_array<std::string_view>(
     {"volum", "vol.", "vol%", "vol-%", "mass", "masse", "weight", "wt", "gew", "sieve", "sieb", "tamis", "einwaage"});
 // Of lines around a table: a "serial number" is none.
@@ -33,10 +29,6 @@ constexpr auto lower_edge_words = std::to_array<std::string_view>({"lower", "unt
 constexpr auto upper_edge_words =
     std::to_array<std::string_view>({"upper", "obere", "passing", "through", "durchgang"});
 using Headings = std::vector<ExportHeading>;
-
-[[noreturn]] void refuse_columns(const std::string& why) {
-    throw input_error("EXPORT", "", why);
-}
 
 /// A column by its number from 1, by its header, or by a part that no other header has.
 std::size_t chosen_column(const ExportGrid& grid, std::string_view option, const std::string& word) {
@@ -68,11 +60,6 @@ bool holds_sizes(const ExportGrid& grid, std::size_t column) {
         signs += size->kind != ExportSize::Kind::point || length || size->retained_on ? 1 : 0;
     }
     return signs * 2 >= grid.rows.size() && signs > 0;
-}
-
-std::optional<double> number_at(const ExportGrid& grid, std::size_t row, std::size_t column) {
-    const auto number = export_number(grid.rows[row][column], grid.decimal_comma);
-    return number ? std::optional(number->value) : std::nullopt;
 }
 
 /// Whether two columns are the edges of classes: each class begins where the one before ends.
@@ -113,7 +100,7 @@ std::vector<std::size_t> size_columns(const ExportGrid& grid, const Headings& he
     constexpr auto middles =
         std::to_array<std::string_view>({"mean", "mid", "mittel", "centre", "center", "xm", "moyen", "geom"});
     if (sizes.size() > 1) prefer([&](auto j) { return !counts_up(grid, j); });
-    if (sizes.size() > 1) prefer([&](auto j) { return !has_any(headings[j].plain, middles); });
+    if (sizes.size() > 1) prefer([&](auto j) { return !has_word(headings[j].plain, middles); });
     if (sizes.size() > 1) prefer([&](auto j) { return !headings[j].length.empty() && headings[j].length != "phi"; });
     if (sizes.size() > 1) prefer([&](auto j) { return !headings[j].sieve_number; });
     return sizes;
@@ -139,7 +126,7 @@ std::size_t size_column(const ExportGrid& grid, const Headings& headings, const 
     if (sizes.size() == 1 || (sizes.size() == 2 && upper == sizes[1])) return sizes.front();
     upper.reset();
     const auto says = [&](std::size_t column, std::span<const std::string_view> words) {
-        return has_any(headings[column].plain, words);
+        return has_word(headings[column].plain, words);
     };
     constexpr auto low = std::to_array<std::string_view>({"from", "von", "xu", "min"});
     constexpr auto high = std::to_array<std::string_view>({" to", "bis", "xo", "max"});
@@ -161,8 +148,8 @@ std::size_t size_column(const ExportGrid& grid, const Headings& headings, const 
     if (sizes.empty() && unnamed && grid.headers.size() == 2) return 0;
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j) all.push_back(j);
-    refuse_columns(fmt::format("which column holds the sizes is not clear: state it by --sizes, of {}",
-                               column_list(grid, sizes.empty() ? all : sizes)));
+    refuse_export(fmt::format("which column holds the sizes is not clear: state it by --sizes, of {}",
+                              column_list(grid, sizes.empty() ? all : sizes)));
 }
 
 void keep_if_any(std::vector<std::size_t>& columns, const auto& wanted) {
@@ -217,7 +204,7 @@ std::size_t share_column(const ExportGrid& grid, const Headings& headings, const
     for (std::size_t j = 0; j < headings.size(); ++j)
         if (headings[j].with_sieve && is_filled(grid, j)) with_sieves.push_back(j);
     const auto refuse_weights = [&](const std::vector<std::size_t>& columns) {
-        refuse_columns(
+        refuse_export(
             fmt::format("{} weighs the sieve too: add a column of what each sieve retained, the difference "
                         "of its weights with and without powder",
                         column_list(grid, columns)));
@@ -260,14 +247,14 @@ std::size_t share_column(const ExportGrid& grid, const Headings& headings, const
         }))
         return shares.back();
     if (shares.empty() && !densities.empty())
-        refuse_columns(fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
-                                   column_list(grid, densities)));
+        refuse_export(fmt::format("{} is a density, and neither a share nor a sum; export the cumulative shares",
+                                  column_list(grid, densities)));
     if (shares.empty() && !with_sieves.empty()) refuse_weights(with_sieves);
     std::vector<std::size_t> all;
     for (std::size_t j = 0; j < grid.headers.size(); ++j)
         if (j != found.size && is_filled(grid, j)) all.push_back(j);
-    refuse_columns(fmt::format("which column holds the shares is not clear: state it by --shares, of {}",
-                               column_list(grid, shares.empty() ? all : shares)));
+    refuse_export(fmt::format("which column holds the shares is not clear: state it by --shares, of {}",
+                              column_list(grid, shares.empty() ? all : shares)));
 }
 
 /// The series of numbered sieves: by words, else the one that has all of them.
@@ -303,7 +290,7 @@ std::string series_of(const ExportGrid& grid, const ExportColumns& columns, std:
     if (!fitting.empty() && std::ranges::all_of(openings, [&](const auto& other) { return other == openings.front(); }))
         return fitting.front();
     if (fitting.empty()) return {};
-    refuse_columns(
+    refuse_export(
         fmt::format("the numbers of sieves in column {} may be of {}, with other openings: state it by --unit astm, "
                     "--unit tyler or --unit british",
                     grid.numbers[columns.size], listed(fitting)));
@@ -346,22 +333,22 @@ void find_unit(const ExportGrid& grid, const Headings& headings, const ExportCho
         columns.unit = named.front(), columns.unit_from = "the lines around the table";
         return;
     }
-    refuse_columns(fmt::format("the unit of the sizes in column {} is not stated: give it by --unit, as in --unit um",
-                               grid.numbers[columns.size]));
+    refuse_export(fmt::format("the unit of the sizes in column {} is not stated: give it by --unit, as in --unit um",
+                              grid.numbers[columns.size]));
 }
 
 /// By volume or number, from the column itself, then from the lines around the table.
 std::optional<std::string> basis_of(const ExportGrid& grid, const Headings& headings, const ExportColumns& columns) {
     const auto& share = headings[columns.share];
     if (share.by == "intensity")
-        refuse_columns(
+        refuse_export(
             fmt::format("column {} is by intensity of scattered light, which is no share of particles: export "
                         "the distribution by volume",
                         columns.share_name));
     if (share.by) return share.by;
     if (headings[columns.size].by && !headings[columns.size].sieve_number) return headings[columns.size].by;
     if (columns.sieved) return "volume";
-    const bool by_number = has_any(grid.words, around_number), by_volume = has_any(grid.words, around_volume);
+    const bool by_number = has_word(grid.words, around_number), by_volume = has_word(grid.words, around_volume);
     if (by_number == by_volume) return std::nullopt;
     return by_number ? "number" : "volume";
 }
@@ -396,17 +383,17 @@ ExportColumns export_columns(const ExportGrid& grid, const ExportChoices& choice
         std::to_array<std::string_view>({"(g)", "[g]", "(kg)", "[kg]", " g", "(mg)", "count", "(gr)", "[gr]", ", g"});
     const bool grams = heading.plain.ends_with("_g") || heading.plain == "g" || heading.plain.ends_with("/g");
     columns.weighed = !columns.percent && heading.as != "passing" && heading.as != "sum" &&
-                      (grams || has_any(heading.plain, weights));
+                      (grams || has_word(heading.plain, weights));
     const auto& size_header = headings[columns.size].plain;
     if (size_header.starts_with("log") || size_header.starts_with("lg ") || size_header.starts_with("ln ") ||
-        has_any(size_header, std::to_array<std::string_view>({"log10", "log(", "lg(", "ln("})))
-        refuse_columns(
+        has_word(size_header, std::to_array<std::string_view>({"log10", "log(", "lg(", "ln("})))
+        refuse_export(
             fmt::format("column {} holds logarithms of sizes: export the sizes", column_list(grid, {columns.size})));
-    if (has_any(size_header, lower_edge_words)) columns.edge = "lower";
-    if (has_any(size_header, upper_edge_words)) columns.edge = "upper";
+    if (has_word(size_header, lower_edge_words)) columns.edge = "lower";
+    if (has_word(size_header, upper_edge_words)) columns.edge = "upper";
     const bool counted = heading.by == "number";
-    const bool headed = std::ranges::any_of(headings, [](const auto& one) { return has_any(one.plain, sieve_words); });
-    columns.sieved = !counted && (headed || has_any(grid.words, sieve_words) || headings[columns.size].sieve_number ||
+    const bool headed = std::ranges::any_of(headings, [](const auto& one) { return has_word(one.plain, sieve_words); });
+    columns.sieved = !counted && (headed || has_word(grid.words, sieve_words) || headings[columns.size].sieve_number ||
                                   columns.weighed);
     find_unit(grid, headings, choices, columns);
     columns.by = basis_of(grid, headings, columns);

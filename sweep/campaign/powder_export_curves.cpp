@@ -11,7 +11,6 @@ namespace grainsweep::campaign::export_curves {
 namespace {
 
 using export_entries::metres;
-using export_entries::refuse_export;
 using export_entries::share_rounding;
 using export_entries::small_rest;
 using SizeKind = ExportSize::Kind;

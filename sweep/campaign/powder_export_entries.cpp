@@ -116,10 +116,6 @@ Allowed allowed_by(const std::vector<Entry>& entries, const ExportColumns& colum
 
 }  // namespace
 
-void refuse_export(const std::string& why) {
-    throw input_error("EXPORT", "", why);
-}
-
 double metres(const std::string& text, std::string_view option) {
     const auto value = in_si(text, "m");
     if (const auto* why = std::get_if<std::string>(&value)) throw input_error(option, text, *why);

@@ -21,7 +21,6 @@ struct Entry {
     std::string cell;  ///< size as written
 };
 
-[[noreturn]] void refuse_export(const std::string& why);
 /// Returns a length of an option in m. Throws InputError unless it is above 0.
 [[nodiscard]] double metres(const std::string& text, std::string_view option);
 /// Returns the rows from the smallest size on.

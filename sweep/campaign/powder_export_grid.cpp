@@ -23,21 +23,16 @@ using export_blocks::Lines;
 constexpr std::size_t shortest_lying = 4;  // numbers of a line that may be a lying column
 constexpr std::size_t far_longer = 3;      // a table with so many times the rows of the others is the one
 
-std::optional<double> grid_number(const ExportGrid& grid, std::size_t row, std::size_t column) {
-    const auto number = export_number(grid.rows[row][column], grid.decimal_comma);
-    return number ? std::optional(number->value) : std::nullopt;
-}
-
 bool is_empty_column(const ExportGrid& grid, std::size_t column) {
     return std::ranges::all_of(grid.rows, [&](const auto& row) { return row[column].empty(); });
 }
 
 /// Whether a column counts its rows: 1, 2, 3, ... or from 0.
 bool counts_rows(const ExportGrid& grid, std::size_t column) {
-    const auto first = grid_number(grid, 0, column);
+    const auto first = number_at(grid, 0, column);
     if (!first || (*first != 0 && *first != 1)) return false;
     for (std::size_t k = 1; k < grid.rows.size(); ++k)
-        if (grid_number(grid, k, column) != *first + static_cast<double>(k)) return false;
+        if (number_at(grid, k, column) != *first + static_cast<double>(k)) return false;
     return grid.rows.size() > 2;
 }
 
@@ -109,7 +104,7 @@ bool is_lying(const ExportGrid& grid) {
     double before = 0;
     for (std::size_t j = 1; j < grid.headers.size(); ++j) {
         if (grid.rows[0][j].empty()) continue;
-        const auto size = grid_number(grid, 0, j);
+        const auto size = number_at(grid, 0, j);
         if (!size || !(*size > before)) return false;
         before = *size;
     }
@@ -174,8 +169,8 @@ bool continues(const ExportTable& table, const ExportTable& next) {
     std::size_t column = 0;
     while (column + 1 < a.headers.size() && !export_heading(a.headers[column]).size) ++column;
     if (!export_heading(a.headers[column]).size) column = 0;
-    const auto first = grid_number(a, 0, column), last = grid_number(a, a.rows.size() - 1, column),
-               then = grid_number(b, 0, column);
+    const auto first = number_at(a, 0, column), last = number_at(a, a.rows.size() - 1, column),
+               then = number_at(b, 0, column);
     return first && last && then && *first != *last && (*last > *first ? *then > *last : *then < *last);
 }
 
@@ -420,10 +415,9 @@ ExportGrid export_grid(std::string_view bytes, const ExportChoices& choices) {
             std::ranges::max_element(others, {}, [](const auto& table) { return table.grid.rows.size(); });
         if (longest != others.end()) tables.push_back(std::move(*longest));
     }
-    if (tables.empty())
-        throw input_error("EXPORT", "", "no table of sizes and shares is in it: two or more lines of numbers");
+    if (tables.empty()) refuse_export("no table of sizes and shares is in it: two or more lines of numbers");
     ExportTable& table = tables.size() == 1 ? tables.front() : chosen_table(tables, choices.sample);
-    if (!table.broken.empty()) throw input_error("EXPORT", "", table.broken);
+    if (!table.broken.empty()) refuse_export(table.broken);
     ExportGrid grid = std::move(table.grid);
     grid.sample_chosen = tables.size() > 1 && choices.sample;
     if (!grid.sample_chosen) keep_sample(grid, choices.sample);

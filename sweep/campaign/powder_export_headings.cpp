@@ -11,10 +11,6 @@
 namespace grainsweep::campaign {
 namespace {
 
-bool has_word(std::string_view text, std::span<const std::string_view> words) {
-    return std::ranges::any_of(words, [&](auto word) { return text.find(word) != std::string_view::npos; });
-}
-
 constexpr auto passing_words = std::to_array<std::string_view>(
     {"passing",   "pass",  "undersize", "under",   "finer",   "smaller",     "durchgang",
      "less than", "below", "tamisat",   "passant", "cdf",     "pasante",     "pasa ",
