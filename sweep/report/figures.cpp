@@ -191,12 +191,9 @@ Variable response_variable(const FigureSubject& subject) {
 }
 
 std::vector<std::size_t> failed_rows(const study::Responses& responses) {
-    using enum campaign::Outcome;
     std::vector<std::size_t> rows;
-    for (std::size_t row = 0; row < responses.rows(); ++row) {
-        const auto& outcome = responses.outcomes[row];
-        if (outcome && *outcome != completed && *outcome != skipped && *outcome != abandoned) rows.push_back(row);
-    }
+    for (std::size_t row = 0; row < responses.rows(); ++row)
+        if (study::has_failed(responses.outcomes[row])) rows.push_back(row);
     return study::random_rows(std::move(rows), most_crosses);
 }
 

@@ -178,15 +178,10 @@ Json cases_of(const Responses& responses) {
             {"ids", packed_ids(responses.case_ids)}};
 }
 
-bool failed(const std::optional<campaign::Outcome>& outcome) {
-    using enum campaign::Outcome;  // an abandoned case was given back and goes on with the next run
-    return outcome && *outcome != completed && *outcome != skipped && *outcome != abandoned;
-}
-
 Json failures_of(const store::Store& store, const Responses& responses) {
     Json listed = Json::array();
     for (std::size_t row = 0, count = 0; row < responses.rows() && count < most_listed_failures; ++row) {
-        if (!failed(responses.outcomes[row])) continue;
+        if (!has_failed(responses.outcomes[row])) continue;
         ++count;
         const auto attempts = store.attempts(responses.case_ids[row]);
         listed.push_back(case_of(responses, row)
@@ -194,7 +189,7 @@ Json failures_of(const store::Store& store, const Responses& responses) {
                                    {"attempts", attempts.size()},
                                    {"reason", attempts.empty() ? "" : attempts.back().message}}));
     }
-    return {{"count", std::ranges::count_if(responses.outcomes, failed)}, {"listed", listed}};
+    return {{"count", std::ranges::count_if(responses.outcomes, has_failed)}, {"listed", listed}};
 }
 
 Json page_json(const Curves& curves) {

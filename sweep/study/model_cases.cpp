@@ -20,10 +20,6 @@ namespace {
 
 constexpr double rounding_of_shares = 1e-9;
 
-bool answered(const std::optional<campaign::Outcome>& outcome) {
-    return outcome == campaign::Outcome::completed || outcome == campaign::Outcome::skipped;
-}
-
 /// What is asked, and no case yet.
 ModelCases without_cases(const Responses& responses) {
     ModelCases cases;
@@ -58,7 +54,7 @@ void add_model_cases(ModelCases& cases, const Responses& responses, std::set<std
             setting[j] = index.value_or(0);
         }
         if (!known) continue;
-        if (!answered(responses.outcomes[row])) {
+        if (has_failed(responses.outcomes[row])) {
             cases.failed.push_back({std::move(setting), *responses.outcomes[row]});
             continue;
         }
@@ -167,7 +163,7 @@ ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* r
     ModelCases cases = without_cases(responses);
     const auto settings = settings_of(responses, cases.factors);
     for (std::size_t row = 0; row < responses.settled; ++row) {
-        if (!answered(responses.outcomes[row])) {
+        if (has_failed(responses.outcomes[row])) {
             cases.failed.push_back({settings[row], *responses.outcomes[row]});
             continue;
         }

@@ -265,6 +265,11 @@ bool has_final_outcome(const std::optional<campaign::Outcome>& outcome) {
     return outcome && *outcome != campaign::Outcome::abandoned;
 }
 
+bool has_failed(const std::optional<campaign::Outcome>& outcome) {
+    using enum campaign::Outcome;
+    return has_final_outcome(outcome) && *outcome != completed && *outcome != skipped;
+}
+
 std::size_t Responses::without_value(const ResponseColumn& response) const {
     return static_cast<std::size_t>(
         std::ranges::count_if(judged(response), [](double x) { return !std::isfinite(x); }));

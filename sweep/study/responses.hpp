@@ -117,6 +117,8 @@ struct Responses {
 
 /// Returns whether the outcome is final: the case is not computed again in this run.
 [[nodiscard]] bool has_final_outcome(const std::optional<campaign::Outcome>& outcome);
+/// Returns whether the outcome is final and no answer.
+[[nodiscard]] bool has_failed(const std::optional<campaign::Outcome>& outcome);
 
 /// Returns whether the sequences of the design are independent replicates of one another.
 [[nodiscard]] bool repeats(const Responses& responses);
