@@ -71,13 +71,7 @@ ModelCurve curve_of(const Pictured& pictured, std::size_t factor) {
     }
     curve.averaged = pictured.averaged(std::span(&factor, 1), values);
     const auto predictions = pictured.model.predict(slice);
-    for (std::size_t i = 0; i < slice.size(); ++i) {
-        const bool there = pictured.has(slice[i]);
-        const auto shown = [&](double x) { return there ? x : std::numeric_limits<double>::quiet_NaN(); };
-        curve.mean.push_back(shown(predictions[i].mean));
-        curve.mean_half_width.push_back(shown(predictions[i].mean_half_width()));
-        curve.run_half_width.push_back(shown(predictions[i].run_half_width()));
-    }
+    for (std::size_t i = 0; i < slice.size(); ++i) curve.add(predictions[i], pictured.has(slice[i]));
     return curve;
 }
 
@@ -93,6 +87,13 @@ ModelMap map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
 }
 
 }  // namespace
+
+void ModelCurve::add(const stats::Prediction& point, bool shown) {
+    const auto drawn = [&](double x) { return shown ? x : std::numeric_limits<double>::quiet_NaN(); };
+    mean.push_back(drawn(point.mean));
+    mean_half_width.push_back(drawn(point.mean_half_width()));
+    run_half_width.push_back(drawn(point.run_half_width()));
+}
 
 double ModelCurve::range() const {
     double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -24,6 +24,8 @@ namespace grainsweep::report {
 struct ModelCurve {
     std::vector<double> at, averaged, mean, mean_half_width, run_half_width;
 
+    /// Adds the mean and the half-widths of a point; not drawn unless `shown`.
+    void add(const stats::Prediction& point, bool shown);
     /// Returns the largest minus the smallest value of `averaged`.
     [[nodiscard]] double range() const;
 };

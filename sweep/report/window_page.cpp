@@ -36,12 +36,7 @@ WindowCurve curve_through(const ModelCases& cases, const WindowRequest& request,
     curve.judged = judge_settings(cases, request, window, admits, settings);
     for (std::size_t k = 0; k < window.models.size(); ++k) {
         auto& response = curve.responses.emplace_back(ModelCurve{curve.at, {}, {}, {}, {}});
-        for (const auto& one : curve.judged) {
-            const auto shown = [&](double x) { return one.believed ? x : std::numeric_limits<double>::quiet_NaN(); };
-            response.mean.push_back(shown(one.predictions[k].mean));
-            response.mean_half_width.push_back(shown(one.predictions[k].mean_half_width()));
-            response.run_half_width.push_back(shown(one.predictions[k].run_half_width()));
-        }
+        for (const auto& one : curve.judged) response.add(one.predictions[k], one.believed);
     }
     return curve;
 }
