@@ -179,20 +179,16 @@ store::Table model_influence_table(const ModelInfluence& influence) {
     if (influence.depends()) table.columns = {"factor", "Shapley effect"};
     if (!influence.indices) return table;
     const auto& indices = *influence.indices;
-    if (influence.depends()) {
-        std::vector<std::size_t> by_effect(influence.factors.size());
-        std::iota(by_effect.begin(), by_effect.end(), std::size_t{0});
-        std::ranges::stable_sort(by_effect, std::ranges::greater{},
-                                 [&](std::size_t j) { return indices.shapley[j].value; });
-        for (const auto j : by_effect) table.rows.push_back({influence.factors[j], index_text(indices.shapley[j])});
-        return table;
-    }
+    const auto& weights = influence.depends() ? indices.shapley : indices.total;
     std::vector<std::size_t> order(influence.factors.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return indices.total[j].value; });
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return weights[j].value; });
     for (const auto j : order)
-        table.rows.push_back({influence.factors[j], index_text(indices.first[j]), index_text(indices.total[j]),
-                              index_text(indices.interactions[j])});
+        if (influence.depends())
+            table.rows.push_back({influence.factors[j], index_text(indices.shapley[j])});
+        else
+            table.rows.push_back({influence.factors[j], index_text(indices.first[j]), index_text(indices.total[j]),
+                                  index_text(indices.interactions[j])});
     return table;
 }
 
