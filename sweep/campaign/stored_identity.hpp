@@ -1,5 +1,6 @@
-// Identity of a campaign in the database: a campaign file with resolved values (JSON), and the texts beside it, which
-// are all that a database before schema 12 has.
+// Identity of a campaign in the database, and the design request and parameter space that follow from it. Stored is a
+// campaign file with resolved values (JSON), and the texts beside it, which are all that a database before schema 12
+// has.
 //
 // The JSON has the keys of a campaign file, and "revision" of the scene. Its numbers are in SI units. "fixed" has the
 // accuracy setting and the powder resolved. A sample is one column: {"of": hash of all its columns, "column": from 0,
@@ -11,7 +12,9 @@
 #pragma once
 
 #include "sweep/campaign/identity.hpp"
+#include "sweep/designs/design.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +41,13 @@ void read_texts(Identity& identity, const IdentityTexts& texts);
 /// Returns an option as in the texts.
 [[nodiscard]] std::string text_of(const designs::OptionValue& value);
 [[nodiscard]] std::vector<std::string> text_lines(const std::string& text);
+
+/// Returns options, levels and ranges; listed rows are not included, because they are in the places of the campaign.
+/// Throws std::logic_error for an unknown design.
+[[nodiscard]] designs::DesignRequest request_of(const Identity& identity);
+/// Returns the fixed values of the scene's parameters, without expressions.
+[[nodiscard]] Inputs fixed_values(const Identity& identity, const SceneInfo& scene);
+/// Returns the parameter space of a stored campaign, without compiled `when` clauses; empty for an unknown scene.
+[[nodiscard]] std::optional<ParameterSpace> space_of(const Identity& identity);
 
 }  // namespace grainsweep::campaign

@@ -3,7 +3,7 @@
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/input_error.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <algorithm>

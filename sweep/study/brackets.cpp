@@ -2,7 +2,7 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/schedule/growth.hpp"
 
 namespace grainsweep::study {

@@ -4,7 +4,7 @@
 #include "stats/calibration.hpp"
 #include "sweep/campaign/experiments.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/designs/calibration_layout.hpp"
 #include "sweep/schedule/growth.hpp"
 #include "sweep/study/responses.hpp"

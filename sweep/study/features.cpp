@@ -4,7 +4,7 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/when_clauses.hpp"

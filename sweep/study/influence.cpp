@@ -5,7 +5,7 @@
 #include "stats/moments.hpp"
 #include "stats/spread.hpp"
 #include "stats/trend.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
 #include "sweep/study/sample_parts.hpp"

@@ -6,7 +6,7 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/joint_column.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/schedule/judge.hpp"
 

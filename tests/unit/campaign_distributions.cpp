@@ -4,7 +4,7 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/stated_distribution.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/stored_both_ways.hpp"
 

@@ -3,7 +3,7 @@
 #include "sweep/campaign/input_error.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/simplex.hpp"
-#include "sweep/campaign/stored_request.hpp"
+#include "sweep/campaign/stored_identity.hpp"
 #include "sweep/designs/factor.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/when_clauses.hpp"
