@@ -13,14 +13,14 @@ namespace grainsweep::machine {
 
 constexpr double pressed = 0.01;  // of a radius: how far a particle stands in a wall that it is pressed against
 
-/// Of all that determines the state at the end of the start: the state at its beginning, with laws, walls and time
-/// step, and how long it lasts.
+/// Of all that determines the state at the end of a start of one phase: the state at its beginning, with laws, walls
+/// and time step, and how long it lasts.
 std::string Run::key_of_start() const {
     Bytes bytes;
     engine_->save(bytes);
     ByteWriter out(bytes);
     out.put(spec_.gravity), out.put(spec_.domain.low), out.put(spec_.domain.high);
-    for (std::size_t p = 0; p < spec_.start.phases; ++p) out.put(steps_in(spec_.phases[p].duration));
+    out.put(steps_in(spec_.phases.front().duration));
     while (bytes.size() % sizeof(std::uint64_t) != 0) bytes.push_back(std::byte{});
     std::uint64_t one = 1, other = 2;
     for (std::size_t at = 0; at < bytes.size(); at += sizeof one) {
@@ -44,10 +44,8 @@ void Run::take_start(const dem::Setup& setup) {
         return;
     }
     borrowed_particle_steps_ = engine_->work().particle_steps;
-    while (phase_ < spec_.start.phases) {
-        step_ += phase_steps();
-        end_phase(0);
-    }
+    step_ += phase_steps();
+    end_phase(0);
 }
 
 void Run::store_start() const {

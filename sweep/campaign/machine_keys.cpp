@@ -234,9 +234,8 @@ constexpr std::array feed_keys = {
 constexpr auto start_keys = std::to_array<Field>({
     needed({"phase", MachineKey::text, "the phase with which the start ends"}),
     {"seed", MachineKey::quantity,
-     "of its random numbers: it is computed once for all cases with the same start and kept beside the database; 0: "
-     "that "
-     "of the case, which shares nothing",
+     "of its random numbers: a start of one phase is computed once for all cases with the same start and kept beside "
+     "the database; 0: that of the case, which shares nothing",
      "0"},
 });
 

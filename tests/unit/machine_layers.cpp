@@ -170,34 +170,60 @@ public:
     std::map<std::string, Bytes, std::less<>> kept;
 };
 
+/// Returns the observables of a case and the particle steps that it computed itself.
+std::pair<std::string, std::int64_t> finished(const machine::Spec& spec, std::uint64_t seed, Artefacts* artefacts) {
+    machine::Run run(spec, seed, artefacts);
+    run.advance(std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(run.finished()) << run.health().reason;
+    Observations seen;
+    run.observe(seen);
+    return {text_of(seen), run.particle_steps()};
+}
+
 TEST(MachineLayers, AStartIsTheSameTakenOrComputed) {
     for (const char* precision : {"mixed", "double"}) {
         const Inputs shared = {{"start_seed", std::int64_t{3}}, {"precision", std::string(precision)}};
-        const auto finish = [](const machine::Spec& spec, std::uint64_t seed, Artefacts* artefacts) {
-            machine::Run run(spec, seed, artefacts);
-            run.advance(std::numeric_limits<double>::infinity());
-            EXPECT_TRUE(run.finished()) << run.health().reason;
-            Observations seen;
-            run.observe(seen);
-            return std::pair(text_of(seen), run.particle_steps());
-        };
         Shelf shelf;
         const auto spec = spec_of(sound_rake(), shared);
-        const auto alone = finish(spec, 1, nullptr), first = finish(spec, 1, &shelf), taken = finish(spec, 1, &shelf);
+        const auto alone = finished(spec, 1, nullptr), first = finished(spec, 1, &shelf),
+                   taken = finished(spec, 1, &shelf);
         EXPECT_EQ(first.first, alone.first);
         EXPECT_EQ(taken.first, alone.first);
         EXPECT_LT(taken.second, first.second);
-        EXPECT_NE(finish(spec, 2, &shelf).first, alone.first) << "the bar stands elsewhere";
+        EXPECT_NE(finished(spec, 2, &shelf).first, alone.first) << "the bar stands elsewhere";
         Inputs other = shared;
         other["lip"] = 4e-3;  // of a wall that joins after the start
-        (void)finish(spec_of(sound_rake(), other), 1, &shelf);
+        (void)finished(spec_of(sound_rake(), other), 1, &shelf);
         EXPECT_EQ(shelf.kept.size(), 1U);
         other["start_seed"] = std::int64_t{4};
-        (void)finish(spec_of(sound_rake(), other), 1, &shelf);
+        (void)finished(spec_of(sound_rake(), other), 1, &shelf);
         EXPECT_EQ(shelf.kept.size(), 2U);
         shelf.kept.begin()->second.resize(100);
-        EXPECT_EQ(finish(spec, 1, &shelf).first, alone.first) << "a damaged one does no harm";
+        EXPECT_EQ(finished(spec, 1, &shelf).first, alone.first) << "a damaged one does no harm";
     }
+}
+
+/// A lid presses grains in the second phase of the start.
+TEST(MachineLayers, AStartOfSeveralPhasesIsThatOfItsCase) {
+    const json press = json::parse(R"json({
+      "name": "press", "parameters": {"speed": {"unit": "m/s", "default": 0}},
+      "materials": {"rock": {"density": 2500, "youngs_modulus": "5 MPa"}},
+      "species": {"sand": {"diameter": "4 mm"}},
+      "walls": {"box": {"box": {"low": [0, 0, 0], "high": [0.02, 0.02, 0.06], "open": ["+z"]}},
+                "lid": {"rectangle": {"corner": [0, 0, 0.03], "along": [0.02, 0, 0], "across": [0, 0.02, 0]},
+                        "motion": [{"shift": {"velocity": [0, 0, "-speed"]}, "during": "press"}]}},
+      "fill": [{"species": "sand", "count": 60, "in": {"box": {"low": [0, 0, 0], "high": [0.02, 0.02, 0.029]}}}],
+      "phases": [{"name": "settle", "for": 0.05, "frames": 2}, {"name": "press", "for": 0.1, "frames": 2},
+                 {"name": "hold", "for": 0.01, "frames": 5}],
+      "start": {"phase": "press", "seed": 1},
+      "measure": {"height": {"height": {}, "during": "hold", "as": "last"}}
+    })json");
+    Shelf shelf;
+    const auto slow = spec_of(press, {{"speed", 0.0}}), fast = spec_of(press, {{"speed", 0.1}});
+    const auto alone = finished(fast, 1, nullptr).first;
+    EXPECT_NE(finished(slow, 1, &shelf).first, alone);
+    EXPECT_EQ(finished(fast, 1, &shelf).first, alone);
+    EXPECT_EQ(finished(fast, 1, &shelf).first, alone);
 }
 
 TEST(MachineLayers, WrongOnesGetOneSentence) {
