@@ -23,7 +23,8 @@ namespace grainsweep::workers {
 namespace {
 
 constexpr std::size_t most_columns = 10'000, most_rows = 10'000'000;
-constexpr std::size_t longest_searched = 4096;  // a search takes up to the square of its line's length
+constexpr std::size_t longest_searched = 4096;                 // a search takes up to the square of its line's length
+constexpr std::size_t largest_beyond = std::size_t{1} << 20U;  // kept of the rest of a line
 constexpr std::chrono::minutes longest_search{10};
 
 bool is_digit(char c) {
@@ -228,14 +229,19 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     if (!file.is_open()) throw std::invalid_argument("standard output " + why);
     const auto literal = literal_of(pattern);
     std::optional<FoundText> last;
-    std::string line;
+    std::string line, beyond;  // what is searched of a line, and what is not
+    bool may_be_beyond = false;
     std::smatch parts;
     const auto search = [&] {
         // The end of a line of Windows is two ends with nothing between them.
         const bool may_match = !line.empty() && line.find(literal) != std::string::npos;
-        if (may_match && std::regex_search(line, parts, found->second) && parts[1].matched)
+        if (may_match && std::regex_search(line, parts, found->second) && parts[1].matched) {
             last.emplace(parts, line.size() >= longest_searched);
-        line.clear();
+            may_be_beyond = false;
+        } else if (!beyond.empty() && !literal.empty() && !pattern.starts_with('^')) {
+            may_be_beyond = may_be_beyond || (line + beyond).find(literal) != std::string::npos;
+        }
+        line.clear(), beyond.clear();
     };
     const auto began = std::chrono::steady_clock::now();
     std::array<char, 65536> piece{};
@@ -246,13 +252,19 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
         std::string_view rest(piece.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
         while (!rest.empty()) {
             const auto end = rest.find_first_of("\r\n");  // a progress bar returns to the start of its line
-            line += rest.substr(0, std::min(end, longest_searched - line.size()));
+            const auto part = rest.substr(0, end), here = part.substr(0, longest_searched - line.size());
+            line += here;
+            beyond += part.substr(here.size()).substr(0, largest_beyond - beyond.size());
             if (end == std::string_view::npos) break;
             search();
             rest.remove_prefix(end + 1);
         }
     }
     if (!line.empty()) search();
+    if (may_be_beyond)
+        throw std::invalid_argument(
+            fmt::format("standard output: '{}' may stand beyond the first {} bytes of a line, which alone are searched",
+                        pattern, longest_searched));
     if (!last) throw NoValue(fmt::format("standard output has no line with '{}'", pattern));
     if (last->cut)
         throw std::invalid_argument(fmt::format(

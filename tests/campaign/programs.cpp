@@ -156,6 +156,22 @@ TEST(Programs, APartOfANumberIsNoResult) {
         expect_has(found(line, pattern), "completed");
 }
 
+TEST(Programs, AValueBehindALongLineIsNotAnEarlierOne) {
+    const auto found = [](const std::string& script, const std::string& pattern = "y = (.*)") {
+        return ending_of(
+            script,
+            {{"observables",
+              {{"y", {{"from", {{"output", pattern}, {"json", nullptr}, {"path", nullptr}}}, {"optional", true}}}}}});
+    };
+    const std::string behind = "printf '%5000s' .; echo y = 2\n";
+    for (const std::string earlier : {"", "echo y = 1\n"})
+        expect_has(found(earlier + behind),
+                   "rejected: standard output: 'y = (.*)' may stand beyond the first 4096 bytes of a line");
+    expect_has(found(behind + "echo y = 1\n"), "completed");
+    expect_has(found("echo y = 1; printf '%5000s\\n' .\n"), "completed");
+    expect_has(found("echo y = 1\n" + behind, "^y = (.*)"), "completed");
+}
+
 /// A hopper has no flow time where it jams.
 TEST(Programs, AnOptionalObservableMayBeAbsent) {
     const json out = {{"y", {{"optional", true}, {"from", {{"json", "out.json"}, {"path", "/y"}}}}},
