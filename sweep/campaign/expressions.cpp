@@ -102,7 +102,8 @@ void refuse_degrees(const Expression& expression, const SceneInfo& scene) {
     const auto& text = expression.formula.text();
     const auto has = [&](std::string_view part) { return text.find(part) != std::string::npos; };
     const auto any_of = [&](auto... parts) { return (has(parts) || ...); };
-    if (!any_of("sin(", "cos(", "tan(", "atan2(") || any_of("pi", "180", "0.0174", "57.29")) return;
+    const bool has_pi = !names_in(text, [](std::string_view name) { return name == "pi"; }).empty();
+    if (!any_of("sin(", "cos(", "tan(", "atan2(") || has_pi || any_of("180", "0.0174", "57.29")) return;
     auto names = expression.formula.names();
     names.push_back(expression.name);
     for (const auto& name : names) {

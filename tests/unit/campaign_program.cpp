@@ -531,6 +531,9 @@ TEST(ProgramQuantities, FunctionsOfAnglesTakeRadians) {
     for (const char* sound : {"tan(gap*pi/180)", "sin(gap/57.29578)", "2*gap"}) EXPECT_EQ(said(sound), "") << sound;
     EXPECT_EQ(said("tan(gap)", "rad"), "");
     EXPECT_EQ(said("sin(gap)", "1"), "");
+    const auto pitched = of.file({{"gap", {{"unit", "deg"}}}, {"slope", {{"unit", "1"}}}, {"pitch", {{"unit", "1"}}}},
+                                 {{"slope", "pitch*tan(gap)"}, {"pitch", 2}});
+    EXPECT_NE(of.said(pitched).find("write gap*pi/180"), std::string::npos) << "pi is no part of a name";
 }
 
 TEST(ProgramQuantities, FormatsAreCheckedWhereTheyStand) {
