@@ -42,6 +42,9 @@ std::optional<CsvRecord> CsvTable::take() {
     while (!rest_.empty()) {
         ++number_;
         auto record = take_csv_record(rest_, separator_);
+        for (auto& cell : record)  // "'-x" of a table that query wrote: see report/table.cpp
+            if (cell.starts_with('\'') && std::string_view("=+-@").find(cell[1]) != std::string_view::npos)
+                cell.erase(0, 1);
         if (record != CsvRecord{""}) return record;
     }
     return std::nullopt;

@@ -51,4 +51,12 @@ TEST(CsvTable, RefusesWhatIsNoHeader) {
     EXPECT_EQ(refusal("\n\n"), "the file is empty; a header and records are expected");
 }
 
+TEST(CsvTable, ReadsWordsAsQueryWritesThem) {
+    const std::string text = "word,x\n'-x,'+1\n'=a,'@b\n'a','\n";
+    CsvTable table(text, throw_rule);
+    EXPECT_EQ(table.next(), (CsvRecord{"-x", "+1"}));
+    EXPECT_EQ(table.next(), (CsvRecord{"=a", "@b"}));
+    EXPECT_EQ(table.next(), (CsvRecord{"'a'", "'"}));
+}
+
 }  // namespace grainsweep::tests::campaign_csv_test
