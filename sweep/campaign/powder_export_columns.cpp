@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <ranges>
 #include <span>
 
@@ -217,10 +218,13 @@ std::size_t share_column(const ExportGrid& grid, const Headings& headings, const
     std::vector<std::size_t> densities;
     auto shares = share_columns(grid, headings, found, densities);
     if (choices.sample && !grid.sample_chosen) {
-        std::vector<std::size_t> named;
+        std::vector<std::size_t> named;  // "A" is a part of most headers: the whole name comes first
         for (const auto j : shares)
-            if (plain_words(grid.headers[j]).find(plain_words(*choices.sample)) != std::string::npos)
-                named.push_back(j);
+            if (grid.headers[j].starts_with(*choices.sample + ": ")) named.push_back(j);
+        if (named.empty())
+            std::ranges::copy_if(shares, std::back_inserter(named), [&](auto j) {
+                return plain_words(grid.headers[j]).find(plain_words(*choices.sample)) != std::string::npos;
+            });
         if (named.empty())
             throw input_error("--sample", *choices.sample,
                               fmt::format("no table, row or column has this name; the columns of shares are {}",

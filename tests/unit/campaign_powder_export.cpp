@@ -50,6 +50,13 @@ const std::vector<Export>& exports() {
          {{15, 0}, {20, 0.1 / 0.998}, {34, 0.5 / 0.998}, {63, 1}},
          5,
          "end at 99.8 %"},
+        {"SampleByItsWholeName",
+         "Volume\n,A,,B,\nSize [um],Cumulative undersize [%],Freq [%],Cumulative undersize [%],Freq [%]\n"
+         "10,0,0,0,0\n20,30,30,60,60\n40,100,70,100,40\n",
+         {.sample = "A"},
+         "diameter,volume_below",
+         {{20, 0.3}},
+         3},
         {"LaserInLatin1",
          "Gr\xF6\xDF"
          "e (\xB5m);Volumen kumulativ (%)\r\n10;0\r\n20;30\r\n40;100\r\n",
