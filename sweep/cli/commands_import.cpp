@@ -336,7 +336,8 @@ private:
         const auto records = store.campaigns();
         const auto record = std::ranges::find(records, name, &store::CampaignRecord::name);
         if (record != records.end()) {
-            if (record->imported_into != campaign_.name)
+            // An import that was killed here has left its cases without results and unmarked.
+            if (record->imported_into != campaign_.name && (record->imported_into || has_begun(store, name)))
                 throw campaign::input_error("DB", database_.string(),
                                             fmt::format("it has a campaign '{}' that is no import", name));
             const auto placed = store.placement(name);

@@ -1,4 +1,5 @@
 // Results that were computed elsewhere, imported through the real program.
+#include "tests/support/failing_call.hpp"
 #include "tests/support/program_campaigns.hpp"
 
 #include <gmock/gmock.h>
@@ -266,6 +267,23 @@ TEST_F(Imports, RefuseWrongFilesInOneSentence) {
         EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "p.db")) << "a refused file leaves no database";
+}
+
+TEST_F(Imports, ContinueAfterAKillAtEachSync) {
+    const std::vector<std::string> import = {"import", "old.csv", "c.json", "p.db"};
+    ASSERT_EQ(imported("x,y\n0.11,0.22\n0.53,1.06\n").code, 0);
+    const auto whole = program({"dump", "p.db"}).out;
+    int syncs = 0;
+    for (bool killed = true; killed; ++syncs) {
+        for (const char* file : {"p.db", "p.db-wal", "p.db-shm"}) std::filesystem::remove(folder / file);
+        const FailingCall call{"main", "sync", "p.db-wal", "after", syncs + 1};
+        (void)Process(command_with(call, folder / "token", import), folder.path()).wait();
+        killed = has_happened(folder / "token");
+        const auto again = program(import);
+        EXPECT_EQ(again.code, 0) << call.name() << ": " << again.err;
+        EXPECT_EQ(program({"dump", "p.db"}).out, whole) << call.name();
+    }
+    EXPECT_GT(syncs, 3);
 }
 
 }  // namespace grainsweep::tests::imports_test
