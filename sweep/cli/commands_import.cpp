@@ -92,10 +92,9 @@ public:
     }
 
     ImportReport operator()() {
-        if (fs::exists(database_)) {
-            const Store store(database_, Store::Mode::read);
-            continue_stored(store);
-            gather(&store);
+        if (const auto store = Store::read_if_begun(database_)) {
+            continue_stored(*store);
+            gather(&*store);
         } else {
             gather(nullptr);
         }

@@ -115,9 +115,9 @@ private:
     }
     /// That of an earlier run.
     [[nodiscard]] std::optional<std::string> stored_setting() const {
-        if (!fs::exists(request_.database)) return std::nullopt;
-        const store::Store store(request_.database, store::Store::Mode::read);
-        for (const auto& record : store.campaigns())
+        const auto store = store::Store::read_if_begun(request_.database);
+        if (!store) return std::nullopt;
+        for (const auto& record : store->campaigns())
             if (record.name == asked_.name)
                 if (const auto goal = campaign::remarks_in(record.text).goal) return goal->setting;
         return std::nullopt;

@@ -263,6 +263,14 @@ Store::Store(const std::filesystem::path& file, Mode mode, Disk disk)
     : impl_(mode == Mode::create ? open_to_write(file, disk) : open_to_read(file)) {
     add_statistics(impl_->db);
 }
+std::optional<Store> Store::read_if_begun(const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    check_name(file);
+    check_readable(file);
+    if (schema_version(Connection(file, Connection::Access::read), file) == 0) return std::nullopt;
+    return Store(file, Mode::read);
+}
+
 Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;

@@ -147,6 +147,9 @@ public:
     /// writer is refused with a sentence that names the first. read: changes neither content nor schema. Throws
     /// SystemError, or InputError if the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
+    /// Reads a database that a run may continue; empty: there is none, or the run that made it was killed before it
+    /// wrote.
+    [[nodiscard]] static std::optional<Store> read_if_begun(const std::filesystem::path& file);
     ~Store();
     Store(Store&&) noexcept;
     Store& operator=(Store&&) noexcept;
