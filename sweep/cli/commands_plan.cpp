@@ -479,8 +479,10 @@ Planned planned(const PlanRequest& request, std::string_view experiment) {
     Campaign campaign = read_with_program(config, experiment);
     const auto file = campaign::name_in_file(campaign::identity_of(campaign)) + ".db";
     std::optional<store::Store> archive;
-    if (database.empty() && std::filesystem::exists(file)) database = file;
-    if (!database.empty()) archive.emplace(database, store::Store::Mode::read);
+    if (!database.empty())
+        archive.emplace(database, store::Store::Mode::read);
+    else if ((archive = store::Store::read_if_begun(file)))
+        database = file;
     if (archive) campaign::asked_in(config, [&] { return refuse_another_program(*archive, campaign, database), 0; });
     auto outlook =
         campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr, request.probe); });

@@ -164,6 +164,13 @@ TEST(Commands, AFileOfTheWrongKindIsAWrongQuestion) {
     }
 }
 
+TEST(Commands, PlanPassesOverADatabaseThatAKilledRunLeftEmpty) {
+    const Folder folder;
+    folder.write("c.json", config);
+    folder.write(json::parse(config)["campaign"].get<std::string>() + ".db", "");
+    EXPECT_EQ(in_folder(folder, {"plan", "c.json"}).code, 0);
+}
+
 TEST(Commands, SolveRefusesTheDesignsThatPlanRefuses) {
     const Folder folder;
     folder.write("c.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
