@@ -40,7 +40,7 @@ class SelectedWalls {
 public:
     explicit SelectedWalls(const Options& options) : numbers_(options.numbers("wall")), given_(options.has("wall")) {}
 
-    /// Returns whether this case is without all of them.
+    /// Returns whether a case has none of the walls: each may be left out by its "when".
     [[nodiscard]] bool none() const { return numbers_.empty(); }
     /// Returns whether a contact is with one of the walls.
     [[nodiscard]] bool touch(const dem::ContactForce& contact) const {
